@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "slam/geometry/so3.h"
+
+namespace orb360 {
+
+/// Rigid transform. Named `target_from_source`: p_target = target_from_source * p_source, and
+/// a_from_c = a_from_b * b_from_c.
+struct Rigid3 {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d operator*(const Eigen::Vector3d& p) const { return rotation * p + translation; }
+  /// The product's quaternion is normalized, so that chains of any length stay rotations.
+  Rigid3 operator*(const Rigid3& other) const {
+    return {(rotation * other.rotation).normalized(), *this * other.translation};
+  }
+  Rigid3 Inverse() const {
+    const Eigen::Quaterniond inverse = rotation.conjugate();
+    return {inverse, -(inverse * translation)};
+  }
+};
+
+/// Similarity transform p_target = scale * (rotation * p_source) + translation, scale > 0.
+struct Similarity3 {
+  double scale = 1.0;
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d operator*(const Eigen::Vector3d& p) const {
+    return scale * (rotation * p) + translation;
+  }
+  Similarity3 operator*(const Similarity3& other) const {
+    return {scale * other.scale, (rotation * other.rotation).normalized(),
+            *this * other.translation};
+  }
+  Similarity3 Inverse() const {
+    const Eigen::Quaterniond inverse = rotation.conjugate();
+    return {1.0 / scale, inverse, -(inverse * translation) / scale};
+  }
+};
+
+/// The pose of a camera after its world is moved and scaled: target_from_camera, with the camera's
+/// own axes and units of length following the world's.
+inline Rigid3 TransformPose(const Similarity3& target_from_world,
+                            const Rigid3& world_from_camera) {
+  return {(target_from_world.rotation * world_from_camera.rotation).normalized(),
+          target_from_world * world_from_camera.translation};
+}
+
+}  // namespace orb360
