@@ -209,6 +209,8 @@ TEST(TriangulateTwoViews, RefusesWhatHasNoPoint) {
   EXPECT_FALSE(TriangulateTwoViews(right, to_left, to_right));  // diverging
   EXPECT_TRUE(TriangulateTwoViews(right, to_right, to_left));
   EXPECT_TRUE(TriangulateTwoViews(right, -to_left, -to_right));  // the same behind the cameras
+  EXPECT_FALSE(TriangulateTwoViews(right, -to_right, to_left));  // behind one of them
+  EXPECT_FALSE(TriangulateTwoViews(right, to_right, -to_left));
   const Vector3d epipole(0, 1, 0);
   EXPECT_FALSE(TriangulateTwoViews(right, epipole, epipole));
   EXPECT_FALSE(TriangulateTwoViews(right, epipole, -epipole));
