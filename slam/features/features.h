@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace orb360 {
+
+/// 256 binary comparisons.
+using Descriptor = std::array<uint64_t, 4>;
+
+struct Keypoint {
+  Eigen::Vector2f pixel;  // continuous level-0 pixel, centre of the top-left pixel at (0.5, 0.5)
+  float angle;            // orientation in the tangent plane, radians from east towards south
+  float sigma;            // angular noise of the position, radians (one standard deviation)
+  uint8_t level;          // of the pyramid
+  uint8_t score;          // FAST score
+};
+
+/// The features of one image; all arrays have the same length, index = feature.
+struct Features {
+  std::vector<Keypoint> keypoints;
+  std::vector<Eigen::Vector3d> bearings;  // unit vectors, camera frame
+  std::vector<Descriptor> descriptors;
+
+  int size() const { return static_cast<int>(keypoints.size()); }
+};
+
+}  // namespace orb360

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "slam/features/features.h"
+#include "slam/features/sphere_pyramid.h"
+
+namespace orb360 {
+
+struct OrbOptions {
+  int num_features = 2000;
+  int num_levels = 8;
+  /// FAST score from which a pixel may be a feature (grey levels).
+  int min_score = 8;
+  /// Standard deviation of a feature's position, pixels of its own level.
+  double pixel_sigma = 0.7;
+};
+
+/// ORB on the sphere: FAST corners on a pyramid that wraps at the seam, shared out by solid angle,
+/// with orientation and descriptor sampled in the tangent plane (design: docs/features.md).
+///
+/// Rolling the image by k/32 of its width (if that is divisible by 32) gives exactly the same
+/// features, shifted. Reusable and stateless between images; one object serves one thread, and
+/// itself uses OpenMP threads, whose number does not change the result.
+class OrbExtractor {
+ public:
+  explicit OrbExtractor(const OrbOptions& options);
+
+  /// `gray`: CV_8U, the whole sphere. `mask`: CV_8U of the same size, or empty; features whose
+  /// centre has mask 0 are left out. Features are ordered by level, then row, then column.
+  Features Extract(const cv::Mat& gray, const cv::Mat& mask = {}) const;
+
+ private:
+  OrbOptions options_;
+};
+
+}  // namespace orb360

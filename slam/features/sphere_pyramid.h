@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "slam/geometry/camera.h"
+
+namespace orb360 {
+
+/// Number of columns of cells on every pyramid level. Level widths are multiples of it (but for
+/// level 0, which is the input), so that rolling the input by k/32 of its width rolls every level
+/// by whole pixels and whole cells, and features come out exactly the same.
+inline constexpr int kSphereColumns = 32;
+
+/// One level of the pyramid: an equirectangular image with a margin that continues the sphere.
+struct PyramidLevel {
+  /// Margins in pixels. Horizontally the reach of a descriptor stretched to the latitude where
+  /// exact sampling takes over (see tangent_sampling.h) and of the blur; vertically its radius.
+  static constexpr int kMarginX = 64;
+  static constexpr int kMarginY = 24;
+
+  EquirectangularCamera camera;
+  /// Level-0 pixels per pixel of this level, horizontally: the feature's scale.
+  double scale;
+  /// CV_8U, (height + 2 kMarginY) x (width + 2 kMarginX). Longitude wraps; across a pole, row
+  /// -1 - i is row i turned by half the width.
+  cv::Mat padded;
+
+  /// The image without its margin; pointers into it may reach into the margin.
+  cv::Mat image() const {
+    return padded(cv::Rect(kMarginX, kMarginY, camera.width(), camera.height()));
+  }
+};
+
+/// Scales grow by 2^(1/4) a level: levels 1 to 3 are resampled from the input, and level l + 4 is
+/// level l at exactly half size. `gray` is CV_8U and covers the whole sphere. Levels that would
+/// be narrower than 64 pixels are left out. Runs on OpenMP threads; the result does not depend on
+/// their number.
+std::vector<PyramidLevel> BuildSpherePyramid(const cv::Mat& gray, int num_levels);
+
+/// Fills the margins of a level from its image.
+void FillSphereMargin(PyramidLevel* level);
+
+}  // namespace orb360
