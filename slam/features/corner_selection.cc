@@ -31,8 +31,7 @@ bool StrongerInCell(const Candidate& a, const Candidate& b) {
 // Offset in [-0.5, 0.5] of the maximum of the parabola through three scores, middle the largest.
 float ParabolaPeak(int before, int middle, int after) {
   const int curvature = 2 * middle - before - after;
-  return curvature == 0 ? 0.0f
-                        : std::clamp(0.5f * (after - before) / curvature, -0.5f, 0.5f);
+  return curvature == 0 ? 0.0f : std::clamp(0.5f * (after - before) / curvature, -0.5f, 0.5f);
 }
 
 // The strongest `count` by (rank in the cell < cap first, then score); equals at the cut are kept.
@@ -42,9 +41,8 @@ std::vector<Candidate> TakeStrongest(std::vector<Candidate> candidates, int coun
   const auto preference = [cap](const Candidate& c) {
     return (c.rank < cap ? 256 : 0) + c.corner.score;
   };
-  std::stable_sort(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
-    return preference(a) > preference(b);
-  });
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [&](const auto& a, const auto& b) { return preference(a) > preference(b); });
   size_t kept = std::min<size_t>(count, candidates.size());
   while (kept > 0 && kept < candidates.size() &&
          preference(candidates[kept]) == preference(candidates[kept - 1])) {
@@ -141,9 +139,8 @@ std::vector<Corner> SelectCorners(const PyramidLevel& level, int count, uint8_t 
   std::vector<Corner> corners;
   corners.reserve(all.size());
   for (const Candidate& candidate : all) corners.push_back(candidate.corner);
-  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
-    return a.y != b.y ? a.y < b.y : a.x < b.x;
-  });
+  std::sort(corners.begin(), corners.end(),
+            [](const Corner& a, const Corner& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
   return corners;
 }
 

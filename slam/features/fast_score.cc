@@ -45,7 +45,7 @@ HWY_INLINE void ScoreBlock(D d, const uint8_t* center, const ptrdiff_t (&circle)
     brighter[i] = hn::SaturatedSub(c, p);
     darker[i] = hn::SaturatedSub(p, c);
   }
-  const auto adjacent = [](const V (&x)[16]) {
+  const auto adjacent = [](const V(&x)[16]) {
     return hn::Min(hn::Max(x[0], x[8]), hn::Max(x[4], x[12]));
   };
   const V possible = hn::Max(adjacent(brighter), adjacent(darker));
@@ -67,17 +67,16 @@ HWY_INLINE void ScoreBlock(D d, const uint8_t* center, const ptrdiff_t (&circle)
 void FastScoreRow(const uint8_t* center, ptrdiff_t stride, int width, uint8_t min_score,
                   uint8_t* score) {
   // The circle of radius 3, clockwise from the top.
-  const ptrdiff_t circle[16] = {-3 * stride,     -3 * stride + 1, -2 * stride + 2, -stride + 3,
-                                3,               stride + 3,      2 * stride + 2,  3 * stride + 1,
-                                3 * stride,      3 * stride - 1,  2 * stride - 2,  stride - 3,
-                                -3,              -stride - 3,     -2 * stride - 2, -3 * stride - 1};
+  const ptrdiff_t circle[16] = {-3 * stride, -3 * stride + 1, -2 * stride + 2, -stride + 3,
+                                3,           stride + 3,      2 * stride + 2,  3 * stride + 1,
+                                3 * stride,  3 * stride - 1,  2 * stride - 2,  stride - 3,
+                                -3,          -stride - 3,     -2 * stride - 2, -3 * stride - 1};
   const hn::ScalableTag<uint8_t> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   int x = 0;
   for (; x + lanes <= width; x += lanes) ScoreBlock(d, center + x, circle, min_score, score + x);
   if (x < width && width >= lanes) {  // the last block overlaps the one before
-    ScoreBlock(d, center + width - lanes, circle, min_score,
-               score + width - lanes);
+    ScoreBlock(d, center + width - lanes, circle, min_score, score + width - lanes);
     return;
   }
   const hn::CappedTag<uint8_t, 1> d1;
@@ -100,8 +99,9 @@ void FastMaximaRow(const uint8_t* above, const uint8_t* middle, const uint8_t* b
     const auto s = hn::LoadU(d, middle + x);
     const auto enough = NotLess(s, threshold);
     if (hn::AllFalse(d, enough)) continue;
-    const auto earlier = hn::Max(hn::Max(hn::LoadU(d, above + x - 1), hn::LoadU(d, above + x)),
-                                 hn::Max(hn::LoadU(d, above + x + 1), hn::LoadU(d, middle + x - 1)));
+    const auto earlier =
+        hn::Max(hn::Max(hn::LoadU(d, above + x - 1), hn::LoadU(d, above + x)),
+                hn::Max(hn::LoadU(d, above + x + 1), hn::LoadU(d, middle + x - 1)));
     const auto later = hn::Max(hn::Max(hn::LoadU(d, below + x - 1), hn::LoadU(d, below + x)),
                                hn::Max(hn::LoadU(d, below + x + 1), hn::LoadU(d, middle + x + 1)));
     const auto maximum = hn::AndNot(NotLess(earlier, s), hn::And(enough, NotLess(s, later)));

@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "slam/features/sphere_grid.h"
+
 namespace orb360 {
 
 /// 256 binary comparisons.
@@ -19,11 +21,15 @@ struct Keypoint {
   uint8_t score;          // FAST score
 };
 
+using Color = std::array<uint8_t, 3>;  // red, green, blue
+
 /// The features of one image; all arrays have the same length, index = feature.
 struct Features {
   std::vector<Keypoint> keypoints;
   std::vector<Eigen::Vector3d> bearings;  // unit vectors, camera frame
   std::vector<Descriptor> descriptors;
+  std::vector<Color> colors;  // empty where the image had none
+  SphereGrid grid;            // over `bearings`
 
   int size() const { return static_cast<int>(keypoints.size()); }
 };

@@ -97,8 +97,7 @@ void Describe(const PyramidLevel& level, const cv::Mat& blurred, int x, int y, f
   static const Points kComparison = MakeComparisonPattern();
   static const Points kMoments = MakeMomentPattern();
   const ptrdiff_t stride = static_cast<ptrdiff_t>(blurred.step);
-  const uint8_t* center =
-      blurred.ptr(y + PyramidLevel::kMarginY) + x + PyramidLevel::kMarginX;
+  const uint8_t* center = blurred.ptr(y + PyramidLevel::kMarginY) + x + PyramidLevel::kMarginX;
   const TangentSampling sampling(level.camera, y + 0.5);
   std::array<int32_t, kPoints> offsets;
   sampling.Offsets(kMoments.a, kMoments.b, x, y, stride, offsets.data());
@@ -177,6 +176,7 @@ Features OrbExtractor::Extract(const cv::Mat& gray, const cv::Mat& mask) const {
                &features.descriptors[first + i]);
     }
   }
+  features.grid = SphereGrid(features.bearings);
   return features;
 }
 

@@ -58,7 +58,8 @@ void Resample(const PyramidLevel& source, PyramidLevel* target) {
       uint8_t* out = to.ptr(y);
       for (int x = 0; x < to.cols; ++x) {
         const uint16_t* pair = blended.data() + columns[x].index + 1;
-        const uint32_t sum = pair[0] * (kWeightOne - columns[x].weight) + pair[1] * columns[x].weight;
+        const uint32_t sum =
+            pair[0] * (kWeightOne - columns[x].weight) + pair[1] * columns[x].weight;
         out[x] = (sum + (1 << (2 * kWeightBits - 1))) >> (2 * kWeightBits);
       }
     }

@@ -37,8 +37,8 @@ void TangentSampling::Offsets(std::span<const float> a, std::span<const float> b
     const double up = sine - cosine * south;
     const double longitude = std::atan2(east, forward);
     const double latitude = std::atan2(up, std::hypot(east, forward));
-    const int v = std::clamp(
-        static_cast<int>(std::floor(camera_->fy() * latitude + camera_->cy())), 0, height - 1);
+    const int v = std::clamp(static_cast<int>(std::floor(camera_->fy() * latitude + camera_->cy())),
+                             0, height - 1);
     int u = u_index + static_cast<int>(std::floor(camera_->fx() * longitude + 0.5));
     if (u < 0) u += width;
     if (u >= width) u -= width;

@@ -45,8 +45,7 @@ struct Similarity3 {
 
 /// The pose of a camera after its world is moved and scaled: target_from_camera, with the camera's
 /// own axes and units of length following the world's.
-inline Rigid3 TransformPose(const Similarity3& target_from_world,
-                            const Rigid3& world_from_camera) {
+inline Rigid3 TransformPose(const Similarity3& target_from_world, const Rigid3& world_from_camera) {
   return {(target_from_world.rotation * world_from_camera.rotation).normalized(),
           target_from_world * world_from_camera.translation};
 }

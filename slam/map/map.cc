@@ -1,0 +1,248 @@
+#include "slam/map/map.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slam/check.h"
+#include "slam/features/hamming.h"
+
+namespace orb360 {
+namespace {
+
+constexpr double kLevelsPerOctave = 4.0;
+
+// The observation with the smallest median distance to the others: robust against a few wrong ones.
+const Descriptor& MostTypical(std::span<const Descriptor> descriptors) {
+  std::vector<uint16_t> distances(descriptors.size());
+  size_t best = 0;
+  int best_median = NearestTwo::kNone;
+  for (size_t i = 0; i < descriptors.size(); ++i) {
+    HammingDistances(descriptors[i], descriptors, distances);
+    const auto middle = distances.begin() + distances.size() / 2;
+    std::nth_element(distances.begin(), middle, distances.end());
+    if (*middle < best_median) {
+      best_median = *middle;
+      best = i;
+    }
+  }
+  return descriptors[best];
+}
+
+}  // namespace
+
+double RangeAtLevelZero(double range, int level) {
+  return range * std::exp2(level / kLevelsPerOctave);
+}
+
+int PredictLevel(double max_range, double range) {
+  return static_cast<int>(std::lround(kLevelsPerOctave * std::log2(max_range / range)));
+}
+
+KeyframeId Map::AddKeyframe(int frame_index, double timestamp, const Rigid3& world_from_camera,
+                            std::shared_ptr<const Features> features) {
+  ORB360_CHECK(features != nullptr);
+  const KeyframeId id = keyframe_end();
+  const int num_features = features->size();
+  keyframes_.push_back(Keyframe{id, frame_index, timestamp, world_from_camera, std::move(features),
+                                std::vector<LandmarkId>(num_features, kNoId)});
+  successors_.emplace_back();
+  ++num_keyframes_;
+  return id;
+}
+
+void Map::RemoveKeyframe(KeyframeId id, KeyframeId successor) {
+  ORB360_CHECK(id != successor && HasKeyframe(successor), id, successor);
+  const std::vector<LandmarkId> landmarks = keyframe(id).landmarks;
+  for (const LandmarkId landmark : landmarks) {
+    if (landmark != kNoId) RemoveObservation(landmark, id);
+  }
+  successors_[id] = {
+      successor, keyframe(successor).world_from_camera.Inverse() * keyframe(id).world_from_camera};
+  keyframes_[id].reset();
+  --num_keyframes_;
+}
+
+LandmarkId Map::AddLandmark(const Eigen::Vector3d& position, const Color& color) {
+  Landmark landmark;
+  landmark.id = landmark_end();
+  landmark.position = position;
+  landmark.mean_direction.setZero();
+  landmark.color = color;
+  landmark.first_keyframe = keyframe_end() - 1;
+  landmarks_.push_back(std::move(landmark));
+  merged_into_.push_back(kNoId);
+  ++num_landmarks_;
+  return landmark_end() - 1;
+}
+
+void Map::RemoveLandmark(LandmarkId id) {
+  for (const Observation& observation : landmark(id).observations) {
+    keyframe(observation.keyframe).landmarks[observation.feature] = kNoId;
+  }
+  landmarks_[id].reset();
+  --num_landmarks_;
+}
+
+void Map::MergeLandmark(LandmarkId from, LandmarkId to) {
+  ORB360_CHECK(from != to, from);
+  Landmark& target = landmark(to);
+  const std::vector<Observation> moved = landmark(from).observations;
+  target.visible += landmark(from).visible;
+  target.found += landmark(from).found;
+  RemoveLandmark(from);
+  merged_into_[from] = to;
+  for (const Observation& observation : moved) {
+    const bool sees_target =
+        std::any_of(target.observations.begin(), target.observations.end(),
+                    [&](const Observation& o) { return o.keyframe == observation.keyframe; });
+    if (!sees_target) AddObservation(to, observation.keyframe, observation.feature);
+  }
+}
+
+void Map::AddObservation(LandmarkId landmark_id, KeyframeId keyframe_id, int feature) {
+  LandmarkId& slot = keyframe(keyframe_id).landmarks[feature];
+  ORB360_CHECK(slot == kNoId, landmark_id, keyframe_id, feature);
+  std::vector<Observation>& observations = landmark(landmark_id).observations;
+  const auto place =
+      std::lower_bound(observations.begin(), observations.end(), keyframe_id,
+                       [](const Observation& o, KeyframeId k) { return o.keyframe < k; });
+  ORB360_CHECK(place == observations.end() || place->keyframe != keyframe_id, landmark_id,
+               keyframe_id);
+  observations.insert(place, {keyframe_id, feature});
+  slot = landmark_id;
+}
+
+void Map::RemoveObservation(LandmarkId landmark_id, KeyframeId keyframe_id) {
+  std::vector<Observation>& observations = landmark(landmark_id).observations;
+  const auto place = std::find_if(observations.begin(), observations.end(),
+                                  [&](const Observation& o) { return o.keyframe == keyframe_id; });
+  ORB360_CHECK(place != observations.end(), landmark_id, keyframe_id);
+  keyframe(keyframe_id).landmarks[place->feature] = kNoId;
+  observations.erase(place);
+}
+
+void Map::UpdateAppearance(LandmarkId id) {
+  Landmark& target = landmark(id);
+  ORB360_CHECK(!target.observations.empty(), id);
+  std::vector<Descriptor> descriptors;
+  Eigen::Vector3d directions = Eigen::Vector3d::Zero();
+  for (const Observation& observation : target.observations) {
+    const Keyframe& observer = keyframe(observation.keyframe);
+    descriptors.push_back(observer.features->descriptors[observation.feature]);
+    directions += (target.position - observer.world_from_camera.translation).normalized();
+  }
+  target.descriptor = MostTypical(descriptors);
+  // Seen from opposite sides the directions cancel; then any direction may see it.
+  target.mean_direction =
+      directions.norm() > 1e-9 ? directions.normalized() : Eigen::Vector3d(Eigen::Vector3d::Zero());
+  const Observation& newest = target.observations.back();
+  const Keyframe& observer = keyframe(newest.keyframe);
+  target.max_range =
+      RangeAtLevelZero((target.position - observer.world_from_camera.translation).norm(),
+                       observer.features->keypoints[newest.feature].level);
+}
+
+Keyframe& Map::keyframe(KeyframeId id) {
+  ORB360_CHECK(HasKeyframe(id), id);
+  return *keyframes_[id];
+}
+const Keyframe& Map::keyframe(KeyframeId id) const {
+  ORB360_CHECK(HasKeyframe(id), id);
+  return *keyframes_[id];
+}
+Landmark& Map::landmark(LandmarkId id) {
+  ORB360_CHECK(HasLandmark(id), id);
+  return *landmarks_[id];
+}
+const Landmark& Map::landmark(LandmarkId id) const {
+  ORB360_CHECK(HasLandmark(id), id);
+  return *landmarks_[id];
+}
+
+LandmarkId Map::Resolve(LandmarkId id) const {
+  while (id != kNoId && !landmarks_[id].has_value()) id = merged_into_[id];
+  return id;
+}
+
+Rigid3 Map::PoseOf(KeyframeId id) const {
+  if (HasKeyframe(id)) return keyframe(id).world_from_camera;
+  return PoseOf(successors_[id].keyframe) * successors_[id].successor_from_camera;
+}
+
+KeyframeId Map::LivingKeyframe(KeyframeId id) const {
+  while (!HasKeyframe(id)) id = successors_[id].keyframe;
+  return id;
+}
+
+std::vector<KeyframeId> Map::KeyframeIds() const {
+  std::vector<KeyframeId> ids;
+  for (KeyframeId id = 0; id < keyframe_end(); ++id) {
+    if (HasKeyframe(id)) ids.push_back(id);
+  }
+  return ids;
+}
+
+std::vector<Map::Covisible> Map::FindCovisible(std::span<const LandmarkId> landmarks,
+                                               int min_shared, KeyframeId except) const {
+  std::vector<int> shared(keyframes_.size(), 0);
+  for (const LandmarkId id : landmarks) {
+    if (id == kNoId || !HasLandmark(id)) continue;
+    for (const Observation& observation : landmark(id).observations) ++shared[observation.keyframe];
+  }
+  std::vector<Covisible> result;
+  for (KeyframeId id = keyframe_end() - 1; id >= 0; --id) {
+    if (id != except && shared[id] >= std::max(1, min_shared)) result.push_back({id, shared[id]});
+  }
+  std::stable_sort(result.begin(), result.end(),
+                   [](const Covisible& a, const Covisible& b) { return a.shared > b.shared; });
+  return result;
+}
+
+void Map::Transform(const Similarity3& target_from_world) {
+  for (std::optional<Keyframe>& keyframe : keyframes_) {
+    if (keyframe) {
+      keyframe->world_from_camera = TransformPose(target_from_world, keyframe->world_from_camera);
+    }
+  }
+  for (Successor& successor : successors_) {
+    successor.successor_from_camera.translation *= target_from_world.scale;
+  }
+  for (std::optional<Landmark>& landmark : landmarks_) {
+    if (!landmark) continue;
+    landmark->position = target_from_world * landmark->position;
+    landmark->mean_direction = target_from_world.rotation * landmark->mean_direction;
+    landmark->max_range *= target_from_world.scale;
+  }
+}
+
+void Map::CheckConsistency() const {
+  int landmarks = 0;
+  for (LandmarkId id = 0; id < landmark_end(); ++id) {
+    if (!HasLandmark(id)) continue;
+    ++landmarks;
+    KeyframeId previous = kNoId;
+    for (const Observation& observation : landmark(id).observations) {
+      ORB360_CHECK(observation.keyframe > previous, id, observation.keyframe);
+      previous = observation.keyframe;
+      ORB360_CHECK(keyframe(observation.keyframe).landmarks[observation.feature] == id, id,
+                   observation.keyframe, observation.feature);
+    }
+  }
+  ORB360_CHECK(landmarks == num_landmarks_, landmarks, num_landmarks_);
+  int keyframes = 0;
+  for (const KeyframeId id : KeyframeIds()) {
+    ++keyframes;
+    const std::vector<LandmarkId>& seen = keyframe(id).landmarks;
+    for (size_t feature = 0; feature < seen.size(); ++feature) {
+      if (seen[feature] == kNoId) continue;
+      const std::vector<Observation>& observations = landmark(seen[feature]).observations;
+      const bool listed = std::any_of(observations.begin(), observations.end(), [&](const auto& o) {
+        return o.keyframe == id && o.feature == static_cast<int>(feature);
+      });
+      ORB360_CHECK(listed, id, feature, seen[feature]);
+    }
+  }
+  ORB360_CHECK(keyframes == num_keyframes_, keyframes, num_keyframes_);
+}
+
+}  // namespace orb360

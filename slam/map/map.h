@@ -1,0 +1,136 @@
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "slam/features/features.h"
+#include "slam/geometry/rigid3.h"
+
+namespace orb360 {
+
+/// Keyframes and landmarks refer to each other by id: the index in their map, never used again
+/// after removal.
+using KeyframeId = int;
+using LandmarkId = int;
+inline constexpr int kNoId = -1;
+
+/// One landmark's sighting: feature `feature` of keyframe `keyframe`.
+struct Observation {
+  KeyframeId keyframe;
+  int feature;
+};
+
+struct Keyframe {
+  KeyframeId id = kNoId;
+  int frame_index = 0;
+  double timestamp = 0;  // s
+  Rigid3 world_from_camera;
+  std::shared_ptr<const Features> features;
+  std::vector<LandmarkId> landmarks;  // by feature; kNoId where it sees none
+};
+
+struct Landmark {
+  LandmarkId id = kNoId;
+  Eigen::Vector3d position;        // world
+  Eigen::Vector3d mean_direction;  // unit, from the cameras that see it towards it, world
+  double max_range = 0;            // where it would be seen on pyramid level 0
+  Descriptor descriptor{};         // the most typical of its observations'
+  Color color{};
+  KeyframeId first_keyframe = kNoId;      // the newest keyframe when it was made
+  std::vector<Observation> observations;  // ordered by keyframe
+  int visible = 1;                        // frames in which it should have been seen
+  int found = 1;                          // and was
+};
+
+/// The range at which a feature of pyramid level l at `range` would be on level 0. Scales grow by
+/// 2^(1/4) a level (sphere_pyramid.h).
+double RangeAtLevelZero(double range, int level);
+/// The inverse: the level, rounded and not clamped, on which a landmark is seen from `range`.
+int PredictLevel(double max_range, double range);
+
+/// The map: keyframes, landmarks, and who sees whom. A value with one owner (no locking): whoever
+/// works on it has it. Copying copies everything but the features, which are shared.
+///
+/// Invariant: landmark l lists the observation (k, f) exactly when keyframe k has l at feature f.
+class Map {
+ public:
+  KeyframeId AddKeyframe(int frame_index, double timestamp, const Rigid3& world_from_camera,
+                         std::shared_ptr<const Features> features);
+  /// Removes a keyframe and its observations. Its pose lives on relative to `successor`, another
+  /// keyframe: PoseOf(id) follows the successor from now on.
+  void RemoveKeyframe(KeyframeId id, KeyframeId successor);
+
+  /// A landmark without observations.
+  LandmarkId AddLandmark(const Eigen::Vector3d& position, const Color& color);
+  void RemoveLandmark(LandmarkId id);
+  /// Moves the observations of `from` to `to` (where a keyframe sees both, `to` keeps its own) and
+  /// removes `from`; Resolve(from) is `to` from now on.
+  void MergeLandmark(LandmarkId from, LandmarkId to);
+
+  /// Contract: neither has an observation of the other yet.
+  void AddObservation(LandmarkId landmark, KeyframeId keyframe, int feature);
+  void RemoveObservation(LandmarkId landmark, KeyframeId keyframe);
+
+  /// Recomputes descriptor, mean direction and range limit from the observations (at least one).
+  void UpdateAppearance(LandmarkId id);
+
+  bool HasKeyframe(KeyframeId id) const {
+    return id >= 0 && id < keyframe_end() && keyframes_[id].has_value();
+  }
+  bool HasLandmark(LandmarkId id) const {
+    return id >= 0 && id < landmark_end() && landmarks_[id].has_value();
+  }
+  /// Contract: it exists.
+  Keyframe& keyframe(KeyframeId id);
+  const Keyframe& keyframe(KeyframeId id) const;
+  Landmark& landmark(LandmarkId id);
+  const Landmark& landmark(LandmarkId id) const;
+
+  /// The landmark that `id` is part of now, kNoId if it was removed.
+  LandmarkId Resolve(LandmarkId id) const;
+  /// world_from_camera of a keyframe, removed ones included.
+  Rigid3 PoseOf(KeyframeId id) const;
+  /// A living keyframe that stands for `id` (itself, or its successor).
+  KeyframeId LivingKeyframe(KeyframeId id) const;
+
+  /// One more than the largest id ever given: for loops over all ids with Has...().
+  KeyframeId keyframe_end() const { return static_cast<int>(keyframes_.size()); }
+  LandmarkId landmark_end() const { return static_cast<int>(landmarks_.size()); }
+  int num_keyframes() const { return num_keyframes_; }
+  int num_landmarks() const { return num_landmarks_; }
+  std::vector<KeyframeId> KeyframeIds() const;
+
+  struct Covisible {
+    KeyframeId keyframe;
+    int shared;  // landmarks seen by both
+  };
+  /// Keyframes that see at least `min_shared` of the landmarks, most first (ties: newest first),
+  /// without `except`.
+  std::vector<Covisible> FindCovisible(std::span<const LandmarkId> landmarks, int min_shared,
+                                       KeyframeId except = kNoId) const;
+
+  /// Applies target_from_world to every pose and landmark: a change of gauge.
+  void Transform(const Similarity3& target_from_world);
+
+  /// Throws ContractError where the invariant is broken; for tests.
+  void CheckConsistency() const;
+
+ private:
+  struct Successor {
+    KeyframeId keyframe = kNoId;
+    Rigid3 successor_from_camera;
+  };
+  std::vector<std::optional<Keyframe>> keyframes_;
+  std::vector<Successor> successors_;  // by keyframe id; set for removed ones
+  std::vector<std::optional<Landmark>> landmarks_;
+  std::vector<LandmarkId> merged_into_;  // by landmark id; kNoId unless merged
+  int num_keyframes_ = 0;
+  int num_landmarks_ = 0;
+};
+
+}  // namespace orb360
