@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "slam/geometry/rigid3.h"
+
+namespace orb360 {
+
+/// Poses, points and bearings that see them, by index. Solved in place.
+struct BundleProblem {
+  struct Observation {
+    int pose;
+    int point;
+    Eigen::Vector3d bearing;  // unit, camera frame
+    double sigma;             // angular noise, rad
+  };
+  std::vector<Rigid3> world_from_camera;
+  std::vector<uint8_t> pose_fixed;  // by pose; at least one, or the gauge is free
+  std::vector<Eigen::Vector3d> points;
+  std::vector<Observation> observations;
+};
+
+struct BundleOptions {
+  int max_iterations = 10;
+  /// Huber's loss beyond the 95 % bound; without it plain least squares.
+  bool robust = true;
+  /// The solver stops when an iteration lowers the cost by less than this share.
+  double function_tolerance = 1e-4;
+};
+
+struct BundleReport {
+  double initial_cost = 0;
+  double final_cost = 0;
+  int iterations = 0;
+  bool usable = false;  // false: numerically failed, the problem is as it was
+};
+
+/// Bundle adjustment on tangent-plane residuals (bearing_residual.h; paper Eq. 11) with Ceres and
+/// a Schur complement over the points, on one thread: Ceres adds Schur blocks in arrival order on
+/// several, and the result would depend on it.
+/// Contract: indices are in range; every point is observed.
+BundleReport SolveBundle(const BundleOptions& options, BundleProblem* problem);
+
+/// Squared residual, in sigmas, of one observation; infinity where the point is on the other side
+/// of the sphere than its bearing.
+double SquaredResidual(const BundleProblem& problem, const BundleProblem::Observation& observation);
+
+}  // namespace orb360

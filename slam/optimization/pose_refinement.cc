@@ -1,0 +1,149 @@
+#include "slam/optimization/pose_refinement.h"
+
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "slam/optimization/bearing_residual.h"
+
+namespace orb360 {
+namespace {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Basis = Eigen::Matrix<double, 3, 2>;
+
+constexpr int kRounds = 4;
+constexpr int kIterationsPerRound = 6;
+constexpr int kMinInliers = 3;
+
+struct NormalEquations {
+  Matrix6d hessian = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+  double cost = 0;
+};
+
+// Half the robust squared error. Beyond the 95 % bound Huber's loss grows linearly.
+double HuberCost(double squared) {
+  return squared <= kChiSquared95
+             ? 0.5 * squared
+             : std::sqrt(kChiSquared95) * std::sqrt(squared) - 0.5 * kChiSquared95;
+}
+
+class Problem {
+ public:
+  explicit Problem(std::span<const PoseObservation> observations) : observations_(observations) {
+    bases_.reserve(observations.size());
+    for (const PoseObservation& o : observations) {
+      bases_.push_back(TangentBasis(o.bearing) / o.sigma);
+    }
+  }
+
+  // Perturbation: camera_from_world <- exp(translation, rotation) * camera_from_world.
+  NormalEquations Linearize(const Rigid3& camera_from_world,
+                            const std::vector<uint8_t>& active) const {
+    NormalEquations equations;
+    for (size_t i = 0; i < observations_.size(); ++i) {
+      if (!active[i]) continue;
+      const Eigen::Vector3d p = camera_from_world * observations_[i].point;
+      Eigen::Matrix<double, 2, 3> point_jacobian;
+      const Eigen::Vector2d residual = BearingResidual(p, bases_[i], &point_jacobian);
+      const double squared = residual.squaredNorm();
+      const double weight = squared <= kChiSquared95 ? 1.0 : std::sqrt(kChiSquared95 / squared);
+      Eigen::Matrix<double, 2, 6> jacobian;
+      jacobian.leftCols<3>() = point_jacobian;
+      jacobian.rightCols<3>() = -point_jacobian * Skew(p);
+      equations.hessian.noalias() += weight * jacobian.transpose() * jacobian;
+      equations.gradient.noalias() += weight * jacobian.transpose() * residual;
+      equations.cost += HuberCost(squared);
+    }
+    return equations;
+  }
+
+  double Cost(const Rigid3& camera_from_world, const std::vector<uint8_t>& active) const {
+    double cost = 0;
+    for (size_t i = 0; i < observations_.size(); ++i) {
+      if (active[i]) cost += HuberCost(Squared(camera_from_world, i));
+    }
+    return cost;
+  }
+
+  double Squared(const Rigid3& camera_from_world, size_t i) const {
+    return BearingResidual(camera_from_world * observations_[i].point, bases_[i], nullptr)
+        .squaredNorm();
+  }
+
+  bool IsInlier(const Rigid3& camera_from_world, size_t i) const {
+    const Eigen::Vector3d p = camera_from_world * observations_[i].point;
+    return p.dot(observations_[i].bearing) > 0 &&
+           BearingResidual(p, bases_[i], nullptr).squaredNorm() <= kChiSquared95;
+  }
+
+  size_t size() const { return observations_.size(); }
+
+ private:
+  std::span<const PoseObservation> observations_;
+  std::vector<Basis> bases_;  // divided by sigma
+};
+
+Rigid3 Perturb(const Vector6d& delta, const Rigid3& camera_from_world) {
+  return Rigid3{ExpSo3(delta.tail<3>()), delta.head<3>()} * camera_from_world;
+}
+
+Rigid3 Minimize(const Problem& problem, const std::vector<uint8_t>& active, Rigid3 pose) {
+  double damping = 1e-6;  // relative to the diagonal
+  NormalEquations equations = problem.Linearize(pose, active);
+  for (int iteration = 0; iteration < kIterationsPerRound; ++iteration) {
+    Matrix6d damped = equations.hessian;
+    damped.diagonal() *= 1.0 + damping;
+    const Vector6d delta = damped.ldlt().solve(-equations.gradient);
+    if (!delta.allFinite()) break;
+    const Rigid3 candidate = Perturb(delta, pose);
+    const double cost = problem.Cost(candidate, active);
+    if (cost <= equations.cost) {
+      const bool converged = equations.cost - cost < 1e-6 * equations.cost;
+      pose = candidate;
+      damping = std::max(1e-9, 0.1 * damping);
+      if (converged) break;
+      equations = problem.Linearize(pose, active);
+    } else {
+      damping *= 100;
+    }
+  }
+  return pose;
+}
+
+}  // namespace
+
+RefinedPose RefinePose(const Rigid3& initial_world_from_camera,
+                       std::span<const PoseObservation> observations) {
+  const Problem problem(observations);
+  RefinedPose result{initial_world_from_camera, std::vector<uint8_t>(problem.size(), 0), 0, 0};
+  std::vector<uint8_t> active(problem.size(), 1);
+  Rigid3 pose = initial_world_from_camera.Inverse();
+  int num_active = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    pose = Minimize(problem, active, pose);
+    num_active = 0;
+    bool changed = false;
+    for (size_t i = 0; i < problem.size(); ++i) {
+      const uint8_t inlier = problem.IsInlier(pose, i);
+      changed |= inlier != active[i];
+      active[i] = inlier;
+      num_active += inlier;
+    }
+    if (num_active < kMinInliers) return result;
+    if (!changed) break;
+  }
+  double sum = 0;
+  for (size_t i = 0; i < problem.size(); ++i) {
+    if (active[i]) sum += problem.Squared(pose, i);
+  }
+  result.world_from_camera = pose.Inverse();
+  result.inliers = std::move(active);
+  result.num_inliers = num_active;
+  result.rms = std::sqrt(sum / (2.0 * num_active));
+  return result;
+}
+
+}  // namespace orb360
