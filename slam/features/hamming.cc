@@ -25,10 +25,12 @@ NearestTwo FindNearestTwo(const Descriptor& query, std::span<const Descriptor> d
     const int distance = Distance(query, descriptors[i]);
     if (distance < nearest.best_distance) {
       nearest.second_distance = nearest.best_distance;
+      nearest.second_index = nearest.best_index;
       nearest.best_distance = distance;
       nearest.best_index = i;
     } else if (distance < nearest.second_distance) {
       nearest.second_distance = distance;
+      nearest.second_index = i;
     }
   }
   return nearest;

@@ -12,6 +12,7 @@ namespace orb360 {
 struct NearestTwo {
   static constexpr int kNone = 257;
   int best_index = -1;
+  int second_index = -1;
   int best_distance = kNone;
   int second_distance = kNone;
 };
@@ -20,7 +21,7 @@ struct NearestTwo {
 int HammingDistance(const Descriptor& a, const Descriptor& b);
 
 /// The two nearest to `query` among descriptors[i] for i in `candidates`; the earlier candidate
-/// wins a tie. `best_index` is an element of `candidates`.
+/// wins a tie. The indices are elements of `candidates`.
 NearestTwo FindNearestTwo(const Descriptor& query, std::span<const Descriptor> descriptors,
                           std::span<const int> candidates);
 

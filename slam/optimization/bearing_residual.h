@@ -1,22 +1,10 @@
 #pragma once
 
-#include <cmath>
-
 #include <Eigen/Core>
 
-namespace orb360 {
+#include "slam/geometry/bearing.h"
 
-/// Two orthonormal directions (columns) of the tangent plane at a unit vector; any choice serves.
-inline Eigen::Matrix<double, 3, 2> TangentBasis(const Eigen::Vector3d& bearing) {
-  // Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 2017: no branch but the sign.
-  const double sign = std::copysign(1.0, bearing.z());
-  const double a = -1.0 / (sign + bearing.z());
-  const double b = bearing.x() * bearing.y() * a;
-  Eigen::Matrix<double, 3, 2> basis;
-  basis.col(0) << 1.0 + sign * bearing.x() * bearing.x() * a, sign * b, -sign * bearing.x();
-  basis.col(1) << b, sign + bearing.y() * bearing.y() * a, -bearing.y();
-  return basis;
-}
+namespace orb360 {
 
 /// Reprojection error on the sphere: the predicted unit bearing p/|p| seen from the tangent plane
 /// at the observed one, divided by the observation's angular noise, so both components have unit

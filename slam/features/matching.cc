@@ -1,0 +1,88 @@
+#include "slam/features/matching.h"
+
+#include <numeric>
+
+#include "slam/features/hamming.h"
+
+namespace orb360 {
+namespace {
+
+bool IsDistinct(const NearestTwo& nearest, const MatchOptions& options) {
+  return nearest.best_distance <= options.max_distance &&
+         nearest.best_distance < options.ratio * nearest.second_distance;
+}
+
+// Best in the second set for each of the first, -1 where none; then those that are mutual.
+std::vector<Match> KeepMutual(const std::vector<NearestTwo>& forward,
+                              const std::vector<int>& backward) {
+  std::vector<Match> matches;
+  for (size_t i = 0; i < forward.size(); ++i) {
+    const int j = forward[i].best_index;
+    if (j >= 0 && backward[j] == static_cast<int>(i)) {
+      matches.push_back({static_cast<int>(i), j, forward[i].best_distance});
+    }
+  }
+  return matches;
+}
+
+// For each of the second set, the nearest of the first among those that chose it.
+std::vector<int> InvertBest(const std::vector<NearestTwo>& forward, size_t second_size) {
+  std::vector<int> chosen(second_size, -1);
+  for (size_t i = 0; i < forward.size(); ++i) {
+    const int j = forward[i].best_index;
+    if (j < 0) continue;
+    if (chosen[j] < 0 || forward[i].best_distance < forward[chosen[j]].best_distance) {
+      chosen[j] = static_cast<int>(i);
+    }
+  }
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<Match> MatchMutually(std::span<const Descriptor> first,
+                                 std::span<const Descriptor> second, const MatchOptions& options) {
+  std::vector<int> all_second(second.size());
+  std::iota(all_second.begin(), all_second.end(), 0);
+  std::vector<int> all_first(first.size());
+  std::iota(all_first.begin(), all_first.end(), 0);
+  std::vector<NearestTwo> forward(first.size());
+  std::vector<int> backward(second.size(), -1);
+#pragma omp parallel
+  {
+#pragma omp for schedule(static)
+    for (size_t i = 0; i < first.size(); ++i) {
+      forward[i] = FindNearestTwo(first[i], second, all_second);
+      if (!IsDistinct(forward[i], options)) forward[i].best_index = -1;
+    }
+#pragma omp for schedule(static)
+    for (size_t j = 0; j < second.size(); ++j) {
+      backward[j] = FindNearestTwo(second[j], first, all_first).best_index;
+    }
+  }
+  return KeepMutual(forward, backward);
+}
+
+std::vector<Match> MatchNearby(const Features& first, const Features& second, double radius,
+                               const MatchOptions& options) {
+  std::vector<NearestTwo> forward(first.size());
+#pragma omp parallel
+  {
+    std::vector<int> candidates;
+#pragma omp for schedule(static)
+    for (int i = 0; i < first.size(); ++i) {
+      candidates.clear();
+      second.grid.Query(first.bearings[i], radius, &candidates);
+      NearestTwo& nearest = forward[i];
+      nearest = FindNearestTwo(first.descriptors[i], second.descriptors, candidates);
+      if (nearest.second_index >= 0 && second.keypoints[nearest.second_index].level !=
+                                           second.keypoints[nearest.best_index].level) {
+        nearest.second_distance = NearestTwo::kNone;
+      }
+      if (!IsDistinct(nearest, options)) nearest.best_index = -1;
+    }
+  }
+  return KeepMutual(forward, InvertBest(forward, second.size()));
+}
+
+}  // namespace orb360

@@ -1,0 +1,51 @@
+#include "slam/pipeline/local_map.h"
+
+#include <algorithm>
+
+namespace orb360 {
+
+const LocalLandmark* LocalMap::Find(LandmarkId id) const {
+  const auto place =
+      std::lower_bound(landmarks.begin(), landmarks.end(), id,
+                       [](const LocalLandmark& l, LandmarkId i) { return l.id < i; });
+  return place != landmarks.end() && place->id == id ? &*place : nullptr;
+}
+
+LocalMap MakeLocalMap(const Map& map, KeyframeId reference, int num_keyframes) {
+  const Keyframe& center = map.keyframe(reference);
+  LocalMap local;
+  local.reference = reference;
+  local.world_from_reference = center.world_from_camera;
+
+  std::vector<Map::Covisible> neighbours = map.FindCovisible(center.landmarks, 1, reference);
+  if (static_cast<int>(neighbours.size()) > num_keyframes) neighbours.resize(num_keyframes);
+  std::vector<LandmarkId> ids = center.landmarks;
+  for (const Map::Covisible& neighbour : neighbours) {
+    const std::vector<LandmarkId>& seen = map.keyframe(neighbour.keyframe).landmarks;
+    ids.insert(ids.end(), seen.begin(), seen.end());
+  }
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  local.landmarks.reserve(ids.size());
+  for (const LandmarkId id : ids) {
+    if (id == kNoId) continue;
+    const Landmark& l = map.landmark(id);
+    local.landmarks.push_back({id, l.position, l.mean_direction, l.max_range, l.descriptor});
+  }
+
+  std::vector<double> ranges;
+  for (const LandmarkId id : center.landmarks) {
+    if (id == kNoId) continue;
+    const Landmark& landmark = map.landmark(id);
+    ranges.push_back((landmark.position - center.world_from_camera.translation).norm());
+    local.reference_matches += landmark.observations.size() >= 3;
+  }
+  if (!ranges.empty()) {
+    const auto middle = ranges.begin() + ranges.size() / 2;
+    std::nth_element(ranges.begin(), middle, ranges.end());
+    local.median_range = *middle;
+  }
+  return local;
+}
+
+}  // namespace orb360
