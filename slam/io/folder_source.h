@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "slam/io/frame_source.h"
+
+namespace orb360 {
+
+/// Frames a second of an image folder when nothing states it.
+inline constexpr double kFolderFrameRate = 30.0;
+
+/// Names in the order people expect: runs of digits compare as numbers (img2 before img10), all
+/// else byte by byte.
+bool NaturalLess(std::string_view a, std::string_view b);
+
+/// The images of a folder in natural order; timestamps are index / frame rate. A file that cannot
+/// be decoded is passed over with a warning and counts as a frame; images of different sizes are
+/// refused, for JPEG and PNG before the first is decoded.
+class FolderSource : public FrameSource {
+ public:
+  /// Throws UserError for a folder without images, without one that can be decoded, or with images
+  /// of different sizes. `name` is what messages call the input.
+  FolderSource(const std::filesystem::path& folder, std::string name,
+               double frame_rate = kFolderFrameRate, std::optional<double> camera_height = {});
+
+  const SourceInfo& info() const override { return info_; }
+  /// Throws UserError at an image of another size.
+  std::optional<Frame> Read() override;
+  bool Skip() override;
+  std::vector<std::string> TakeWarnings() override { return std::exchange(warnings_, {}); }
+
+ private:
+  std::vector<std::filesystem::path> files_;
+  SourceInfo info_;
+  std::vector<std::string> warnings_;
+  size_t next_ = 0;
+};
+
+}  // namespace orb360

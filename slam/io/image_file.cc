@@ -1,0 +1,129 @@
+#include "slam/io/image_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+#include <vector>
+
+#include <opencv2/imgcodecs.hpp>
+
+namespace orb360 {
+namespace {
+
+using std::string_view_literals::operator""sv;
+
+constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n"sv;
+constexpr std::string_view kJpegSignature = "\xff\xd8\xff"sv;
+
+unsigned Byte(std::string_view data, size_t at) { return static_cast<unsigned char>(data[at]); }
+
+int BigEndian16(std::string_view data, size_t at) {
+  return static_cast<int>(Byte(data, at) << 8 | Byte(data, at + 1));
+}
+
+/// Where the parts of a JPEG file begin, as far as `data` reaches.
+struct JpegLayout {
+  std::optional<cv::Size> size;
+  std::optional<size_t> scan;  ///< Offset of the first start-of-scan marker.
+};
+
+/// Walks the marker segments (ISO 10918-1, annex B) up to the first scan.
+JpegLayout WalkJpeg(std::string_view data) {
+  JpegLayout layout;
+  size_t at = 2;  // After the start-of-image marker.
+  while (at + 4 <= data.size() && Byte(data, at) == 0xff) {
+    const unsigned marker = Byte(data, at + 1);
+    if (marker == 0xff) {  // A fill byte.
+      ++at;
+      continue;
+    }
+    if (marker == 0xda) {
+      layout.scan = at;
+      break;
+    }
+    // Frame headers SOF0..SOF15 share their codes with DHT (c4), JPG (c8) and DAC (cc).
+    const bool is_frame_header =
+        marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+    if (is_frame_header && at + 9 <= data.size()) {
+      layout.size = cv::Size(BigEndian16(data, at + 7), BigEndian16(data, at + 5));
+    }
+    at += 2 + static_cast<size_t>(BigEndian16(data, at + 2));
+  }
+  return layout;
+}
+
+/// False for a PNG or JPEG file that lacks its end. Its decoders would complain on standard error
+/// and give a half-grey picture.
+bool IsComplete(std::string_view data) {
+  if (data.starts_with(kPngSignature)) return data.rfind("IEND"sv) != std::string_view::npos;
+  if (data.starts_with(kJpegSignature)) {
+    const std::optional<size_t> scan = WalkJpeg(data).scan;
+    return scan && data.find("\xff\xd9"sv, *scan) != std::string_view::npos;
+  }
+  return true;
+}
+
+std::string ReadBytes(std::ifstream& file, size_t most) {
+  std::string data(most, '\0');
+  file.read(data.data(), static_cast<std::streamsize>(most));
+  data.resize(static_cast<size_t>(file.gcount()));
+  return data;
+}
+
+}  // namespace
+
+bool IsImageFileName(const std::filesystem::path& path) {
+  static constexpr std::array kExtensions = {".jpg",  ".jpeg", ".png", ".bmp", ".tif",
+                                             ".tiff", ".webp", ".ppm", ".pgm", ".pnm"};
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::ranges::find(kExtensions, extension) != kExtensions.end();
+}
+
+std::optional<cv::Size> ProbeImageSize(const std::filesystem::path& path) {
+  // Enough for the preview picture that cameras put before the header of the picture itself: one
+  // EXIF segment is 64 KiB at most, and mostly a few KiB.
+  constexpr size_t kFirst = 4096;
+  constexpr size_t kMost = 65536;
+  std::ifstream file(path, std::ios::binary);
+  std::string data = ReadBytes(file, kFirst);
+  if (data.starts_with(kPngSignature)) {
+    // Signature, length and type of the header chunk, then width and height in 32 bits each. No
+    // picture this program can use needs more than 16 bits.
+    if (data.size() < 24 || BigEndian16(data, 16) != 0 || BigEndian16(data, 20) != 0) return {};
+    return cv::Size(BigEndian16(data, 18), BigEndian16(data, 22));
+  }
+  if (!data.starts_with(kJpegSignature)) return {};
+  JpegLayout layout = WalkJpeg(data);
+  if (!layout.size && data.size() == kFirst) {
+    data += ReadBytes(file, kMost - kFirst);
+    layout = WalkJpeg(data);
+  }
+  return layout.size;
+}
+
+LoadedImage LoadImage(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return {{}, "cannot be opened"};
+  const std::vector<char> data((std::istreambuf_iterator<char>(file)),
+                               std::istreambuf_iterator<char>());
+  if (data.empty()) return {{}, "is empty (0 bytes)"};
+  if (!IsComplete(std::string_view(data.data(), data.size()))) return {{}, "is cut off"};
+  cv::Mat image;
+  try {
+    image =
+        cv::imdecode(data, cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
+  } catch (const cv::Exception&) {
+    image.release();  // A header that promises more than the memory holds.
+  }
+  if (image.empty()) return {{}, "cannot be decoded"};
+  if (image.depth() == CV_16U) image.convertTo(image, CV_8U, 255.0 / 65535.0);
+  if (image.type() != CV_8UC3) return {{}, "has neither 8 nor 16 bits a channel"};
+  return {image, {}};
+}
+
+}  // namespace orb360

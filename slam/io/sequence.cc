@@ -1,0 +1,131 @@
+#include "slam/io/sequence.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+#include "slam/check.h"
+#include "slam/io/dataset.h"
+#include "slam/io/folder_source.h"
+#include "slam/io/full_sphere.h"
+#include "slam/io/image_file.h"
+#include "slam/io/video_source.h"
+
+namespace orb360 {
+namespace {
+
+/// Frames decoded ahead: enough to bridge a keyframe's work, 50 MB of 4K pictures.
+constexpr size_t kFramesAhead = 4;
+
+/// Of `count` source frames, those that start, stride and max_frames leave.
+int SelectedCount(int count, const SequenceOptions& options) {
+  const int strided = count <= options.start ? 0 : (count - options.start - 1) / options.stride + 1;
+  return options.max_frames > 0 ? std::min(strided, options.max_frames) : strided;
+}
+
+cv::Mat Resized(const cv::Mat& image, cv::Size size) {
+  if (image.size() == size) return image;
+  const bool shrinks = size.width <= image.cols && size.height <= image.rows;
+  cv::Mat resized;
+  cv::resize(image, resized, size, 0.0, 0.0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
+  return resized;
+}
+
+std::unique_ptr<FrameSource> OpenSource(const std::string& input) {
+  if (!std::filesystem::exists(input)) throw UserError(input + ": no such file or folder");
+  if (IsDataset(input)) {
+    const Dataset dataset = OpenDataset(input);
+    if (!std::filesystem::is_directory(dataset.images())) {
+      throw UserError(input + ": has a sequence.yaml but no folder rgb/ with images");
+    }
+    return std::make_unique<FolderSource>(dataset.images(), dataset.images().string(),
+                                          dataset.frame_rate, dataset.camera_height);
+  }
+  if (std::filesystem::is_directory(input)) return std::make_unique<FolderSource>(input, input);
+  if (IsImageFileName(input)) {
+    throw UserError(input + ": is a single image; give a video or a folder of images");
+  }
+  return std::make_unique<VideoSource>(input);
+}
+
+}  // namespace
+
+Sequence::Sequence(std::unique_ptr<FrameSource> source, const SequenceOptions& options)
+    : source_(std::move(source)),
+      options_(options),
+      name_(source_->info().name),
+      camera_height_(source_->info().camera_height),
+      queue_(kFramesAhead) {
+  ORB360_CHECK(
+      options.fps >= 0.0 && options.stride >= 1 && options.start >= 0 && options.max_frames >= 0,
+      options.fps, options.stride, options.start, options.max_frames);
+  const SourceInfo& info = source_->info();
+  RequireFullSphere(name_, info.image_size);
+  image_size_ = options.resize.empty() ? info.image_size : options.resize;
+  RequireFullSphere("--resize", image_size_);
+  frame_rate_ = options.fps > 0.0 ? options.fps : info.frame_rate;
+  if (info.frame_count) frame_count_ = SelectedCount(*info.frame_count, options);
+  decoder_ = std::thread([this] { DecodeAhead(); });
+}
+
+Sequence::~Sequence() {
+  queue_.Close();
+  decoder_.join();
+}
+
+void Sequence::DecodeAhead() {
+  Step last;
+  try {
+    if (!DecodeAll()) return;
+  } catch (...) {
+    last.error = std::current_exception();
+  }
+  last.warnings = source_->TakeWarnings();
+  queue_.Push(std::move(last));
+  queue_.Close();
+}
+
+/// Pushes every selected frame. False when nobody wants them any more.
+bool Sequence::DecodeAll() {
+  for (int i = 0; i < options_.start; ++i) {
+    if (!source_->Skip()) return true;
+  }
+  for (int given = 0; options_.max_frames == 0 || given < options_.max_frames;) {
+    std::optional<Frame> frame = source_->Read();
+    if (!frame) return true;
+    if (!frame->image.empty()) {
+      frame->image = Resized(frame->image, image_size_);
+      if (options_.fps > 0.0) frame->timestamp = frame->index / options_.fps;
+      if (!queue_.Push({std::move(frame), source_->TakeWarnings(), nullptr})) return false;
+      ++given;
+    }
+    for (int i = 1; i < options_.stride; ++i) {
+      if (!source_->Skip()) return true;
+    }
+  }
+  return true;
+}
+
+std::optional<Frame> Sequence::Next() {
+  std::optional<Step> step = queue_.Pop();
+  if (!step) return std::nullopt;
+  warnings_.insert(warnings_.end(), step->warnings.begin(), step->warnings.end());
+  if (step->error) std::rethrow_exception(step->error);
+  if (step->frame) {
+    has_given_frame_ = true;
+  } else if (!has_given_frame_) {
+    throw UserError(options_.start == 0
+                        ? name_ + ": no frame of it can be decoded"
+                        : name_ + ": has no frame " + std::to_string(options_.start) +
+                              " or later to start at");
+  }
+  return step->frame;
+}
+
+std::unique_ptr<Sequence> OpenSequence(const std::string& input, const SequenceOptions& options) {
+  return std::make_unique<Sequence>(OpenSource(input), options);
+}
+
+}  // namespace orb360

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <opencv2/videoio.hpp>
+
+#include "slam/io/frame_source.h"
+
+namespace orb360 {
+
+/// The frames of a video file, by OpenCV's FFmpeg reader. Timestamps are the file's where they
+/// increase, else the previous frame's plus one frame time. A file that ends before the number of
+/// frames it announces (truncated, damaged) gives what can be decoded and a warning. Silences
+/// FFmpeg's own messages in the whole process unless OPENCV_FFMPEG_LOGLEVEL is set.
+class VideoSource : public FrameSource {
+ public:
+  /// Throws UserError when no video can be read from `path`.
+  explicit VideoSource(const std::string& path);
+
+  const SourceInfo& info() const override { return info_; }
+  std::optional<Frame> Read() override;
+  bool Skip() override;
+  std::vector<std::string> TakeWarnings() override { return std::exchange(warnings_, {}); }
+
+ private:
+  cv::VideoCapture capture_;
+  SourceInfo info_;
+  std::vector<std::string> warnings_;
+  int next_index_ = 0;
+  double last_timestamp_ = 0.0;
+};
+
+}  // namespace orb360

@@ -1,0 +1,83 @@
+#include "slam/io/image_file.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/slam/io/temp_folder.h"
+
+namespace orb360 {
+namespace {
+
+const cv::Size kSize(96, 48);
+
+cv::Mat Picture() {
+  cv::Mat image(kSize, CV_8UC3);
+  cv::randu(image, 0, 256);
+  return image;
+}
+
+TEST(ProbeImageSize, ReadsJpegAndPngHeaders) {
+  const TempFolder folder;
+  for (const char* name : {"a.png", "a.jpg"}) {
+    cv::imwrite((folder / name).string(), Picture());
+    EXPECT_EQ(ProbeImageSize(folder / name), kSize) << name;
+  }
+  cv::imwrite((folder / "progressive.jpg").string(), Picture(), {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
+  EXPECT_EQ(ProbeImageSize(folder / "progressive.jpg"), kSize);
+}
+
+TEST(ProbeImageSize, FindsTheFrameHeaderBehindALargeApplicationSegment) {
+  const TempFolder folder;
+  cv::imwrite((folder / "a.jpg").string(), Picture());
+  std::string data = ReadText(folder / "a.jpg");
+  // 40,002 bytes of APP1, as an EXIF preview takes, filled with what looks like an end of image.
+  std::string segment("\xff\xe1\x9c\x42", 4);
+  while (segment.size() < 40004) segment += "\xff\xd9";
+  data.insert(2, segment);
+  WriteText(folder / "b.jpg", data);
+  EXPECT_EQ(ProbeImageSize(folder / "b.jpg"), kSize);
+  EXPECT_EQ(LoadImage(folder / "b.jpg").image.size(), kSize);
+  CopyTruncated(folder / "b.jpg", folder / "cut.jpg", 0.97);
+  EXPECT_EQ(LoadImage(folder / "cut.jpg").problem, "is cut off");
+}
+
+TEST(ProbeImageSize, KnowsNothingOfOtherFiles) {
+  const TempFolder folder;
+  WriteText(folder / "empty.png", "");
+  WriteText(folder / "text.jpg", "not a picture");
+  WriteText(folder / "short.png", "\x89PNG\r\n\x1a\n");
+  for (const char* name : {"empty.png", "text.jpg", "short.png", "absent.png"}) {
+    EXPECT_FALSE(ProbeImageSize(folder / name)) << name;
+  }
+}
+
+TEST(LoadImage, NoPrefixOfAFileGivesAPicture) {
+  const TempFolder folder;
+  for (const char* name : {"a.png", "a.jpg"}) {
+    cv::imwrite((folder / name).string(), Picture());
+    for (double share : {0.0, 0.01, 0.1, 0.5, 0.9, 0.99}) {
+      CopyTruncated(folder / name, folder / "cut", share);
+      const LoadedImage loaded = LoadImage(folder / "cut");
+      EXPECT_TRUE(loaded.image.empty()) << name << ' ' << share;
+      EXPECT_FALSE(loaded.problem.empty()) << name << ' ' << share;
+    }
+  }
+}
+
+TEST(LoadImage, FloatingPointPixelsAreAProblemToName) {
+  const TempFolder folder;
+  cv::imwrite((folder / "a.tiff").string(), cv::Mat(kSize, CV_32FC3, cv::Scalar(0.5, 0.5, 0.5)));
+  EXPECT_EQ(LoadImage(folder / "a.tiff").problem, "has neither 8 nor 16 bits a channel");
+}
+
+TEST(IsImageFileName, IgnoresCase) {
+  EXPECT_TRUE(IsImageFileName("a/b.JPG"));
+  EXPECT_TRUE(IsImageFileName("b.jpeg"));
+  EXPECT_FALSE(IsImageFileName("b.mp4"));
+  EXPECT_FALSE(IsImageFileName("jpg"));
+}
+
+}  // namespace
+}  // namespace orb360
