@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace orb360 {
+
+/// The options that a configuration file may set: each a dotted key, the variable it is stored
+/// in, what it means and the values it may take. Whoever owns the variables registers them; their
+/// values at that moment are the defaults. The file is YAML, with a section for each part of the
+/// key before a dot.
+class ConfigSchema {
+ public:
+  static constexpr int kIntMin = std::numeric_limits<int>::min();
+  static constexpr int kIntMax = std::numeric_limits<int>::max();
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+  /// Registers `*value`, which must outlive the schema, under `key` ("mapping.min_parallax").
+  /// `doc` is one line that says what it is and its unit; a number may be `min` to `max`.
+  /// Throws ContractError for a key registered twice, one that is a section of another, or a
+  /// default out of range.
+  void Add(const std::string& key, bool* value, const std::string& doc);
+  void Add(const std::string& key, std::string* value, const std::string& doc);
+  void Add(const std::string& key, int* value, const std::string& doc, int min = kIntMin,
+           int max = kIntMax);
+  void Add(const std::string& key, double* value, const std::string& doc, double min = -kInfinity,
+           double max = kInfinity);
+
+  /// Sets the variables that `file` names. Throws UserError with file, line and key for a file
+  /// that cannot be read, is not YAML, or has an unknown key (the nearest known one is suggested),
+  /// a value of the wrong type or out of range; then no variable has changed.
+  void Load(const std::filesystem::path& file) const;
+
+  /// A YAML file of all options at their present values, each below its documentation, in the
+  /// order of registration. Load reads it back to exactly these values.
+  std::string Document() const;
+
+ private:
+  using Variable = std::variant<bool*, int*, double*, std::string*>;
+  using Value = std::variant<bool, int, double, std::string>;
+  struct Option {
+    std::string key;
+    Variable variable;
+    std::string doc;
+    double min = -kInfinity;
+    double max = kInfinity;
+  };
+
+  void Add(Option option);
+  const Option* Find(const std::string& key) const;
+  std::string NearestKey(const std::string& key) const;
+  static Value Parse(const Option& option, const std::string& text, const std::string& where);
+
+  std::vector<Option> options_;
+};
+
+}  // namespace orb360

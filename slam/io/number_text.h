@@ -1,0 +1,29 @@
+#pragma once
+
+#include <charconv>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace orb360 {
+
+/// The number that the whole of `text` spells, whatever the locale; nullopt if it spells none or
+/// one outside of Number's range. A leading plus is accepted.
+template <typename Number>
+std::optional<Number> ParseNumber(std::string_view text) {
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+/// The shortest text that ParseNumber reads back to the same number.
+template <typename Number>
+std::string ToText(Number number) {
+  char buffer[32];
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, number);
+  return {buffer, end};
+}
+
+}  // namespace orb360
