@@ -12,6 +12,7 @@
 
 #include "slam/check.h"
 #include "slam/io/number_text.h"
+#include "slam/io/yaml_file.h"
 
 namespace orb360 {
 namespace {
@@ -20,27 +21,24 @@ namespace {
 struct Entry {
   std::string key;
   std::string text;
-  int line;  ///< From 1.
+  int line;           ///< From 1.
+  std::string where;  ///< "file:line: "
 };
 
-std::string Where(const std::string& file, int line) {
-  return file + ":" + std::to_string(line) + ": ";
-}
-
 /// Appends the scalars below `map`, whose own key is `prefix` ("" at the top).
-void Flatten(const YAML::Node& map, const std::string& prefix, const std::string& file,
+void Flatten(const YAML::Node& map, const std::string& prefix, const std::filesystem::path& file,
              std::vector<Entry>* entries) {
   for (const auto& item : map) {
-    const int line = item.first.Mark().line + 1;
-    if (!item.first.IsScalar()) throw UserError(Where(file, line) + "a key must be a plain word");
+    const std::string where = WhereIs(file, item.first);
+    if (!item.first.IsScalar()) throw UserError(where + "a key must be a plain word");
     const std::string key =
         prefix.empty() ? item.first.Scalar() : prefix + "." + item.first.Scalar();
     if (item.second.IsMap()) {
       Flatten(item.second, key, file, entries);
     } else if (item.second.IsScalar()) {
-      entries->push_back({key, item.second.Scalar(), line});
+      entries->push_back({key, item.second.Scalar(), item.first.Mark().line + 1, where});
     } else if (item.second.IsSequence()) {
-      throw UserError(Where(file, line) + key + " must be a single value, not a list");
+      throw UserError(where + key + " must be a single value, not a list");
     }
     // Nothing after the colon: a section or an option that is left at its defaults.
   }
@@ -176,41 +174,26 @@ ConfigSchema::Value ConfigSchema::Parse(const Option& option, const std::string&
   return text;
 }
 
-void ConfigSchema::Load(const std::filesystem::path& path) const {
-  const std::string file = path.string();
-  YAML::Node root;
-  try {
-    if (std::filesystem::is_directory(path)) throw YAML::BadFile(file);
-    root = YAML::LoadFile(file);
-  } catch (const YAML::ParserException& error) {
-    throw UserError(Where(file, error.mark.line + 1) + "not valid YAML: " + error.msg);
-  } catch (const YAML::BadFile&) {
-    throw UserError(file + ": cannot be opened as a configuration file");
-  }
+void ConfigSchema::Load(const std::filesystem::path& file) const {
   std::vector<Entry> entries;
-  if (root.IsMap()) {
-    Flatten(root, "", file, &entries);
-  } else if (!root.IsNull()) {
-    throw UserError(file + ": must consist of `key: value` lines");
-  }
+  Flatten(LoadYamlMap(file), "", file, &entries);
 
   std::map<std::string, int> line_of;
   std::vector<std::pair<Variable, Value>> assignments;
   for (const Entry& entry : entries) {
-    const std::string where = Where(file, entry.line);
     const Option* option = Find(entry.key);
     if (option == nullptr) {
       const std::string nearest = NearestKey(entry.key);
-      throw UserError(where + "unknown key " + entry.key +
+      throw UserError(entry.where + "unknown key " + entry.key +
                       (nearest.empty() ? "; `orb360 config` lists all keys"
                                        : "; did you mean " + nearest + "?"));
     }
     const auto [first, is_new] = line_of.try_emplace(entry.key, entry.line);
     if (!is_new) {
-      throw UserError(where + entry.key + " is set a second time, first in line " +
+      throw UserError(entry.where + entry.key + " is set a second time, first in line " +
                       std::to_string(first->second));
     }
-    assignments.emplace_back(option->variable, Parse(*option, entry.text, where));
+    assignments.emplace_back(option->variable, Parse(*option, entry.text, entry.where));
   }
   for (const auto& [variable, value] : assignments) {
     std::visit(

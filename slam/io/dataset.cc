@@ -6,6 +6,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "slam/check.h"
+#include "slam/io/yaml_file.h"
 
 namespace orb360 {
 namespace {
@@ -14,13 +15,12 @@ constexpr const char* kFileName = "sequence.yaml";
 
 /// A positive number under `key`; nullopt where the key is absent.
 std::optional<double> PositiveNumber(const YAML::Node& root, const char* key,
-                                     const std::string& file) {
+                                     const std::filesystem::path& file) {
   const YAML::Node node = root[key];
   if (!node) return std::nullopt;
   double value = 0.0;
   if (!YAML::convert<double>::decode(node, value) || !std::isfinite(value) || value <= 0.0) {
-    throw UserError(file + ":" + std::to_string(node.Mark().line + 1) + ": " + key +
-                    " must be a positive number");
+    throw UserError(WhereIs(file, node) + key + " must be a positive number");
   }
   return value;
 }
@@ -32,22 +32,14 @@ bool IsDataset(const std::filesystem::path& path) {
 }
 
 Dataset OpenDataset(const std::filesystem::path& folder) {
-  const std::string file = (folder / kFileName).string();
-  YAML::Node root;
-  try {
-    root = YAML::LoadFile(file);
-  } catch (const YAML::ParserException& error) {
-    throw UserError(file + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
-  } catch (const YAML::BadFile&) {
-    throw UserError(file + ": cannot be opened");
-  }
-  if (!root.IsMap()) throw UserError(file + ": is not a list of `key: value` lines");
+  const std::filesystem::path file = folder / kFileName;
+  const YAML::Node root = LoadYamlMap(file);
   const YAML::Node model = root["camera_model"];
   if (!model || !model.IsScalar() || model.Scalar() != "equirectangular") {
-    throw UserError(file + ": camera_model must be `equirectangular`");
+    throw UserError(file.string() + ": camera_model must be `equirectangular`");
   }
   const std::optional<double> frame_rate = PositiveNumber(root, "frame_rate", file);
-  if (!frame_rate) throw UserError(file + ": frame_rate (frames a second) is missing");
+  if (!frame_rate) throw UserError(file.string() + ": frame_rate (frames a second) is missing");
   return {folder, *frame_rate, PositiveNumber(root, "camera_height", file)};
 }
 

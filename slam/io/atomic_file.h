@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "slam/io/output_file.h"
+
+namespace orb360 {
+
+/// A file that appears under its name only when it is finished: it is written as `NAME.tmp` beside
+/// it, brought to the disk and renamed. Whoever looks finds the old file or the whole new one.
+/// Failures are UserErrors and leave no temporary file.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::filesystem::path path);
+  /// Without Commit: as if nothing had been written.
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void Write(std::string_view data) { temporary_.Write(data); }
+  void Commit();
+
+ private:
+  std::filesystem::path path_;
+  OutputFile temporary_;
+  bool is_committed_ = false;
+};
+
+/// Writes a whole file through AtomicFile.
+void WriteFileAtomically(const std::filesystem::path& path, std::string_view content);
+
+}  // namespace orb360

@@ -1,0 +1,51 @@
+#include "slam/io/output_file.h"
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "slam/check.h"
+
+namespace orb360 {
+
+void ThrowWriteError(const std::filesystem::path& path, int error) {
+  const bool is_full = error == ENOSPC || error == EDQUOT || error == EFBIG;
+  throw UserError(path.string() + ": cannot be written: " + std::generic_category().message(error) +
+                  (is_full ? "; free some space or choose another folder"
+                           : "; choose a folder you can write to"));
+}
+
+OutputFile::OutputFile(std::filesystem::path path)
+    : path_(std::move(path)),
+      descriptor_(open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) ThrowWriteError(path_, errno);
+}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+void OutputFile::Write(std::string_view data) {
+  ORB360_CHECK(descriptor_ >= 0, path_);
+  while (!data.empty()) {
+    const ssize_t written = write(descriptor_, data.data(), data.size());
+    if (written >= 0) {
+      data.remove_prefix(static_cast<size_t>(written));
+    } else if (errno != EINTR) {
+      ThrowWriteError(path_, errno);
+    }
+  }
+}
+
+void OutputFile::SyncAndClose() {
+  ORB360_CHECK(descriptor_ >= 0, path_);
+  // EINVAL: a pipe or a device, which has nothing to wait for.
+  if (fsync(descriptor_) != 0 && errno != EINVAL) ThrowWriteError(path_, errno);
+  if (close(std::exchange(descriptor_, -1)) != 0) ThrowWriteError(path_, errno);
+}
+
+}  // namespace orb360
