@@ -1,0 +1,103 @@
+#include "slam/optimization/local_bundle_adjustment.h"
+
+#include <algorithm>
+
+#include "slam/optimization/bearing_residual.h"
+
+namespace orb360 {
+namespace {
+
+// Builds, solves and writes back. `fixed` keyframes are held; of the landmarks' observations only
+// those from `moving` and `fixed` take part.
+void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixed,
+            std::span<const LandmarkId> landmarks, const BundleOptions& options, Map* map) {
+  BundleProblem problem;
+  std::vector<int> pose_of(map->keyframe_end(), -1);
+  const auto add_pose = [&](KeyframeId id, bool is_fixed) {
+    pose_of[id] = static_cast<int>(problem.world_from_camera.size());
+    problem.world_from_camera.push_back(map->keyframe(id).world_from_camera);
+    problem.pose_fixed.push_back(is_fixed);
+  };
+  for (const KeyframeId id : moving) add_pose(id, false);
+  for (const KeyframeId id : fixed) add_pose(id, true);
+
+  struct Source {
+    LandmarkId landmark;
+    KeyframeId keyframe;
+  };
+  std::vector<Source> sources;  // by observation
+  for (const LandmarkId id : landmarks) {
+    const Landmark& landmark = map->landmark(id);
+    const int point = static_cast<int>(problem.points.size());
+    problem.points.push_back(landmark.position);
+    for (const Observation& o : landmark.observations) {
+      if (pose_of[o.keyframe] < 0) continue;
+      const Features& features = *map->keyframe(o.keyframe).features;
+      problem.observations.push_back({pose_of[o.keyframe], point, features.bearings[o.feature],
+                                      features.keypoints[o.feature].sigma});
+      sources.push_back({id, o.keyframe});
+    }
+  }
+  if (!SolveBundle(options, &problem).usable) return;
+
+  for (size_t i = 0; i < moving.size(); ++i) {
+    map->keyframe(moving[i]).world_from_camera = problem.world_from_camera[i];
+  }
+  for (size_t i = 0; i < landmarks.size(); ++i) {
+    map->landmark(landmarks[i]).position = problem.points[i];
+  }
+  for (size_t i = 0; i < sources.size(); ++i) {
+    if (SquaredResidual(problem, problem.observations[i]) > kChiSquared95) {
+      map->RemoveObservation(sources[i].landmark, sources[i].keyframe);
+    }
+  }
+  for (const LandmarkId id : landmarks) {
+    if (map->landmark(id).observations.size() < 2) map->RemoveLandmark(id);
+  }
+}
+
+}  // namespace
+
+void AdjustLocally(KeyframeId center, const LocalBundleOptions& options, Map* map) {
+  std::vector<KeyframeId> moving = {center};
+  for (const Map::Covisible& neighbour :
+       map->FindCovisible(map->keyframe(center).landmarks, options.min_shared, center)) {
+    if (static_cast<int>(moving.size()) == options.max_keyframes) break;
+    moving.push_back(neighbour.keyframe);
+  }
+  std::vector<LandmarkId> landmarks;
+  for (const KeyframeId id : moving) {
+    const std::vector<LandmarkId>& seen = map->keyframe(id).landmarks;
+    std::copy_if(seen.begin(), seen.end(), std::back_inserter(landmarks),
+                 [](LandmarkId l) { return l != kNoId; });
+  }
+  std::sort(landmarks.begin(), landmarks.end());
+  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
+
+  std::vector<KeyframeId> fixed;
+  for (const Map::Covisible& observer : map->FindCovisible(landmarks, 1)) {
+    if (static_cast<int>(fixed.size()) == options.max_fixed_keyframes) break;
+    if (std::find(moving.begin(), moving.end(), observer.keyframe) == moving.end()) {
+      fixed.push_back(observer.keyframe);
+    }
+  }
+  if (fixed.empty()) {  // the whole map is in the window: its oldest keyframe is the gauge
+    const auto oldest = std::min_element(moving.begin(), moving.end());
+    fixed.push_back(*oldest);
+    moving.erase(oldest);
+  }
+  Adjust(moving, fixed, landmarks, {.max_iterations = options.max_iterations}, map);
+}
+
+void AdjustGlobally(const BundleOptions& options, Map* map) {
+  const std::vector<KeyframeId> keyframes = map->KeyframeIds();
+  std::vector<LandmarkId> landmarks;
+  for (LandmarkId id = 0; id < map->landmark_end(); ++id) {
+    if (map->HasLandmark(id)) landmarks.push_back(id);
+  }
+  if (keyframes.size() < 2) return;
+  const std::span<const KeyframeId> all(keyframes);
+  Adjust(all.subspan(1), all.first(1), landmarks, options, map);
+}
+
+}  // namespace orb360

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+
+#include "slam/map/map.h"
+#include "slam/optimization/bundle_adjustment.h"
+
+namespace orb360 {
+
+struct LocalBundleOptions {
+  /// Keyframes that move: the newest and those that share most landmarks with it.
+  int max_keyframes = 12;
+  /// Keyframes beyond, which see the same landmarks and hold them in place.
+  int max_fixed_keyframes = 12;
+  /// Landmarks that a keyframe must share with the newest to move.
+  int min_shared = 15;
+  int max_iterations = 6;
+};
+
+/// Bundle adjustment of the neighbourhood of a keyframe (paper Eq. 11): poses of the keyframes
+/// around it and all landmarks they see. Afterwards observations beyond the 95 % bound are removed,
+/// and landmarks with fewer than two left.
+void AdjustLocally(KeyframeId center, const LocalBundleOptions& options, Map* map);
+
+/// The same for the whole map; its first keyframe is held.
+void AdjustGlobally(const BundleOptions& options, Map* map);
+
+}  // namespace orb360

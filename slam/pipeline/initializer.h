@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "slam/features/features.h"
+#include "slam/geometry/rigid3.h"
+
+namespace orb360 {
+
+struct InitializerOptions {
+  /// Matches within this angle first (slow motion, few mistakes), then over the whole sphere.
+  double nearby_radius = 0.3;
+  /// Landmarks the first map must have.
+  int min_landmarks = 80;
+  /// Median parallax of the matches that makes a baseline, radians.
+  double min_parallax = 0.026;
+  /// Parallax of a single landmark, radians.
+  double min_landmark_parallax = 0.01;
+  /// Of all matches, the share that must agree with the motion.
+  double min_inlier_share = 0.5;
+};
+
+/// Two views of a rigid scene: frame 1's camera is the world's origin; unit of length arbitrary.
+struct TwoViewMap {
+  Rigid3 world_from_camera2;
+  struct Point {
+    int feature1;
+    int feature2;
+    Eigen::Vector3d position;
+  };
+  std::vector<Point> points;
+};
+
+enum class InitializationFailure {
+  kFewMatches,      // the views have too little in common: take another reference
+  kLittleParallax,  // wait for more motion
+};
+
+struct InitializationResult {
+  std::optional<TwoViewMap> map;
+  InitializationFailure failure = InitializationFailure::kFewMatches;  // where there is no map
+  int num_inliers = 0;
+};
+
+/// Matches two frames, estimates their motion (five points in RANSAC), triangulates and refines by
+/// bundle adjustment. The points' parallax is measured after the rotation is taken out, so that a
+/// turning camera is not taken for a moving one.
+InitializationResult InitializeFromTwoViews(const Features& features1, const Features& features2,
+                                            const InitializerOptions& options);
+
+}  // namespace orb360

@@ -1,0 +1,89 @@
+#include "slam/pipeline/landmark_fusion.h"
+
+#include <algorithm>
+
+#include "slam/features/hamming.h"
+#include "slam/optimization/bearing_residual.h"
+#include "slam/pipeline/projection_search.h"
+
+namespace orb360 {
+namespace {
+
+// Search window in standard deviations: both the landmark and the poses are already estimated.
+constexpr double kSearchSigmas = 3.0;
+constexpr int kMaxDistance = 50;  // differing bits
+
+bool Sees(const Landmark& landmark, KeyframeId keyframe) {
+  return std::any_of(landmark.observations.begin(), landmark.observations.end(),
+                     [&](const Observation& o) { return o.keyframe == keyframe; });
+}
+
+// Searches landmarks in one keyframe; ids that are gone by now are passed over.
+void FuseInto(KeyframeId target, std::span<const LandmarkId> ids, Map* map) {
+  const Keyframe& keyframe = map->keyframe(target);
+  const Features& features = *keyframe.features;
+  if (features.size() == 0) return;
+  float min_sigma = features.keypoints[0].sigma;
+  for (const Keypoint& keypoint : features.keypoints) {
+    min_sigma = std::min(min_sigma, keypoint.sigma);
+  }
+  const ProjectionSearchOptions search{.radius = kSearchSigmas * min_sigma,
+                                       .scale_radius = true,
+                                       .max_distance = kMaxDistance,
+                                       .ratio = 1.0};
+  const Rigid3 camera_from_world = keyframe.world_from_camera.Inverse();
+  std::vector<int> candidates;
+  for (const LandmarkId id : ids) {
+    if (!map->HasLandmark(id) || Sees(map->landmark(id), target)) continue;
+    const Landmark& landmark = map->landmark(id);
+    int distance = NearestTwo::kNone;
+    bool expected = false;
+    const int feature = FindFeature(
+        features, camera_from_world,
+        {id, landmark.position, landmark.mean_direction, landmark.max_range, landmark.descriptor},
+        {}, search, &candidates, &distance, &expected);
+    if (feature < 0) continue;
+    const Eigen::Vector2d residual = BearingResidual(
+        camera_from_world * landmark.position,
+        TangentBasis(features.bearings[feature]) / features.keypoints[feature].sigma, nullptr);
+    if (residual.squaredNorm() > kChiSquared95) continue;
+    const LandmarkId present = map->keyframe(target).landmarks[feature];
+    if (present == kNoId) {
+      map->AddObservation(id, target, feature);
+      map->UpdateAppearance(id);
+      continue;
+    }
+    const bool present_is_better =
+        map->landmark(present).observations.size() >= landmark.observations.size();
+    const LandmarkId keep = present_is_better ? present : id;
+    map->MergeLandmark(present_is_better ? id : present, keep);
+    map->UpdateAppearance(keep);
+  }
+}
+
+std::vector<LandmarkId> LandmarksOf(const Keyframe& keyframe) {
+  std::vector<LandmarkId> ids;
+  std::copy_if(keyframe.landmarks.begin(), keyframe.landmarks.end(), std::back_inserter(ids),
+               [](LandmarkId id) { return id != kNoId; });
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+}  // namespace
+
+void FuseWithNeighbours(KeyframeId id, int max_neighbours, Map* map) {
+  std::vector<Map::Covisible> neighbours = map->FindCovisible(map->keyframe(id).landmarks, 1, id);
+  if (static_cast<int>(neighbours.size()) > max_neighbours) neighbours.resize(max_neighbours);
+  const std::vector<LandmarkId> own = LandmarksOf(map->keyframe(id));
+  std::vector<LandmarkId> theirs;
+  for (const Map::Covisible& neighbour : neighbours) {
+    FuseInto(neighbour.keyframe, own, map);
+    const std::vector<LandmarkId> seen = LandmarksOf(map->keyframe(neighbour.keyframe));
+    theirs.insert(theirs.end(), seen.begin(), seen.end());
+  }
+  std::sort(theirs.begin(), theirs.end());
+  theirs.erase(std::unique(theirs.begin(), theirs.end()), theirs.end());
+  FuseInto(id, theirs, map);
+}
+
+}  // namespace orb360

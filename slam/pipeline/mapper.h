@@ -1,0 +1,28 @@
+#pragma once
+
+#include "slam/map/map.h"
+#include "slam/optimization/local_bundle_adjustment.h"
+#include "slam/pipeline/panoramic_triangulation.h"
+#include "slam/pipeline/tracker.h"
+
+namespace orb360 {
+
+struct MapperOptions {
+  TriangulationOptions triangulation;
+  LocalBundleOptions bundle;
+  /// Keyframes with which a new one exchanges landmarks.
+  int max_fusion_neighbours = 15;
+  /// A keyframe goes when this share of its landmarks is seen by three others at least as well.
+  double redundant_share = 0.9;
+  /// Landmarks younger than this many keyframes are on probation: seen again by then, and found in
+  /// a quarter of the frames that should show them, or removed.
+  int probation_keyframes = 2;
+  double min_found_share = 0.25;
+};
+
+/// Takes a tracked frame into the map as a keyframe: its observations, culling of doubtful
+/// landmarks, new ones by panoramic triangulation, fusion of duplicates with its neighbours, local
+/// bundle adjustment, culling of redundant keyframes. Returns the keyframe's id.
+KeyframeId IntegrateKeyframe(const TrackedFrame& frame, const MapperOptions& options, Map* map);
+
+}  // namespace orb360

@@ -1,0 +1,200 @@
+#include "slam/pipeline/panoramic_triangulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slam/features/hamming.h"
+#include "slam/geometry/essential_matrix.h"
+#include "slam/geometry/triangulation.h"
+#include "slam/optimization/bearing_residual.h"
+
+namespace orb360 {
+namespace {
+
+// The features of a keyframe without a landmark, as columns for the scan below.
+struct FreeFeatures {
+  std::vector<int> index;
+  std::vector<float> x, y, z;
+
+  explicit FreeFeatures(const Keyframe& keyframe) {
+    for (int f = 0; f < keyframe.features->size(); ++f) {
+      if (keyframe.landmarks[f] != kNoId) continue;
+      const Eigen::Vector3d& bearing = keyframe.features->bearings[f];
+      index.push_back(f);
+      x.push_back(static_cast<float>(bearing.x()));
+      y.push_back(static_cast<float>(bearing.y()));
+      z.push_back(static_cast<float>(bearing.z()));
+    }
+  }
+};
+
+// Positions (in FreeFeatures) of bearings within `max_sine` of a plane.
+void FindNearPlane(const FreeFeatures& features, const Eigen::Vector3d& normal, double max_sine,
+                   std::vector<float>* sines, std::vector<int>* positions) {
+  const Eigen::Vector3f n = normal.cast<float>();
+  const int count = static_cast<int>(features.index.size());
+  sines->resize(count);
+  float* out = sines->data();
+  for (int i = 0; i < count; ++i) {
+    out[i] = n.x() * features.x[i] + n.y() * features.y[i] + n.z() * features.z[i];
+  }
+  positions->clear();
+  const float limit = static_cast<float>(max_sine);
+  for (int i = 0; i < count; ++i) {
+    if (std::abs(out[i]) < limit) positions->push_back(i);
+  }
+}
+
+double MedianRange(const Map& map, const Keyframe& keyframe) {
+  std::vector<double> ranges;
+  for (const LandmarkId id : keyframe.landmarks) {
+    if (id == kNoId) continue;
+    ranges.push_back((map.landmark(id).position - keyframe.world_from_camera.translation).norm());
+  }
+  if (ranges.empty()) return 0;
+  const auto middle = ranges.begin() + ranges.size() / 2;
+  std::nth_element(ranges.begin(), middle, ranges.end());
+  return *middle;
+}
+
+struct EpipolarMatch {
+  int feature2 = -1;
+  int distance = NearestTwo::kNone;
+};
+
+// Best match in keyframe 2 for each free feature of keyframe 1.
+std::vector<EpipolarMatch> MatchEpipolar(const Keyframe& keyframe1, const FreeFeatures& free1,
+                                         const Keyframe& keyframe2, const FreeFeatures& free2,
+                                         const Rigid3& camera1_from_camera2,
+                                         const TriangulationOptions& options) {
+  const Eigen::Matrix3d essential = EssentialMatrix(camera1_from_camera2);
+  const Eigen::Vector3d epipole = EpipoleInCamera2(camera1_from_camera2);
+  const Eigen::Quaterniond camera2_from_camera1 = camera1_from_camera2.rotation.conjugate();
+  const double max_epipole_cosine = std::cos(options.min_epipole_angle);
+  const double min_parallax_cosine = std::cos(options.max_parallax);
+  const Features& features1 = *keyframe1.features;
+  const Features& features2 = *keyframe2.features;
+  double max_sigma2 = 0;
+  for (const Keypoint& keypoint : features2.keypoints) {
+    max_sigma2 = std::max<double>(max_sigma2, keypoint.sigma);
+  }
+
+  std::vector<EpipolarMatch> matches(free1.index.size());
+  std::vector<float> sines;
+  std::vector<int> positions;
+  std::vector<int> candidates;
+  for (size_t i = 0; i < free1.index.size(); ++i) {
+    const int f1 = free1.index[i];
+    const Eigen::Vector3d& bearing1 = features1.bearings[f1];
+    const double sigma1 = features1.keypoints[f1].sigma;
+    const Eigen::Vector3d normal = EpipolarPlaneNormal(essential, bearing1);
+    FindNearPlane(free2, normal, options.max_plane_sigmas * std::hypot(sigma1, max_sigma2), &sines,
+                  &positions);
+    // The match lies on the arc from bearing 1 (a point at infinity) to the epipole (range zero).
+    const Eigen::Vector3d far = camera2_from_camera1 * bearing1;
+    const Eigen::Vector3d towards_epipole = (epipole - epipole.dot(far) * far).normalized();
+    candidates.clear();
+    for (const int position : positions) {
+      const int f2 = free2.index[position];
+      const Eigen::Vector3d& bearing2 = features2.bearings[f2];
+      const double sigma = std::hypot(sigma1, features2.keypoints[f2].sigma);
+      if (AngleToPlane(normal, bearing2) > options.max_plane_sigmas * sigma ||
+          !IsAwayFromEpipole(epipole, bearing2, max_epipole_cosine) ||
+          far.dot(bearing2) < min_parallax_cosine || towards_epipole.dot(bearing2) < -sigma) {
+        continue;
+      }
+      candidates.push_back(f2);
+    }
+    const NearestTwo nearest =
+        FindNearestTwo(features1.descriptors[f1], features2.descriptors, candidates);
+    if (nearest.best_distance > options.max_distance) continue;
+    const bool rivalled =
+        nearest.second_index >= 0 && features2.keypoints[nearest.second_index].level ==
+                                         features2.keypoints[nearest.best_index].level;
+    if (rivalled && nearest.best_distance > options.ratio * nearest.second_distance) continue;
+    matches[i] = {nearest.best_index, nearest.best_distance};
+  }
+  return matches;
+}
+
+// The triangulated point in camera 1, if it passes all checks.
+std::optional<Eigen::Vector3d> MakePoint(const Features& features1, int f1,
+                                         const Features& features2, int f2,
+                                         const Rigid3& camera1_from_camera2,
+                                         const TriangulationOptions& options) {
+  const Keypoint& keypoint1 = features1.keypoints[f1];
+  const Keypoint& keypoint2 = features2.keypoints[f2];
+  const Eigen::Vector3d& bearing1 = features1.bearings[f1];
+  const Eigen::Vector3d& bearing2 = features2.bearings[f2];
+  const double sigma = std::hypot(keypoint1.sigma, keypoint2.sigma);
+  const double parallax = AngleBetween(bearing1, camera1_from_camera2.rotation * bearing2);
+  if (parallax < std::max(options.min_parallax, options.min_parallax_sigmas * sigma)) {
+    return std::nullopt;
+  }
+  const std::optional<Eigen::Vector3d> point = TriangulateTwoViews(
+      camera1_from_camera2, bearing1, bearing2, keypoint1.sigma, keypoint2.sigma);
+  if (!point) return std::nullopt;
+  const Eigen::Vector3d point2 = camera1_from_camera2.Inverse() * *point;
+  const double error1 = AngleBetween(*point, bearing1) / keypoint1.sigma;
+  const double error2 = AngleBetween(point2, bearing2) / keypoint2.sigma;
+  if (std::max(error1, error2) > std::sqrt(kChiSquared95)) return std::nullopt;
+  // The same patch looks larger from nearer: ranges are in proportion to 1/(size in the image).
+  const double scales = keypoint1.sigma / keypoint2.sigma;
+  const double ranges = point2.norm() / point->norm();
+  const double ratio = ranges / scales;
+  if (ratio > options.max_scale_ratio || ratio < 1.0 / options.max_scale_ratio) {
+    return std::nullopt;
+  }
+  return point;
+}
+
+}  // namespace
+
+std::vector<LandmarkId> TriangulateNewLandmarks(KeyframeId id, const TriangulationOptions& options,
+                                                Map* map) {
+  std::vector<Map::Covisible> neighbours = map->FindCovisible(map->keyframe(id).landmarks, 1, id);
+  if (static_cast<int>(neighbours.size()) > options.max_neighbours) {
+    neighbours.resize(options.max_neighbours);
+  }
+  std::vector<LandmarkId> created;
+  for (const Map::Covisible& neighbour : neighbours) {
+    const Keyframe& keyframe1 = map->keyframe(id);
+    const Keyframe& keyframe2 = map->keyframe(neighbour.keyframe);
+    const Rigid3 camera1_from_camera2 =
+        keyframe1.world_from_camera.Inverse() * keyframe2.world_from_camera;
+    if (camera1_from_camera2.translation.norm() <
+        options.min_baseline * MedianRange(*map, keyframe2)) {
+      continue;
+    }
+    const FreeFeatures free1(keyframe1);
+    const FreeFeatures free2(keyframe2);
+    const std::vector<EpipolarMatch> matches =
+        MatchEpipolar(keyframe1, free1, keyframe2, free2, camera1_from_camera2, options);
+    // One feature of keyframe 2 goes to the nearest descriptor only.
+    std::vector<int> owner(keyframe2.features->size(), -1);
+    for (size_t i = 0; i < matches.size(); ++i) {
+      const int f2 = matches[i].feature2;
+      if (f2 >= 0 && (owner[f2] < 0 || matches[i].distance < matches[owner[f2]].distance)) {
+        owner[f2] = static_cast<int>(i);
+      }
+    }
+    for (size_t i = 0; i < matches.size(); ++i) {
+      const int f1 = free1.index[i];
+      const int f2 = matches[i].feature2;
+      if (f2 < 0 || owner[f2] != static_cast<int>(i)) continue;
+      const std::optional<Eigen::Vector3d> point = MakePoint(
+          *keyframe1.features, f1, *keyframe2.features, f2, camera1_from_camera2, options);
+      if (!point) continue;
+      const std::vector<Color>& colors = keyframe1.features->colors;
+      const LandmarkId landmark = map->AddLandmark(keyframe1.world_from_camera * *point,
+                                                   colors.empty() ? Color{} : colors[f1]);
+      map->AddObservation(landmark, id, f1);
+      map->AddObservation(landmark, neighbour.keyframe, f2);
+      map->UpdateAppearance(landmark);
+      created.push_back(landmark);
+    }
+  }
+  return created;
+}
+
+}  // namespace orb360
