@@ -198,6 +198,19 @@ std::vector<Map::Covisible> Map::FindCovisible(std::span<const LandmarkId> landm
   return result;
 }
 
+double Map::MedianRange(KeyframeId id) const {
+  const Keyframe& observer = keyframe(id);
+  std::vector<double> ranges;
+  for (const LandmarkId seen : observer.landmarks) {
+    if (seen == kNoId) continue;
+    ranges.push_back((landmark(seen).position - observer.world_from_camera.translation).norm());
+  }
+  if (ranges.empty()) return 0;
+  const auto middle = ranges.begin() + ranges.size() / 2;
+  std::nth_element(ranges.begin(), middle, ranges.end());
+  return *middle;
+}
+
 void Map::Transform(const Similarity3& target_from_world) {
   for (std::optional<Keyframe>& keyframe : keyframes_) {
     if (keyframe) {

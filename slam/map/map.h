@@ -114,6 +114,9 @@ class Map {
   std::vector<Covisible> FindCovisible(std::span<const LandmarkId> landmarks, int min_shared,
                                        KeyframeId except = kNoId) const;
 
+  /// Median distance of a keyframe's landmarks from it; 0 if it has none.
+  double MedianRange(KeyframeId id) const;
+
   /// Applies target_from_world to every pose and landmark: a change of gauge.
   void Transform(const Similarity3& target_from_world);
 

@@ -33,18 +33,10 @@ LocalMap MakeLocalMap(const Map& map, KeyframeId reference, int num_keyframes) {
     local.landmarks.push_back({id, l.position, l.mean_direction, l.max_range, l.descriptor});
   }
 
-  std::vector<double> ranges;
   for (const LandmarkId id : center.landmarks) {
-    if (id == kNoId) continue;
-    const Landmark& landmark = map.landmark(id);
-    ranges.push_back((landmark.position - center.world_from_camera.translation).norm());
-    local.reference_matches += landmark.observations.size() >= 3;
+    if (id != kNoId) local.reference_matches += map.landmark(id).observations.size() >= 3;
   }
-  if (!ranges.empty()) {
-    const auto middle = ranges.begin() + ranges.size() / 2;
-    std::nth_element(ranges.begin(), middle, ranges.end());
-    local.median_range = *middle;
-  }
+  local.median_range = map.MedianRange(reference);
   return local;
 }
 

@@ -45,18 +45,6 @@ void FindNearPlane(const FreeFeatures& features, const Eigen::Vector3d& normal, 
   }
 }
 
-double MedianRange(const Map& map, const Keyframe& keyframe) {
-  std::vector<double> ranges;
-  for (const LandmarkId id : keyframe.landmarks) {
-    if (id == kNoId) continue;
-    ranges.push_back((map.landmark(id).position - keyframe.world_from_camera.translation).norm());
-  }
-  if (ranges.empty()) return 0;
-  const auto middle = ranges.begin() + ranges.size() / 2;
-  std::nth_element(ranges.begin(), middle, ranges.end());
-  return *middle;
-}
-
 struct EpipolarMatch {
   int feature2 = -1;
   int distance = NearestTwo::kNone;
@@ -163,7 +151,7 @@ std::vector<LandmarkId> TriangulateNewLandmarks(KeyframeId id, const Triangulati
     const Rigid3 camera1_from_camera2 =
         keyframe1.world_from_camera.Inverse() * keyframe2.world_from_camera;
     if (camera1_from_camera2.translation.norm() <
-        options.min_baseline * MedianRange(*map, keyframe2)) {
+        options.min_baseline * map->MedianRange(neighbour.keyframe)) {
       continue;
     }
     const FreeFeatures free1(keyframe1);

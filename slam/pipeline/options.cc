@@ -1,0 +1,101 @@
+#include "slam/pipeline/options.h"
+
+namespace orb360 {
+
+ConfigSchema MakeConfigSchema(Options* options) {
+  ConfigSchema schema;
+  OrbOptions& orb = options->orb;
+  schema.Add("features.count", &orb.num_features, "features sought in each image", 100, 20000);
+  schema.Add("features.levels", &orb.num_levels,
+             "levels of the image pyramid, each 2^(1/4) times smaller than the one before", 1, 8);
+  schema.Add("features.min_score", &orb.min_score,
+             "least difference of a corner from its surroundings, grey levels", 1, 255);
+  schema.Add("features.pixel_sigma", &orb.pixel_sigma,
+             "standard deviation of a feature's position, pixels of its pyramid level", 0.05, 10.0);
+
+  InitializerOptions& initializer = options->initializer;
+  schema.Add("initializer.nearby_radius", &initializer.nearby_radius,
+             "angle within which two views are matched at first, radians", 0.01, 3.2);
+  schema.Add("initializer.min_landmarks", &initializer.min_landmarks,
+             "landmarks that the first map must have", 20, 10000);
+  schema.Add("initializer.min_parallax", &initializer.min_parallax,
+             "median parallax of the two views, radians", 0.001, 1.0);
+  schema.Add("initializer.min_landmark_parallax", &initializer.min_landmark_parallax,
+             "least parallax of a single landmark, radians", 0.001, 1.0);
+  schema.Add("initializer.min_inlier_share", &initializer.min_inlier_share,
+             "share of the matches that must agree with the motion", 0.1, 1.0);
+
+  TrackerOptions& tracker = options->tracker;
+  schema.Add("tracker.narrow_radius", &tracker.narrow_radius,
+             "search window around predicted landmarks, radians", 0.005, 1.0);
+  schema.Add("tracker.wide_radius", &tracker.wide_radius,
+             "search window when the narrow one finds too little, radians", 0.005, 1.5);
+  schema.Add("tracker.local_radius_sigmas", &tracker.local_radius_sigmas,
+             "search window for the local map, standard deviations of a feature", 1.0, 50.0);
+  schema.Add("tracker.min_motion_inliers", &tracker.min_motion_inliers,
+             "landmarks of the last frame that must be found again", 6, 1000);
+  schema.Add("tracker.min_inliers", &tracker.min_inliers,
+             "landmarks of the local map that make a frame tracked", 6, 1000);
+
+  KeyframeOptions& keyframe = options->keyframe;
+  schema.Add("keyframe.min_tracked_share", &keyframe.min_tracked_share,
+             "a new keyframe when fewer of its reference's landmarks are tracked", 0.0, 1.0);
+  schema.Add("keyframe.max_motion", &keyframe.max_motion,
+             "a new keyframe after moving this share of the surroundings' median range", 0.0, 10.0);
+  schema.Add("keyframe.min_motion", &keyframe.min_motion,
+             "no new keyframe before moving this share of the surroundings' median range", 0.0,
+             10.0);
+  schema.Add("keyframe.mapping_frames", &keyframe.mapping_frames,
+             "frames after which the mapping of a keyframe is adopted", 1, 100);
+  schema.Add("keyframe.urgent_inliers", &keyframe.urgent_inliers,
+             "with fewer tracked landmarks it is adopted at the next frame", 0, 10000);
+  schema.Add("keyframe.local_keyframes", &keyframe.local_keyframes,
+             "neighbouring keyframes whose landmarks are searched in each frame", 1, 1000);
+
+  TriangulationOptions& triangulation = options->mapper.triangulation;
+  schema.Add("triangulation.max_neighbours", &triangulation.max_neighbours,
+             "keyframes with which a new one is matched", 1, 100);
+  schema.Add("triangulation.min_baseline", &triangulation.min_baseline,
+             "shortest baseline, share of the median range", 0.0, 1.0);
+  schema.Add("triangulation.max_plane_sigmas", &triangulation.max_plane_sigmas,
+             "farthest match from its epipolar plane, standard deviations", 0.5, 10.0);
+  schema.Add("triangulation.min_epipole_angle", &triangulation.min_epipole_angle,
+             "least angle to the epipole, radians", 0.0, 0.5);
+  schema.Add("triangulation.min_parallax", &triangulation.min_parallax,
+             "least parallax of a new landmark, radians", 0.0001, 0.5);
+  schema.Add("triangulation.min_parallax_sigmas", &triangulation.min_parallax_sigmas,
+             "least parallax of a new landmark, standard deviations", 0.0, 20.0);
+  schema.Add("triangulation.max_parallax", &triangulation.max_parallax,
+             "largest parallax of a new landmark, radians", 0.1, 1.5);
+  schema.Add("triangulation.max_scale_ratio", &triangulation.max_scale_ratio,
+             "largest disagreement between ranges and feature scales, a factor", 1.0, 10.0);
+
+  MapperOptions& mapper = options->mapper;
+  schema.Add("bundle.max_keyframes", &mapper.bundle.max_keyframes,
+             "keyframes that local bundle adjustment moves", 2, 1000);
+  schema.Add("bundle.max_fixed_keyframes", &mapper.bundle.max_fixed_keyframes,
+             "keyframes around them that hold the landmarks in place", 0, 1000);
+  schema.Add("bundle.min_shared", &mapper.bundle.min_shared,
+             "landmarks a keyframe must share with the newest to be moved", 1, 10000);
+  schema.Add("bundle.max_iterations", &mapper.bundle.max_iterations,
+             "iterations of local bundle adjustment", 1, 1000);
+  schema.Add("mapper.max_fusion_neighbours", &mapper.max_fusion_neighbours,
+             "keyframes with which a new one exchanges landmarks", 1, 100);
+  schema.Add("mapper.redundant_share", &mapper.redundant_share,
+             "a keyframe is dropped when three others see this share of its landmarks", 0.5, 1.0);
+  schema.Add("mapper.probation_keyframes", &mapper.probation_keyframes,
+             "keyframes after which a landmark must have been seen three times", 1, 100);
+  schema.Add("mapper.min_found_share", &mapper.min_found_share,
+             "share of the frames in which a landmark on probation must be found", 0.0, 1.0);
+
+  RecoveryOptions& recovery = options->recovery;
+  schema.Add("recovery.patience_frames", &recovery.patience_frames,
+             "frames after a loss before a new map may be begun", 1, 100000);
+  schema.Add("recovery.keyframes_per_frame", &recovery.keyframes_per_frame,
+             "keyframes in which a lost frame is sought", 1, 1000);
+  schema.Add("recovery.max_pending_frames", &recovery.max_pending_frames,
+             "frames without a pose that are remembered to be tracked later", 1, 100000);
+  return schema;
+}
+
+}  // namespace orb360

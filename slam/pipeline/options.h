@@ -1,0 +1,49 @@
+#pragma once
+
+#include "slam/features/orb_extractor.h"
+#include "slam/io/config.h"
+#include "slam/pipeline/initializer.h"
+#include "slam/pipeline/mapper.h"
+#include "slam/pipeline/tracker.h"
+
+namespace orb360 {
+
+struct KeyframeOptions {
+  /// A frame becomes a keyframe when it tracks less than this share of the landmarks that its
+  /// reference keyframe shares with others ...
+  double min_tracked_share = 0.75;
+  /// ... or has moved by this share of the median range of its surroundings.
+  double max_motion = 0.1;
+  /// Standing still adds nothing: the least motion, as above.
+  double min_motion = 0.01;
+  /// Frames after which the mapping of a keyframe is adopted; it runs beside tracking meanwhile.
+  int mapping_frames = 4;
+  /// With fewer tracked landmarks than this it is adopted at the next frame.
+  int urgent_inliers = 100;
+  /// Keyframes around the reference whose landmarks tracking searches.
+  int local_keyframes = 20;
+};
+
+struct RecoveryOptions {
+  /// Frames without a pose after which a new map is begun, if that succeeds before relocalization.
+  int patience_frames = 15;
+  /// Keyframes of the map that are tried for each lost frame.
+  int keyframes_per_frame = 3;
+  /// Frames without a pose that are remembered, to be tracked backwards once there is a map.
+  int max_pending_frames = 600;
+};
+
+/// Every setting of the system, by part.
+struct Options {
+  OrbOptions orb;
+  InitializerOptions initializer;
+  TrackerOptions tracker;
+  KeyframeOptions keyframe;
+  MapperOptions mapper;
+  RecoveryOptions recovery;
+};
+
+/// Registers every option under its key in a configuration file. `options` must outlive the schema.
+ConfigSchema MakeConfigSchema(Options* options);
+
+}  // namespace orb360

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "slam/features/features.h"
+#include "slam/geometry/rigid3.h"
+
+namespace orb360 {
+
+struct FramePose {
+  int index;         // in the sequence
+  double timestamp;  // s
+  int map;           // poses of different maps are related only by the motion assumed between them
+  Rigid3 world_from_camera;
+};
+
+struct CloudPoint {
+  Eigen::Vector3d position;
+  Color color;
+};
+
+/// One map of a reconstruction.
+struct MapSummary {
+  int first_frame = 0;  // indices of tracked frames
+  int last_frame = 0;
+  int tracked = 0;
+  int keyframes = 0;
+  int landmarks = 0;
+};
+
+/// Everything a run computed, in the internal conventions of frames (camera -X forward).
+struct Reconstruction {
+  std::vector<FramePose> frames;     // ordered by index
+  std::vector<FramePose> keyframes;  // ordered by index
+  std::vector<CloudPoint> landmarks;
+  std::vector<MapSummary> maps;
+  std::optional<int> initialized_at;  // frame at which the first map was made
+  int lost = 0;                       // times tracking was lost after that
+  double features_per_keyframe = 0;   // mean number matched to landmarks
+};
+
+}  // namespace orb360

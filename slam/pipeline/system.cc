@@ -1,0 +1,403 @@
+#include "slam/pipeline/system.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include <omp.h>
+#include <opencv2/imgproc.hpp>
+
+#include "slam/check.h"
+#include "slam/pipeline/initializer.h"
+#include "slam/pipeline/mapper.h"
+
+namespace orb360 {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double MillisecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+void SampleColors(const cv::Mat& bgr, Features* features) {
+  features->colors.resize(features->size());
+  for (int i = 0; i < features->size(); ++i) {
+    const Eigen::Vector2f& pixel = features->keypoints[i].pixel;
+    const cv::Vec3b& c =
+        bgr.at<cv::Vec3b>(std::clamp(static_cast<int>(pixel.y()), 0, bgr.rows - 1),
+                          std::clamp(static_cast<int>(pixel.x()), 0, bgr.cols - 1));
+    features->colors[i] = {c[2], c[1], c[0]};
+  }
+}
+
+}  // namespace
+
+System::System(const EquirectangularCamera& camera, const Options& options, const cv::Mat& mask)
+    : camera_(camera),
+      options_(options),
+      mask_(mask),
+      extractor_(options.orb),
+      pixel_sigma_(camera.AngleOfPixels(options.orb.pixel_sigma)) {}
+
+System::~System() = default;
+
+FrameReport System::Process(const Frame& frame) {
+  ORB360_CHECK(frame.image.type() == CV_8UC3 && frame.image.cols == camera_.width() &&
+                   frame.image.rows == camera_.height(),
+               frame.image.type(), frame.image.cols, frame.image.rows);
+  FrameReport report;
+  const Clock::time_point start = Clock::now();
+  cv::Mat gray;
+  cv::cvtColor(frame.image, gray, cv::COLOR_BGR2GRAY);
+  auto features = std::make_shared<Features>(extractor_.Extract(gray, mask_));
+  SampleColors(frame.image, features.get());
+  report.timing_ms["extraction"] = MillisecondsSince(start);
+
+  ++num_processed_;
+  const Clock::time_point adoption = Clock::now();
+  if (job_ && num_processed_ >= job_->adopt_at) AdoptMapping();
+  report.timing_ms["adoption"] = MillisecondsSince(adoption);
+
+  const Clock::time_point tracking = Clock::now();
+  const PendingFrame pending{frame.index, frame.timestamp, std::move(features)};
+  switch (state_) {
+    case TrackingState::kInitializing:
+      InitializeMap(pending);
+      break;
+    case TrackingState::kTracking:
+      TrackFrame(pending);
+      break;
+    case TrackingState::kLost:
+      RecoverFrame(pending);
+      break;
+  }
+  if (state_ == TrackingState::kTracking && !job_) {
+    UpdateLocalMap();
+    if (NeedsKeyframe()) StartMapping();
+  }
+  report.timing_ms["tracking"] = MillisecondsSince(tracking);
+  report.timing_ms["frame"] = MillisecondsSince(start);
+
+  report.state = state_;
+  if (state_ == TrackingState::kTracking) {
+    report.world_from_camera = last_.world_from_camera;
+    report.num_inliers = last_.num_inliers;
+  }
+  report.map = static_cast<int>(finished_maps_.size());
+  if (!job_) {
+    num_keyframes_ = map_.num_keyframes();
+    num_landmarks_ = map_.num_landmarks();
+  }
+  report.num_keyframes = num_keyframes_;
+  report.num_landmarks = num_landmarks_;
+  return report;
+}
+
+// --- tracking ---------------------------------------------------------------------------------
+
+Rigid3 System::PredictPose(double timestamp) const {
+  if (!before_last_) return last_.world_from_camera;
+  const double elapsed = last_.timestamp - before_last_->timestamp;
+  if (elapsed == 0) return last_.world_from_camera;
+  // Constant velocity in the camera's frame.
+  const double ratio = (timestamp - last_.timestamp) / elapsed;
+  const Rigid3 motion = before_last_->world_from_camera.Inverse() * last_.world_from_camera;
+  return last_.world_from_camera *
+         Rigid3{ExpSo3(ratio * LogSo3(motion.rotation)), ratio * motion.translation};
+}
+
+void System::TrackFrame(const PendingFrame& frame) {
+  const auto track = [&] {
+    std::optional<TrackResult> result =
+        TrackFromPrediction(*frame.features, PredictPose(frame.timestamp), last_, local_,
+                            pixel_sigma_, options_.tracker);
+    if (!result) {
+      result = TrackWithoutPrediction(*frame.features, local_, pixel_sigma_, options_.tracker);
+    }
+    return result;
+  };
+  std::optional<TrackResult> result = track();
+  if (!result && job_) {
+    AdoptMapping();  // the newest landmarks may save the day
+    result = track();
+  }
+  if (result) {
+    AcceptTracking(frame, std::move(*result));
+    return;
+  }
+  state_ = TrackingState::kLost;
+  ++num_lost_;
+  lost_since_ = num_processed_;
+  relocalization_cursor_ = map_.keyframe_end() - 1;
+  reference_index_ = -1;
+  pending_.push_back(frame);
+}
+
+void System::AcceptTracking(const PendingFrame& frame, TrackResult result) {
+  expected_.insert(expected_.end(), result.expected.begin(), result.expected.end());
+  std::copy_if(result.landmarks.begin(), result.landmarks.end(), std::back_inserter(found_),
+               [](LandmarkId id) { return id != kNoId; });
+  before_last_ = std::move(last_);
+  last_ = {frame.index,
+           frame.timestamp,
+           frame.features,
+           result.world_from_camera,
+           std::move(result.landmarks),
+           result.num_inliers};
+  Place(frame.index, frame.timestamp, last_.world_from_camera);
+}
+
+void System::Place(int index, double timestamp, const Rigid3& world_from_camera) {
+  placements_[index] = {timestamp, static_cast<int>(finished_maps_.size()), local_.reference,
+                        local_.world_from_reference.Inverse() * world_from_camera};
+}
+
+// --- recovery ---------------------------------------------------------------------------------
+
+void System::RecoverFrame(const PendingFrame& frame) {
+  std::optional<TrackResult> result = Relocalize(*frame.features);
+  if (result) {
+    state_ = TrackingState::kTracking;
+    before_last_.reset();
+    AcceptTracking(frame, std::move(*result));
+    before_last_.reset();
+    TrackPendingBackwards(last_);
+    return;
+  }
+  if (num_processed_ - lost_since_ >= options_.recovery.patience_frames) {
+    InitializeMap(frame);
+  } else {
+    pending_.push_back(frame);
+  }
+}
+
+std::optional<TrackResult> System::Relocalize(const Features& features) {
+  std::optional<TrackResult> result =
+      TrackWithoutPrediction(features, local_, pixel_sigma_, options_.tracker);
+  for (int i = 0; !result && i < options_.recovery.keyframes_per_frame; ++i) {
+    // From the newest keyframe backwards, round and round; neighbours see the same.
+    constexpr int kStep = 3;
+    if (relocalization_cursor_ < 0) relocalization_cursor_ = map_.keyframe_end() - 1;
+    const KeyframeId id = map_.LivingKeyframe(relocalization_cursor_);
+    relocalization_cursor_ -= kStep;
+    const LocalMap around = MakeLocalMap(map_, id, options_.keyframe.local_keyframes);
+    result = TrackWithoutPrediction(features, around, pixel_sigma_, options_.tracker);
+    if (result) local_ = around;
+  }
+  return result;
+}
+
+void System::TrackPendingBackwards(TrackedFrame last) {
+  std::optional<TrackedFrame> before;
+  std::sort(pending_.begin(), pending_.end(),
+            [](const PendingFrame& a, const PendingFrame& b) { return a.index > b.index; });
+  for (const PendingFrame& frame : pending_) {
+    Rigid3 predicted = last.world_from_camera;
+    if (before) {
+      predicted =
+          last.world_from_camera * (before->world_from_camera.Inverse() * last.world_from_camera);
+    }
+    std::optional<TrackResult> result = TrackFromPrediction(*frame.features, predicted, last,
+                                                            local_, pixel_sigma_, options_.tracker);
+    if (!result) {
+      result = TrackWithoutPrediction(*frame.features, local_, pixel_sigma_, options_.tracker);
+    }
+    if (!result) continue;
+    Place(frame.index, frame.timestamp, result->world_from_camera);
+    before = std::move(last);
+    last = {frame.index,
+            frame.timestamp,
+            frame.features,
+            result->world_from_camera,
+            std::move(result->landmarks),
+            result->num_inliers};
+  }
+  pending_.clear();
+}
+
+// --- initialization ---------------------------------------------------------------------------
+
+void System::InitializeMap(const PendingFrame& frame) {
+  const auto find_reference = [&] {
+    return std::find_if(pending_.begin(), pending_.end(),
+                        [&](const PendingFrame& p) { return p.index == reference_index_; });
+  };
+  for (int attempt = 0; attempt < 2 && !pending_.empty(); ++attempt) {
+    auto reference = find_reference();
+    if (reference == pending_.end()) reference = std::prev(pending_.end());
+    reference_index_ = reference->index;
+    const InitializationResult result =
+        InitializeFromTwoViews(*reference->features, *frame.features, options_.initializer);
+    if (result.map) {
+      CreateMap(*reference, frame, *result.map);
+      return;
+    }
+    if (result.failure == InitializationFailure::kLittleParallax) break;
+    if (reference_index_ == pending_.back().index) break;
+    reference_index_ = pending_.back().index;  // once more with the frame just before
+  }
+  pending_.push_back(frame);
+  if (static_cast<int>(pending_.size()) > options_.recovery.max_pending_frames) {
+    pending_.pop_front();
+  }
+}
+
+void System::CreateMap(const PendingFrame& first, const PendingFrame& second,
+                       const TwoViewMap& views) {
+  Map map;
+  const KeyframeId keyframe1 =
+      map.AddKeyframe(first.index, first.timestamp, Rigid3(), first.features);
+  const KeyframeId keyframe2 =
+      map.AddKeyframe(second.index, second.timestamp, views.world_from_camera2, second.features);
+  for (const TwoViewMap::Point& point : views.points) {
+    const LandmarkId landmark =
+        map.AddLandmark(point.position, second.features->colors[point.feature2]);
+    map.AddObservation(landmark, keyframe1, point.feature1);
+    map.AddObservation(landmark, keyframe2, point.feature2);
+    map.UpdateAppearance(landmark);
+  }
+  TriangulateNewLandmarks(keyframe2, options_.mapper.triangulation, &map);
+  AdjustGlobally({.max_iterations = 20}, &map);
+
+  // Gauge: the surroundings are one unit of length away; a later map goes on where the last pose
+  // of the one before was, in its scale.
+  Similarity3 gauge;
+  gauge.scale = 1.0 / map.MedianRange(keyframe2);
+  if (initialized_at_) {
+    gauge.scale *= local_.median_range;
+    gauge.rotation = last_.world_from_camera.rotation;
+    gauge.translation = last_.world_from_camera.translation;
+    finished_maps_.push_back(std::move(map_));
+  } else {
+    initialized_at_ = second.index;
+  }
+  map.Transform(gauge);
+  map_ = std::move(map);
+
+  state_ = TrackingState::kTracking;
+  local_ = MakeLocalMap(map_, keyframe2, options_.keyframe.local_keyframes);
+  expected_.clear();
+  found_.clear();
+  before_last_.reset();
+  last_ = {second.index,
+           second.timestamp,
+           second.features,
+           map_.keyframe(keyframe2).world_from_camera,
+           map_.keyframe(keyframe2).landmarks,
+           0};
+  last_.num_inliers = static_cast<int>(std::count_if(last_.landmarks.begin(), last_.landmarks.end(),
+                                                     [](LandmarkId id) { return id != kNoId; }));
+  Place(first.index, first.timestamp, map_.keyframe(keyframe1).world_from_camera);
+  Place(second.index, second.timestamp, last_.world_from_camera);
+  std::erase_if(pending_,
+                [index = first.index](const PendingFrame& p) { return p.index == index; });
+  TrackPendingBackwards(last_);
+}
+
+// --- mapping ----------------------------------------------------------------------------------
+
+bool System::NeedsKeyframe() const {
+  const KeyframeOptions& options = options_.keyframe;
+  const double motion =
+      (last_.world_from_camera.translation - local_.world_from_reference.translation).norm() /
+      std::max(local_.median_range, 1e-12);
+  if (motion < options.min_motion) return false;
+  return motion > options.max_motion ||
+         last_.num_inliers < options.min_tracked_share * local_.reference_matches ||
+         last_.num_inliers < options.urgent_inliers;
+}
+
+void System::StartMapping() {
+  const bool urgent = last_.num_inliers < options_.keyframe.urgent_inliers;
+  TrackedFrame keyframe = last_;
+  for (LandmarkId& id : keyframe.landmarks) id = map_.Resolve(id);
+  // The map moves into the job and comes back with its result.
+  auto integrate = [map = std::move(map_), keyframe, options = options_.mapper]() mutable {
+    omp_set_num_threads(1);  // the other core goes on tracking
+    IntegrateKeyframe(keyframe, options, &map);
+    return std::move(map);
+  };
+  map_ = Map();
+  job_ = MappingJob{std::async(std::launch::async, std::move(integrate)), std::move(keyframe),
+                    num_processed_ + (urgent ? 1 : options_.keyframe.mapping_frames)};
+}
+
+void System::AdoptMapping() {
+  map_ = job_->map.get();
+  const KeyframeId id = map_.keyframe_end() - 1;
+  // What was tracked meanwhile moves along with the keyframe.
+  const Rigid3 correction =
+      map_.keyframe(id).world_from_camera * job_->frame.world_from_camera.Inverse();
+  job_.reset();
+  last_.world_from_camera = correction * last_.world_from_camera;
+  if (before_last_) before_last_->world_from_camera = correction * before_last_->world_from_camera;
+  for (LandmarkId& landmark : last_.landmarks) landmark = map_.Resolve(landmark);
+  CountSightings(&map_);
+  local_ = MakeLocalMap(map_, id, options_.keyframe.local_keyframes);
+}
+
+void System::CountSightings(Map* map) {
+  for (const LandmarkId id : expected_) {
+    const LandmarkId now = map->Resolve(id);
+    if (now != kNoId) ++map->landmark(now).visible;
+  }
+  for (const LandmarkId id : found_) {
+    const LandmarkId now = map->Resolve(id);
+    if (now != kNoId) ++map->landmark(now).found;
+  }
+  expected_.clear();
+  found_.clear();
+}
+
+void System::UpdateLocalMap() {
+  CountSightings(&map_);
+  const std::vector<Map::Covisible> nearest = map_.FindCovisible(last_.landmarks, 1);
+  if (nearest.empty() || nearest.front().keyframe == local_.reference) return;
+  local_ = MakeLocalMap(map_, nearest.front().keyframe, options_.keyframe.local_keyframes);
+}
+
+// --- result -----------------------------------------------------------------------------------
+
+Reconstruction System::Finish() {
+  if (job_) AdoptMapping();
+  if (initialized_at_) finished_maps_.push_back(std::move(map_));
+  map_ = Map();
+
+  Reconstruction result;
+  result.initialized_at = initialized_at_;
+  result.lost = num_lost_;
+  result.maps.resize(finished_maps_.size());
+  for (const auto& [index, placement] : placements_) {
+    const Map& map = finished_maps_[placement.map];
+    result.frames.push_back({index, placement.timestamp, placement.map,
+                             map.PoseOf(placement.reference) * placement.reference_from_camera});
+    MapSummary& summary = result.maps[placement.map];
+    if (summary.tracked++ == 0) summary.first_frame = index;
+    summary.last_frame = index;
+  }
+  int64_t matched = 0;
+  for (size_t m = 0; m < finished_maps_.size(); ++m) {
+    const Map& map = finished_maps_[m];
+    result.maps[m].keyframes = map.num_keyframes();
+    result.maps[m].landmarks = map.num_landmarks();
+    for (const KeyframeId id : map.KeyframeIds()) {
+      const Keyframe& keyframe = map.keyframe(id);
+      result.keyframes.push_back({keyframe.frame_index, keyframe.timestamp, static_cast<int>(m),
+                                  keyframe.world_from_camera});
+      matched += std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
+                               [](LandmarkId l) { return l != kNoId; });
+    }
+    for (LandmarkId id = 0; id < map.landmark_end(); ++id) {
+      if (!map.HasLandmark(id)) continue;
+      result.landmarks.push_back({map.landmark(id).position, map.landmark(id).color});
+    }
+  }
+  std::sort(result.keyframes.begin(), result.keyframes.end(),
+            [](const FramePose& a, const FramePose& b) { return a.index < b.index; });
+  if (!result.keyframes.empty()) {
+    result.features_per_keyframe = matched / static_cast<double>(result.keyframes.size());
+  }
+  return result;
+}
+
+}  // namespace orb360

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <deque>
+#include <future>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "slam/features/orb_extractor.h"
+#include "slam/io/frame_source.h"
+#include "slam/map/map.h"
+#include "slam/pipeline/local_map.h"
+#include "slam/pipeline/options.h"
+#include "slam/pipeline/reconstruction.h"
+#include "slam/pipeline/tracker.h"
+
+namespace orb360 {
+
+enum class TrackingState { kInitializing, kTracking, kLost };
+
+/// What became of one frame.
+struct FrameReport {
+  TrackingState state = TrackingState::kInitializing;
+  std::optional<Rigid3> world_from_camera;  // as known now; Finish() has the final pose
+  int map = 0;
+  int num_inliers = 0;
+  int num_keyframes = 0;  // of the present map, as far as it is adopted
+  int num_landmarks = 0;
+  /// Wall time by stage, ms: "extraction", "tracking", "adoption" (waiting for mapping) and
+  /// "frame" for all together.
+  std::map<std::string, double> timing_ms;
+};
+
+/// The whole system: frames in, poses and a map out.
+///
+/// Deterministic for any number of threads: the map has one owner. While a new keyframe is mapped
+/// the map belongs to that job, which hands it back at a frame fixed when the job began; tracking
+/// meanwhile uses a copy of the map's neighbourhood.
+class System {
+ public:
+  /// `mask`: CV_8U of the frames' size, 0 where features are left out; may be empty.
+  System(const EquirectangularCamera& camera, const Options& options, const cv::Mat& mask);
+  ~System();
+  System(const System&) = delete;
+  System& operator=(const System&) = delete;
+
+  /// The next frame; timestamps must grow. Throws ContractError for an image of another size or
+  /// type than 8-bit BGR.
+  FrameReport Process(const Frame& frame);
+
+  /// Waits for mapping and returns everything computed. The system takes no further frames.
+  Reconstruction Finish();
+
+ private:
+  struct PendingFrame {  // without a pose so far
+    int index;
+    double timestamp;
+    std::shared_ptr<const Features> features;
+  };
+  struct MappingJob {
+    std::future<Map> map;
+    TrackedFrame frame;  // the keyframe as it was tracked
+    int adopt_at;        // value of num_processed_ at which it is due
+  };
+  /// A pose relative to a keyframe, so that it follows the keyframe's corrections.
+  struct Placement {
+    double timestamp;
+    int map;
+    KeyframeId reference;
+    Rigid3 reference_from_camera;
+  };
+
+  void TrackFrame(const PendingFrame& frame);
+  void RecoverFrame(const PendingFrame& frame);
+  void InitializeMap(const PendingFrame& frame);
+  std::optional<TrackResult> Relocalize(const Features& features);
+  void AcceptTracking(const PendingFrame& frame, TrackResult result);
+  void TrackPendingBackwards(TrackedFrame last);
+  void CreateMap(const PendingFrame& first, const PendingFrame& second,
+                 const struct TwoViewMap& views);
+  Rigid3 PredictPose(double timestamp) const;
+  bool NeedsKeyframe() const;
+  void StartMapping();
+  void AdoptMapping();
+  void CountSightings(Map* map);
+  void UpdateLocalMap();
+  void Place(int index, double timestamp, const Rigid3& world_from_camera);
+
+  const EquirectangularCamera camera_;
+  const Options options_;
+  const cv::Mat mask_;
+  const OrbExtractor extractor_;
+  const double pixel_sigma_;  // rad, on pyramid level 0
+
+  TrackingState state_ = TrackingState::kInitializing;
+  int num_processed_ = 0;
+  int num_keyframes_ = 0;  // of the map when it was last here
+  int num_landmarks_ = 0;
+  int num_lost_ = 0;
+  int lost_since_ = 0;
+  std::optional<int> initialized_at_;  // frame index
+
+  Map map_;  // empty while a job has it
+  std::optional<MappingJob> job_;
+  std::vector<Map> finished_maps_;
+  LocalMap local_;
+  TrackedFrame last_;
+  std::optional<TrackedFrame> before_last_;
+  std::vector<LandmarkId> expected_;  // since the map was last here, see Landmark::visible
+  std::vector<LandmarkId> found_;
+
+  std::deque<PendingFrame> pending_;
+  int reference_index_ = -1;  // frame index of the initializer's first view
+  KeyframeId relocalization_cursor_ = 0;
+  std::map<int, Placement> placements_;  // by frame index
+};
+
+}  // namespace orb360
