@@ -1,0 +1,158 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+
+namespace orb360 {
+
+/// What every robust estimate on bearings is asked for. Errors are angles, measured in standard
+/// deviations of the bearings' own noise, so that one threshold suits every feature.
+struct RansacOptions {
+  /// Angular noise in radians (standard deviation in each direction) of a bearing that comes
+  /// without its own: one pixel of a 2048 pixels wide panorama.
+  double sigma = 0.003;
+  /// A correspondence is an inlier below this many standard deviations: 3 keeps 99 % of the right
+  /// ones, of one or two degrees of freedom.
+  double max_error = 3.0;
+  /// Fewer inliers than this are no result. Among 1000 wrong matches about 10 fit any epipolar
+  /// geometry by chance.
+  int min_inliers = 12;
+  /// Sampling ends when a sample without outliers has been drawn with this probability, ...
+  double confidence = 0.999;
+  /// ... or after this many samples: enough for 60 % of outliers in samples of five.
+  int max_iterations = 700;
+  /// The same seed gives the same result.
+  uint64_t seed = 1;
+};
+
+/// Angular noise of each correspondence: a span as long as the data, or an empty one for
+/// RansacOptions::sigma throughout.
+using Sigmas = std::span<const double>;
+
+/// Tukey's biweight loss, by which models are compared and refined: grows smoothly to 1 at 1.5
+/// times the inliers' threshold, by default 4.5 standard deviations, where a fit is 95 % as
+/// efficient as least squares on Gaussian noise. Takes squared errors in standard deviations.
+class TukeyLoss {
+ public:
+  /// `widening` > 1 catches correspondences that a model still to be refined is far from.
+  explicit TukeyLoss(const RansacOptions& options, double widening = 1.0)
+      : is_wide_(widening > 1.0), limit_(std::pow(1.5 * widening * options.max_error, 2)) {}
+
+  bool is_wide() const { return is_wide_; }
+
+  /// Square of the error from which on the loss is 1.
+  double limit() const { return limit_; }
+  double Loss(double squared_error) const {
+    if (!(squared_error < limit_)) return 1.0;
+    const double rest = 1.0 - squared_error / limit_;
+    return 1.0 - rest * rest * rest;
+  }
+  /// Weight of the residual in least squares, the loss's derivative but for a constant.
+  double Weight(double squared_error) const {
+    if (!(squared_error < limit_)) return 0.0;
+    const double rest = 1.0 - squared_error / limit_;
+    return rest * rest;
+  }
+
+ private:
+  bool is_wide_;
+  double limit_;
+};
+
+namespace internal {
+
+inline double SigmaOf(Sigmas sigmas, size_t i, const RansacOptions& options) {
+  return sigmas.empty() ? options.sigma : sigmas[i];
+}
+
+/// SplitMix64 (Steele et al., Fast Splittable Pseudorandom Number Generators, OOPSLA 2014): unlike
+/// the standard library's distributions the same numbers on every platform.
+class SampleGenerator {
+ public:
+  explicit SampleGenerator(uint64_t seed) : state_(seed) {}
+
+  /// `kSize` different indices below `count`, which must not be smaller.
+  template <size_t kSize>
+  std::array<int, kSize> Draw(size_t count) {
+    std::array<int, kSize> sample;
+    for (size_t i = 0; i < kSize; ++i) {
+      bool fresh = false;
+      while (!fresh) {
+        sample[i] = static_cast<int>(((Next() >> 32) * count) >> 32);
+        fresh = true;
+        for (size_t j = 0; j < i; ++j) fresh = fresh && sample[j] != sample[i];
+      }
+    }
+    return sample;
+  }
+
+ private:
+  uint64_t Next() {
+    uint64_t z = state_ += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+  }
+
+  uint64_t state_;
+};
+
+}  // namespace internal
+
+/// Best model for `count` correspondences: random samples, each improvement refined at once
+/// (locally optimized RANSAC), all in one fixed order. Models are compared by the sum of TukeyLoss.
+///
+/// `solve(sample, consider)` calls `consider(model)` for each model through `kSampleSize` indices.
+/// `error(model, i)` is the squared error in standard deviations, exact below TukeyLoss::limit
+/// (NaN: an outlier). `refine(model, loss)` is one step towards the least sum of losses.
+/// Empty when there are fewer correspondences than a sample takes or no model was found.
+template <typename Model, size_t kSampleSize, typename Solve, typename Error, typename Refine>
+std::optional<Model> Ransac(size_t count, const RansacOptions& options, const Solve& solve,
+                            const Error& error, const Refine& refine) {
+  if (count < kSampleSize) return std::nullopt;
+  const TukeyLoss loss(options);
+  const double inlier_limit = options.max_error * options.max_error;
+  std::optional<Model> best;
+  double best_loss = std::numeric_limits<double>::infinity();
+  double iterations_needed = options.max_iterations;
+
+  const auto is_best = [&](const Model& model) {
+    double sum = 0.0;
+    int inliers = 0;
+    for (size_t i = 0; i < count && sum < best_loss; ++i) {
+      const double squared = error(model, i);
+      sum += loss.Loss(squared);
+      inliers += squared < inlier_limit;
+    }
+    if (!(sum < best_loss)) return false;
+    best = model;
+    best_loss = sum;
+    const double all_inliers = std::pow(static_cast<double>(inliers) / count, kSampleSize);
+    iterations_needed =
+        all_inliers < 1.0 ? std::log(1.0 - options.confidence) / std::log1p(-all_inliers) : 0.0;
+    return true;
+  };
+  // A model through few noisy correspondences is far from most: the loss starts wide.
+  const std::array<TukeyLoss, 4> narrowing = {TukeyLoss(options, 4.0), TukeyLoss(options, 2.0),
+                                              loss, loss};
+  internal::SampleGenerator generator(options.seed);
+  for (int i = 0; i < options.max_iterations && i < iterations_needed; ++i) {
+    bool improved = false;
+    solve(generator.Draw<kSampleSize>(count),
+          [&](const Model& model) { improved = is_best(model) || improved; });
+    if (!improved) continue;
+    Model refined = *best;
+    for (const TukeyLoss& step : narrowing) refined = refine(refined, step);
+    is_best(refined);
+  }
+  constexpr int kMaxFinalSteps = 10;
+  for (int i = 0; best && i < kMaxFinalSteps && is_best(refine(*best, loss)); ++i) {
+  }
+  return best;
+}
+
+}  // namespace orb360
