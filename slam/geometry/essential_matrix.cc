@@ -154,6 +154,7 @@ Model Refine(const Correspondences& data, const Model& model, const TukeyLoss& l
         variance1 * (1.0 - along2 * along2) + variance2 * (1.0 - along1 * along1);
     const double scale = 1.0 / std::sqrt(variance);
     const double residual = triple * scale;
+    // The variance's derivative keeps the estimate unbiased at low parallax:
     // d variance = -2 along2 variance1 d along2 - 2 along1 variance2 d along1
     const double by_along = residual * scale * scale;
     Vector5d jacobian;

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
+
+#include "slam/check.h"
 
 namespace orb360 {
 
@@ -23,8 +26,9 @@ struct RansacOptions {
   int min_inliers = 12;
   /// Sampling ends when a sample without outliers has been drawn with this probability, ...
   double confidence = 0.999;
-  /// ... or after this many samples: enough for 60 % of outliers in samples of five.
-  int max_iterations = 700;
+  /// ... supposing that at least this share of the correspondences is right: 0.4 allows 40 samples
+  /// of two, 105 of three, 672 of five.
+  double min_inlier_share = 0.4;
   /// The same seed gives the same result.
   uint64_t seed = 1;
 };
@@ -114,11 +118,17 @@ template <typename Model, size_t kSampleSize, typename Solve, typename Error, ty
 std::optional<Model> Ransac(size_t count, const RansacOptions& options, const Solve& solve,
                             const Error& error, const Refine& refine) {
   if (count < kSampleSize) return std::nullopt;
+  ORB360_CHECK(options.min_inlier_share > 0.0, options.min_inlier_share);
   const TukeyLoss loss(options);
   const double inlier_limit = options.max_error * options.max_error;
   std::optional<Model> best;
   double best_loss = std::numeric_limits<double>::infinity();
-  double iterations_needed = options.max_iterations;
+  // How often to draw until a sample is free of outliers with the wanted confidence.
+  const auto iterations_for = [&](double inlier_share) {
+    const double all_right = std::pow(inlier_share, kSampleSize);
+    return all_right < 1.0 ? std::log(1.0 - options.confidence) / std::log1p(-all_right) : 0.0;
+  };
+  double iterations_needed = iterations_for(options.min_inlier_share);
 
   const auto is_best = [&](const Model& model) {
     double sum = 0.0;
@@ -131,16 +141,15 @@ std::optional<Model> Ransac(size_t count, const RansacOptions& options, const So
     if (!(sum < best_loss)) return false;
     best = model;
     best_loss = sum;
-    const double all_inliers = std::pow(static_cast<double>(inliers) / count, kSampleSize);
-    iterations_needed =
-        all_inliers < 1.0 ? std::log(1.0 - options.confidence) / std::log1p(-all_inliers) : 0.0;
+    const double inlier_share = static_cast<double>(inliers) / count;
+    iterations_needed = iterations_for(std::max(inlier_share, options.min_inlier_share));
     return true;
   };
   // A model through few noisy correspondences is far from most: the loss starts wide.
   const std::array<TukeyLoss, 4> narrowing = {TukeyLoss(options, 4.0), TukeyLoss(options, 2.0),
                                               loss, loss};
   internal::SampleGenerator generator(options.seed);
-  for (int i = 0; i < options.max_iterations && i < iterations_needed; ++i) {
+  for (int i = 0; i < iterations_needed; ++i) {
     bool improved = false;
     solve(generator.Draw<kSampleSize>(count),
           [&](const Model& model) { improved = is_best(model) || improved; });

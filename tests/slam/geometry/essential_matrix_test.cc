@@ -164,6 +164,19 @@ TEST(EstimateRelativePose, WeighsEveryFeatureByItsOwnNoise) {
   EXPECT_GT(found->num_inliers, 0.98 * 600);
 }
 
+TEST(EstimateRelativePose, EachCameraMayHaveItsOwnNoise) {
+  RandomGeometry random(14);
+  TwoViews views = MakeTwoViews({random.Rotation(0.5), random.Bearing()}, {.sigma = 1e-4}, &random);
+  for (Vector3d& bearing : views.bearings2) bearing = random.Noisy(bearing, 1e-2);
+  const std::vector<double> fine(300, 1e-4), coarse(300, 1e-2);
+  const auto found = EstimateRelativePose(views.bearings1, views.bearings2, fine, coarse);
+  ASSERT_TRUE(found);
+  EXPECT_GT(found->num_inliers, 0.98 * 300);
+  const auto reverse = EstimateRelativePose(views.bearings2, views.bearings1, coarse, fine);
+  ASSERT_TRUE(reverse);
+  EXPECT_GT(reverse->num_inliers, 0.98 * 300);
+}
+
 TEST(EstimateRelativePose, MedianParallaxIsThatOfThePointsWhateverTheRotation) {
   RandomGeometry random(9);
   const TwoViews views = MakeTwoViews({random.Rotation(2.0), Vector3d(0, 0.2, 0)},

@@ -34,7 +34,8 @@ TEST(EstimateRotation, ErrorStaysWithinWhatTheNoisePredicts) {
   for (const double outliers : {0.0, 0.3, 0.5, 0.7}) {
     const TwoViews views = MakeTwoViews({random.Rotation(), Vector3d::Zero()},
                                         {.sigma = kSigma, .outlier_share = outliers}, &random);
-    const auto found = EstimateRotation(views.bearings1, views.bearings2, {.sigma = kSigma});
+    const auto found = EstimateRotation(views.bearings1, views.bearings2,
+                                        {.sigma = kSigma, .min_inlier_share = 0.2});
     ASSERT_TRUE(found);
     // Each axis is told by two thirds of 2 n tangent components of noise sqrt(2) sigma; five times
     // the norm of three of them.
