@@ -1,0 +1,41 @@
+#include "slam/io/depth_image.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include "slam/check.h"
+#include "tests/slam/io/temp_folder.h"
+
+namespace orb360 {
+namespace {
+
+TEST(DepthImage, KeepsRangesToTwoMillimetresAndDropsWhatItCannotHold) {
+  const TempFolder folder;
+  const cv::Mat range =
+      (cv::Mat_<float>(2, 4) << 0.0f, 1.0f, 12.3456f, 255.99f, 256.0f, -3.0f, NAN, INFINITY);
+  WriteDepthImage(folder / "d.png", range);
+  const cv::Mat raw = cv::imread((folder / "d.png").string(), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(raw.type(), CV_16UC1);
+  EXPECT_EQ(raw.at<std::uint16_t>(0, 1), 256);
+  const cv::Mat read = ReadDepthImage(folder / "d.png");
+  ASSERT_EQ(read.type(), CV_32FC1);
+  for (int column = 0; column < 4; ++column) {
+    EXPECT_NEAR(read.at<float>(0, column), range.at<float>(0, column), 0.00196f);
+    EXPECT_EQ(read.at<float>(1, column), 0.0f);
+  }
+}
+
+TEST(DepthImage, RefusesAPicture) {
+  const TempFolder folder;
+  cv::imwrite((folder / "rgb.png").string(), cv::Mat(4, 8, CV_8UC3, cv::Scalar(1, 2, 3)));
+  for (const char* name : {"rgb.png", "absent.png"}) {
+    EXPECT_THAT(MessageOf<UserError>([&] { ReadDepthImage(folder / name); }),
+                testing::HasSubstr(std::string(name) + ": is not a depth image"));
+  }
+}
+
+}  // namespace
+}  // namespace orb360
