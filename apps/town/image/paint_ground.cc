@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <cmath>
+
+#include "apps/town/image/noise.h"
+#include "apps/town/image/paint.h"
+
+namespace orb360::town {
+namespace {
+
+/// 1 on the lines where two cells of a distorted cellular noise meet, falling to 0 at `width`
+/// cells from it: cracks.
+float Cracks(float x, float y, int frequency, float width, uint32_t seed) {
+  const float bend = 0.35F / static_cast<float>(frequency);
+  const float wx = x + bend * TiledFbm(x, y, frequency * 2, 4, seed + 1);
+  const float wy = y + bend * TiledFbm(x, y, frequency * 2, 4, seed + 2);
+  const Cell cell = TiledCells(wx - std::floor(wx), wy - std::floor(wy), frequency, seed);
+  return 1 - SmoothStep(0, width, cell.second - cell.nearest);
+}
+
+}  // namespace
+
+Texture PaintAsphalt(uint32_t seed) {
+  return Texture::Paint(1024, [seed](float x, float y) {
+    // Stones of the aggregate, 1.5-3 cm apart, lighter than the bitumen around them.
+    const Cell stone = TiledCells(x, y, 320, seed);
+    const float stone_shade = static_cast<float>(stone.id & 255U) / 255;
+    float value = 0.085F + 0.06F * (1 - SmoothStep(0.2F, 0.6F, stone.nearest)) * stone_shade;
+    value *= 1 + 0.22F * TiledFbm(x, y, 3, 7, seed + 10, 0.65F);
+    // Mended patches: darker, smoother, with a tar edge.
+    const Cell patch = TiledCells(x, y, 4, seed + 20);
+    if (patch.id % 5 == 0) {
+      const float inside = patch.second - patch.nearest;
+      if (inside > 0.12F) value = std::lerp(value, 0.055F, 0.55F);
+      if (inside > 0.09F && inside < 0.13F) value *= 0.55F;
+    }
+    const float wear = SmoothStep(-0.1F, 0.5F, TiledFbm(x, y, 2, 3, seed + 30));
+    value *= 1 - 0.75F * wear * Cracks(x, y, 6, 0.022F, seed + 40);
+    value *= 1 - 0.35F * Cracks(x, y, 24, 0.03F, seed + 50) *
+                     SmoothStep(0.3F, 0.8F, TiledFbm(x, y, 2, 3, seed + 60));
+    // Oil drips and chewing gum.
+    const Cell spot = TiledCells(x, y, 22, seed + 70);
+    const float spot_radius = 0.05F + 0.15F * static_cast<float>(spot.id >> 8 & 255U) / 255;
+    if (spot.id % 3 == 0)
+      value *= 1 - 0.4F * (1 - SmoothStep(0.4F * spot_radius, spot_radius, spot.nearest));
+    const float tone = 0.03F * TiledFbm(x, y, 2, 4, seed + 80);
+    return Rgba{value * (1.02F + tone), value, value * (0.97F - tone), 1};
+  });
+}
+
+Texture PaintPavingSlabs(uint32_t seed) {
+  return Texture::Paint(1024, [seed](float x, float y) {
+    constexpr int kRows = 8;
+    const int row = static_cast<int>(y * kRows);
+    const float shifted = x * kRows + (row % 2 == 0 ? 0.0F : 0.5F);
+    const int column = static_cast<int>(shifted) % kRows;
+    const float u = shifted - std::floor(shifted);
+    const float v = y * kRows - static_cast<float>(row);
+    const float edge = std::min(std::min(u, 1 - u), std::min(v, 1 - v));
+    const float shade = LatticeValue(column, row, seed);
+    float value = 0.27F * (0.78F + 0.35F * shade);
+    value *= 1 + 0.10F * TiledFbm(x, y, 128, 3, seed + 1, 0.8F) +
+             0.14F * TiledFbm(x, y, 5, 6, seed + 2, 0.6F);
+    if (LatticeValue(column, row, seed + 3) > 0.9F) {
+      value *= 1 - 0.6F * Cracks(x, y, 12, 0.05F, seed + 4);
+    }
+    value *=
+        0.35F + 0.65F * SmoothStep(0.005F, 0.03F, edge + 0.008F * TiledFbm(x, y, 64, 2, seed + 5));
+    const Cell gum = TiledCells(x, y, 30, seed + 6);
+    if (gum.id % 4 == 0) value *= 1 - 0.45F * (1 - SmoothStep(0.1F, 0.2F, gum.nearest));
+    const float tone = 0.05F * (LatticeValue(column, row, seed + 7) - 0.5F);
+    return Rgba{value * (1.04F + tone), value, value * (0.93F - tone), 1};
+  });
+}
+
+Texture PaintSetts(uint32_t seed) {
+  return Texture::Paint(1024, [seed](float x, float y) {
+    constexpr int kRows = 32;
+    const int row = static_cast<int>(y * kRows);
+    const float v = y * kRows - static_cast<float>(row);
+    const float shifted = x * kRows + LatticeValue(row, 0, seed) +
+                          0.12F * GradientNoise(x * kRows, y * kRows, kRows, seed + 1);
+    const float wrapped = shifted - kRows * std::floor(shifted / kRows);
+    const int column = static_cast<int>(wrapped) % kRows;
+    const float u = wrapped - std::floor(wrapped);
+    const float edge = std::min(std::min(u, 1 - u), std::min(v, 1 - v));
+    const float dome = SmoothStep(0.02F, 0.25F, edge);
+    float value = 0.13F + 0.16F * LatticeValue(column, row, seed + 2);
+    value *= (0.3F + 0.7F * dome) * (1 + 0.15F * TiledFbm(x, y, 100, 4, seed + 3, 0.8F) +
+                                     0.12F * TiledFbm(x, y, 4, 4, seed + 4));
+    const float tone = 0.15F * (LatticeValue(column, row, seed + 5) - 0.4F);
+    return Rgba{value * (1 + tone), value, value * (1 - tone), 1};
+  });
+}
+
+Texture PaintConcrete(uint32_t seed) {
+  return Texture::Paint(512, [seed](float x, float y) {
+    float value = 0.33F * (1 + 0.16F * TiledFbm(x, y, 3, 8, seed, 0.7F) +
+                           0.06F * TiledFbm(x, y, 128, 2, seed + 1));
+    value *= 1 - 0.3F * Cracks(x, y, 5, 0.02F, seed + 2) *
+                     SmoothStep(0, 0.5F, TiledFbm(x, y, 2, 3, seed + 3));
+    const Cell hole = TiledCells(x, y, 60, seed + 4);
+    if (hole.id % 4 == 0) value *= 1 - 0.4F * (1 - SmoothStep(0.08F, 0.2F, hole.nearest));
+    return Rgba{value * 1.02F, value, value * 0.95F, 1};
+  });
+}
+
+Texture PaintGrass(uint32_t seed) {
+  return Texture::Paint(1024, [seed](float x, float y) {
+    const float blades = TiledFbm(x, y, 160, 2, seed, 0.9F);
+    const float clumps = TiledFbm(x, y, 12, 5, seed + 1, 0.65F);
+    const float dry = SmoothStep(0.1F, 0.9F, TiledFbm(x, y, 3, 5, seed + 2));
+    const Rgba green = Mix(Srgb(52, 78, 28), Srgb(98, 120, 48), 0.5F + 0.5F * clumps);
+    const Rgba colour = Mix(green, Srgb(140, 130, 82), 0.6F * dry);
+    return std::max(0.15F, 1 + 0.4F * blades + 0.2F * clumps) * colour;
+  });
+}
+
+Texture PaintRoadPaint(uint32_t seed) {
+  return Texture::Paint(512, [seed](float x, float y) {
+    const float wear = TiledFbm(x, y, 6, 7, seed, 0.75F);
+    const float value =
+        0.62F * (1 + 0.12F * TiledFbm(x, y, 20, 4, seed + 1)) - 0.18F * SmoothStep(0, 1, wear);
+    const float cracked = Cracks(x, y, 10, 0.03F, seed + 2);
+    return Rgba{value, value, value * 0.96F, wear + 0.8F * cracked > 0.75F ? 0.0F : 1.0F};
+  });
+}
+
+}  // namespace orb360::town

@@ -1,0 +1,93 @@
+#include "apps/town/image/texture.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slam/check.h"
+
+namespace orb360::town {
+namespace {
+
+uint32_t Encode(const Rgba& c) {
+  const auto channel = [](float x) {
+    return static_cast<uint32_t>(std::clamp(x, 0.0F, 1.0F) * 255 + 0.5F);
+  };
+  return channel(std::sqrt(std::max(c.r, 0.0F))) | channel(std::sqrt(std::max(c.g, 0.0F))) << 8 |
+         channel(std::sqrt(std::max(c.b, 0.0F))) << 16 | channel(c.a) << 24;
+}
+
+/// Half the size by 2x2 means, colours weighted by coverage so that what lies outside a cut-out
+/// does not bleed into it.
+std::vector<Rgba> Halve(const std::vector<Rgba>& source, int width, int height) {
+  const int half_width = std::max(width / 2, 1);
+  const int half_height = std::max(height / 2, 1);
+  std::vector<Rgba> result(static_cast<size_t>(half_width) * static_cast<size_t>(half_height));
+  for (int y = 0; y < half_height; ++y) {
+    for (int x = 0; x < half_width; ++x) {
+      Rgba sum{0, 0, 0, 0};
+      float weight = 0;
+      for (int k = 0; k < 4; ++k) {
+        const int sx = std::min(2 * x + (k & 1), width - 1);
+        const int sy = std::min(2 * y + (k >> 1), height - 1);
+        const Rgba& c =
+            source[static_cast<size_t>(sy) * static_cast<size_t>(width) + static_cast<size_t>(sx)];
+        const float w = c.a + 1e-3F;
+        sum = {sum.r + w * c.r, sum.g + w * c.g, sum.b + w * c.b, sum.a + 0.25F * c.a};
+        weight += w;
+      }
+      result[static_cast<size_t>(y) * static_cast<size_t>(half_width) + static_cast<size_t>(x)] = {
+          sum.r / weight, sum.g / weight, sum.b / weight, sum.a};
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Rgba Srgb(int r, int g, int b) {
+  const auto decode = [](int value) {
+    const double x = value / 255.0;
+    return static_cast<float>(x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4));
+  };
+  return {decode(r), decode(g), decode(b), 1};
+}
+
+Texture Texture::Paint(int size, const std::function<Rgba(float, float)>& paint) {
+  std::vector<Rgba> texels(static_cast<size_t>(size) * static_cast<size_t>(size));
+#pragma omp parallel for schedule(dynamic, 8)
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      texels[static_cast<size_t>(y) * static_cast<size_t>(size) + static_cast<size_t>(x)] =
+          paint((static_cast<float>(x) + 0.5F) / static_cast<float>(size),
+                (static_cast<float>(y) + 0.5F) / static_cast<float>(size));
+    }
+  }
+  return Texture(size, size, std::move(texels));
+}
+
+Texture::Texture(int width, int height, std::vector<Rgba> texels) {
+  ORB360_CHECK(std::has_single_bit(static_cast<unsigned>(width)) &&
+                   std::has_single_bit(static_cast<unsigned>(height)) &&
+                   texels.size() == static_cast<size_t>(width) * static_cast<size_t>(height),
+               width, height, texels.size());
+  while (true) {
+    levels_.push_back({width, height, texels_.size()});
+    for (const Rgba& texel : texels) texels_.push_back(Encode(texel));
+    if (width == 1 && height == 1) break;
+    texels = Halve(texels, width, height);
+    width = std::max(width / 2, 1);
+    height = std::max(height / 2, 1);
+  }
+}
+
+float Texture::Coverage(float u, float v) const {
+  const Level& l = levels_.front();
+  const int x = FloorToInt(u * static_cast<float>(l.width)) & (l.width - 1);
+  const int y = FloorToInt(v * static_cast<float>(l.height)) & (l.height - 1);
+  return static_cast<float>(texels_[static_cast<size_t>(y) * static_cast<size_t>(l.width) +
+                                    static_cast<size_t>(x)] >>
+                            24) *
+         (1.0F / 255);
+}
+
+}  // namespace orb360::town

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <embree3/rtcore.h>
+
+#include "apps/town/world/town.h"
+
+namespace orb360::town {
+
+/// Number of rays traced together.
+inline constexpr int kPacket = 16;
+
+/// A handle of Embree's, released with its owner.
+template <typename T, void (*Release)(T)>
+class EmbreeHandle {
+ public:
+  EmbreeHandle() = default;
+  explicit EmbreeHandle(T handle) : handle_(handle) {}
+  EmbreeHandle(EmbreeHandle&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
+  EmbreeHandle& operator=(EmbreeHandle&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+  ~EmbreeHandle() {
+    if (handle_ != nullptr) Release(handle_);
+  }
+  T get() const { return handle_; }
+
+ private:
+  T handle_ = nullptr;
+};
+using Device = EmbreeHandle<RTCDevice, rtcReleaseDevice>;
+using Scene = EmbreeHandle<RTCScene, rtcReleaseScene>;
+
+/// What a ray hit: a triangle of a mesh, and the instance that placed the mesh, if any.
+struct SurfaceHit {
+  const Mesh* mesh;
+  const Instance* instance;  ///< null for a mesh that is part of the world itself
+  const Triangle* triangle;
+};
+
+/// Meshes and instances of models as ray-tracing structures. Keeps pointers to what it was made
+/// from. Building uses one thread, so that the structure (and the order in which surfaces at equal
+/// distances are found) is always the same.
+class RayScene {
+ public:
+  explicit RayScene(const Town& town);
+
+  /// Nearest hits of a packet; lanes with valid[i] == 0 are left alone.
+  void Intersect(const int* valid, RTCRayHit16* rays) const;
+  /// tfar becomes -infinity in the lanes whose ray meets anything.
+  void Occluded(const int* valid, RTCRay16* rays) const;
+  /// The surface in one lane of a packet which hit (geomID is not invalid).
+  SurfaceHit Resolve(const RTCHit16& hit, int lane) const;
+
+ private:
+  /// The triangles of a mesh from `first` on that are one geometry.
+  struct Part {
+    const Materials* materials;
+    const Mesh* mesh;
+    size_t first;
+  };
+  /// A mesh's opaque part and its part with cut-outs, by Embree's geomID.
+  using Parts = std::array<Part, 2>;
+
+  void AttachMesh(RTCScene scene, const Parts& parts) const;
+  static void RejectCutouts(const RTCFilterFunctionNArguments* arguments);
+
+  const Town* town_;
+  Device device_;
+  std::unique_ptr<Parts> fixed_parts_;  // Embree holds the addresses
+  std::vector<Parts> model_parts_;
+  std::vector<Scene> model_scenes_;
+  Scene scene_;
+};
+
+}  // namespace orb360::town

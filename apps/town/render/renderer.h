@@ -1,0 +1,21 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "apps/town/render/ray_scene.h"
+#include "apps/town/render/shading.h"
+#include "slam/geometry/camera.h"
+#include "slam/geometry/rigid3.h"
+
+namespace orb360::town {
+
+/// The panorama from a pose, 8-bit BGR, with four samples a pixel and a ray to a point of the
+/// sun's disc for each. The same bytes for any number of threads (OpenMP's current maximum).
+cv::Mat3b RenderColour(const RayScene& scene, const Shader& shader,
+                       const EquirectangularCamera& camera, const Rigid3& world_from_camera);
+
+/// The distance in metres along the ray through each pixel's centre, 0 where it meets nothing.
+cv::Mat1f RenderRange(const RayScene& scene, const EquirectangularCamera& camera,
+                      const Rigid3& world_from_camera);
+
+}  // namespace orb360::town

@@ -1,0 +1,103 @@
+#include "apps/town/render/shading.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace orb360::town {
+namespace {
+
+constexpr float kBlotchTile = 31.0F;  // metres across which the blotches repeat
+
+float Pow5(float x) { return x * x * x * x * x; }
+
+}  // namespace
+
+Shader::Shader(const Town& town, const Light& light, const Sky& sky)
+    : town_(&town), light_(&light), sky_(&sky) {}
+
+Surface Shader::Evaluate(const SurfaceHit& hit, float b, float c, const Vector3f& direction,
+                         float footprint, float level_offset) const {
+  const float a = 1 - b - c;
+  const Vertex& va = hit.mesh->vertices[hit.triangle->vertices[0]];
+  const Vertex& vb = hit.mesh->vertices[hit.triangle->vertices[1]];
+  const Vertex& vc = hit.mesh->vertices[hit.triangle->vertices[2]];
+  const Material& material = town_->materials[hit.triangle->material];
+  Surface surface;
+  surface.finish = material.finish;
+  Vector3f normal =
+      a * va.normal.cast<float>() + b * vb.normal.cast<float>() + c * vc.normal.cast<float>();
+  if (hit.instance != nullptr) normal = hit.instance->world_from_model.linear() * normal;
+  normal.normalize();
+  float facing = normal.dot(direction);
+  if (facing > 0) {
+    normal = -normal;
+    facing = -facing;
+  }
+  surface.normal = normal;
+  surface.openness = (a * static_cast<float>(va.openness) + b * static_cast<float>(vb.openness) +
+                      c * static_cast<float>(vc.openness)) *
+                     (1.0F / 255);
+
+  const Texture& texture = town_->materials.textures[material.texture];
+  const float u = a * va.u + b * vb.u + c * vc.u;
+  const float v = a * va.v + b * vb.v + c * vc.v;
+  // A tilted surface stretches the footprint one way by 1/cos: the geometric mean of both ways.
+  const float stretched = footprint / std::sqrt(std::max(-facing, 0.04F));
+  const float tiles = stretched * hit.triangle->tiles_per_metre;
+  const float level =
+      FastLog2(std::max(tiles * static_cast<float>(texture.width()), 1e-6F)) + level_offset;
+  const Rgba colour = texture.Sample(u, v, level);
+  Vector3f tint = (a * Vector3f(va.tint[0], va.tint[1], va.tint[2]) +
+                   b * Vector3f(vb.tint[0], vb.tint[1], vb.tint[2]) +
+                   c * Vector3f(vc.tint[0], vc.tint[1], vc.tint[2])) *
+                  (1.0F / 255);
+  tint = tint.cwiseProduct(tint);
+  if (material.finish == Finish::kPaint && hit.instance != nullptr) {
+    tint = tint.cwiseProduct(
+        Vector3f(hit.instance->tint.r, hit.instance->tint.g, hit.instance->tint.b));
+  }
+  surface.albedo = Vector3f(colour.r, colour.g, colour.b).cwiseProduct(tint);
+  if (material.blotches > 0) {
+    const Texture& blotches = town_->materials.textures[town_->materials.blotches_texture];
+    const float scale = 1 / (kBlotchTile * material.tiles_per_metre);
+    const float blotch_level =
+        FastLog2(std::max(stretched * static_cast<float>(blotches.width()) / kBlotchTile, 1e-6F)) +
+        level_offset;
+    const Rgba blotch = blotches.Sample(u * scale, v * scale, blotch_level);
+    surface.albedo *= 1 + material.blotches * (1.6F * (blotch.r - 0.5F) + 0.8F * (blotch.g - 0.5F));
+  }
+  const float sun_cosine = normal.dot(light_->to_sun);
+  surface.sun_cosine = material.finish == Finish::kFoliage
+                           ? 0.25F + (sun_cosine > 0 ? 0.55F * sun_cosine : -0.45F * sun_cosine)
+                           : std::max(sun_cosine, 0.0F);
+  return surface;
+}
+
+Vector3f Shader::Radiance(const Surface& surface, bool sunlit, const Vector3f& direction,
+                          float range) const {
+  const float up = 0.5F + 0.5F * surface.normal.z();
+  const Vector3f ambient = surface.openness * (up * sky_->mean() + (1 - up) * light_->ground) +
+                           (1 - surface.openness) * 0.45F * light_->ground;
+  Vector3f light = ambient;
+  if (sunlit) light += surface.sun_cosine * light_->sun;
+  Vector3f radiance = surface.albedo.cwiseProduct(light);
+  if (surface.finish == Finish::kGlass || surface.finish == Finish::kPaint) {
+    const float cosine = -surface.normal.dot(direction);
+    const bool glass = surface.finish == Finish::kGlass;
+    const float base = glass ? 0.10F : 0.04F;
+    const float fresnel = base + (1 - base) * Pow5(1 - std::clamp(cosine, 0.0F, 1.0F));
+    const Vector3f mirrored = direction + 2 * cosine * surface.normal;
+    Vector3f reflected =
+        mirrored.z() > 0 ? sky_->Radiance(mirrored).cwiseMin(3.0F) : light_->ground;
+    // Near the horizon a street reflects the houses opposite, not the sky.
+    const float open = std::clamp(mirrored.z() * 2.2F, 0.0F, 1.0F) * surface.openness;
+    reflected = open * reflected + (1 - open) * 0.8F * light_->ground;
+    radiance = (1 - fresnel) * (glass ? 0.55F : 1.0F) * radiance + fresnel * reflected;
+  } else if (surface.finish == Finish::kLamp) {
+    radiance += 0.7F * surface.albedo;
+  }
+  const float clear = std::exp(-range / light_->haze);
+  return clear * radiance + (1 - clear) * light_->horizon;
+}
+
+}  // namespace orb360::town

@@ -1,0 +1,146 @@
+#include "apps/town/render/sky.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "apps/town/image/noise.h"
+#include "apps/town/image/random.h"
+#include "slam/check.h"
+
+namespace orb360::town {
+namespace {
+
+constexpr int kSize = 1024;            // texels along a side of the map: 0.1 to 0.2 degrees each
+constexpr float kSunRadius = 0.0047F;  // radians
+constexpr float kPi = std::numbers::pi_v<float>;
+
+/// Direction of a point of the map, (x, y) in [-1, 1]²: the hemisphere's octahedron seen from
+/// above, turned by 45 degrees to fill the square.
+Vector3f DirectionOf(float x, float y) {
+  const float px = 0.5F * (x + y);
+  const float py = 0.5F * (x - y);
+  return Vector3f(px, py, 1 - std::abs(px) - std::abs(py)).normalized();
+}
+
+}  // namespace
+
+Light MakeLight(std::string_view name, uint64_t seed) {
+  Random random(seed ^ 0x11657);
+  const auto azimuth = static_cast<float>(random.Uniform(0, 2 * std::numbers::pi));
+  Light light;
+  light.name = name;
+  float elevation = 0;
+  if (name == "noon") {
+    elevation = static_cast<float>(random.Uniform(0.9, 1.1));
+    light.sun = {2.05F, 1.93F, 1.74F};
+    light.zenith = {0.22F, 0.38F, 0.72F};
+    light.horizon = {0.68F, 0.80F, 0.95F};
+    light.ground = {0.24F, 0.23F, 0.21F};
+    light.cloud_cover = 0.42F;
+  } else if (name == "morning") {
+    elevation = static_cast<float>(random.Uniform(0.38, 0.5));
+    light.sun = {2.1F, 1.72F, 1.28F};
+    light.zenith = {0.22F, 0.36F, 0.64F};
+    light.horizon = {0.85F, 0.84F, 0.82F};
+    light.ground = {0.20F, 0.18F, 0.16F};
+    light.cloud_cover = 0.35F;
+    light.haze = 500;
+  } else if (name == "sunset") {
+    elevation = static_cast<float>(random.Uniform(0.16, 0.24));
+    light.sun = {2.5F, 1.35F, 0.62F};
+    light.zenith = {0.20F, 0.28F, 0.50F};
+    light.horizon = {1.15F, 0.72F, 0.45F};
+    light.ground = {0.20F, 0.15F, 0.12F};
+    light.cloud_cover = 0.5F;
+    light.haze = 600;
+  } else if (name == "overcast") {
+    elevation = 0.8F;
+    light.zenith = {0.95F, 0.98F, 1.02F};
+    light.horizon = {0.75F, 0.79F, 0.84F};
+    light.ground = {0.22F, 0.22F, 0.21F};
+    light.cloud_cover = 1;
+    light.haze = 450;
+  } else {
+    throw UserError("unknown light '" + std::string(name) +
+                    "': use noon, morning, sunset or overcast");
+  }
+  light.to_sun = {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                  std::sin(elevation)};
+  return light;
+}
+
+Sky::Sky(const Light& light, uint64_t seed) : texels_(static_cast<size_t>(kSize) * kSize) {
+  const auto noise_seed = static_cast<uint32_t>(Hash(seed ^ 0x5c1));
+#pragma omp parallel for schedule(dynamic, 8)
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      const Vector3f direction = DirectionOf((static_cast<float>(x) + 0.5F) * 2 / kSize - 1,
+                                             (static_cast<float>(y) + 0.5F) * 2 / kSize - 1);
+      texels_[static_cast<size_t>(y) * kSize + static_cast<size_t>(x)] =
+          Compute(direction, light, noise_seed);
+    }
+  }
+  constexpr int kRings = 16;
+  constexpr int kSectors = 32;
+  for (int ring = 0; ring < kRings; ++ring) {  // equal steps of sin²: equal shares of irradiance
+    const float sine = std::sqrt((static_cast<float>(ring) + 0.5F) / kRings);
+    const float cosine = std::sqrt(1 - sine * sine);
+    for (int sector = 0; sector < kSectors; ++sector) {
+      const float angle = 2 * kPi * static_cast<float>(sector) / kSectors;
+      const Vector3f direction(sine * std::cos(angle), sine * std::sin(angle), cosine);
+      mean_ +=
+          Radiance(direction).cwiseMin(1.5F) / (kRings * kSectors);  // the sun is lit separately
+    }
+  }
+}
+
+Vector3f Sky::Compute(const Vector3f& direction, const Light& light, uint32_t seed) const {
+  const float height = std::max(direction.z(), 0.0F);
+  const float to_horizon = std::pow(1 - height, 4.0F);
+  const float cos_sun = std::clamp(direction.dot(light.to_sun), -1.0F, 1.0F);
+  const bool has_sun = light.sun.maxCoeff() > 0;
+  Vector3f colour = light.zenith + to_horizon * (light.horizon - light.zenith);
+  const Vector3f sun_colour = light.sun / std::max(light.sun.maxCoeff(), 1e-3F);
+  const float angle = std::acos(cos_sun);
+  if (has_sun)
+    colour += sun_colour * (0.5F * std::exp(-angle * 3.0F) + 0.9F * std::exp(-angle * 16.0F));
+  // Clouds on a curved layer above: noise over the point where the ray meets it.
+  const float distance = 1 / (height + 0.12F);
+  const float x = 0.06F * direction.x() * distance + 0.5F;
+  const float y = 0.06F * direction.y() * distance + 0.5F;
+  const auto density_at = [&](float px, float py) {
+    const float fbm = TiledFbm(px, py, 5, 7, seed, 0.58F) + 0.5F * TiledFbm(px, py, 2, 2, seed + 9);
+    return SmoothStep(1.1F - 2.2F * light.cloud_cover, 2.0F - 2.2F * light.cloud_cover,
+                      fbm + 0.35F);
+  };
+  const float density = density_at(x, y);
+  const float toward_sun = density_at(x + 0.012F * light.to_sun.x(), y + 0.012F * light.to_sun.y());
+  const float lit =
+      std::clamp(0.75F + 0.9F * (density - toward_sun) - 0.28F * density, 0.25F, 1.2F);
+  const Vector3f white = has_sun ? Vector3f(0.55F * light.horizon + 0.62F * light.sun / 1.9F)
+                                 : Vector3f(1.25F * light.horizon);
+  const float thin = density * (1 - 0.6F * to_horizon);
+  colour += thin * (lit * white - colour);
+  if (has_sun)
+    colour += 40 * sun_colour * (1 - SmoothStep(kSunRadius, 2 * kSunRadius, angle)) * (1 - thin);
+  return colour;
+}
+
+Vector3f Sky::Radiance(const Vector3f& direction) const {
+  const float z = std::max(direction.z(), 0.0F);
+  const float scale = 1 / (std::abs(direction.x()) + std::abs(direction.y()) + z + 1e-9F);
+  const float px = direction.x() * scale;
+  const float py = direction.y() * scale;
+  const float x = std::clamp((px + py + 1) * (0.5F * kSize) - 0.5F, 0.0F, kSize - 1.001F);
+  const float y = std::clamp((px - py + 1) * (0.5F * kSize) - 0.5F, 0.0F, kSize - 1.001F);
+  const auto x0 = static_cast<size_t>(x);
+  const auto y0 = static_cast<size_t>(y);
+  const float wx = x - static_cast<float>(x0);
+  const float wy = y - static_cast<float>(y0);
+  const Vector3f* row0 = texels_.data() + y0 * kSize + x0;
+  const Vector3f* row1 = row0 + kSize;
+  return (1 - wy) * ((1 - wx) * row0[0] + wx * row0[1]) + wy * ((1 - wx) * row1[0] + wx * row1[1]);
+}
+
+}  // namespace orb360::town

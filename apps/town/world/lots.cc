@@ -1,0 +1,111 @@
+#include "apps/town/world/lots.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "apps/town/world/ground.h"
+
+namespace orb360::town {
+namespace {
+
+/// A lot in the plan.
+struct Rectangle {
+  Vector2d corner;  ///< front left, seen from the street
+  Vector2d right;
+  Vector2d back;
+  double width;
+  double depth;
+
+  Vector2d At(double x, double y) const { return corner + x * right + y * back; }
+};
+
+/// Whether two rectangles overlap by more than `slack` metres (separating axes).
+bool Overlap(const Rectangle& a, const Rectangle& b, double slack) {
+  const auto separated = [slack](const Rectangle& r, const Rectangle& other) {
+    for (const auto& [axis, length] : {std::pair(r.right, r.width), std::pair(r.back, r.depth)}) {
+      double low = 1e30;
+      double high = -1e30;
+      for (const auto& [x, y] : {std::pair(0.0, 0.0),
+                                 {other.width, 0.0},
+                                 {0.0, other.depth},
+                                 {other.width, other.depth}}) {
+        const double along = (other.At(x, y) - r.corner).dot(axis);
+        low = std::min(low, along);
+        high = std::max(high, along);
+      }
+      if (high < slack || low > length - slack) return true;
+    }
+    return false;
+  };
+  return !separated(a, b) && !separated(b, a);
+}
+
+/// Whether the whole outline keeps `margin` metres from the carriageways.
+bool ClearOfRoads(const StreetPlan& plan, const Rectangle& r, double margin) {
+  for (double share = 0; share <= 1.001; share += 0.125) {
+    for (const Vector2d& p : {r.At(share * r.width, 0), r.At(share * r.width, r.depth),
+                              r.At(0, share * r.depth), r.At(r.width, share * r.depth)}) {
+      if (plan.DistanceToRoad(p) < margin) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<Lot> LayOutLots(const StreetPlan& plan, Random& random) {
+  std::vector<Rectangle> taken;
+  std::vector<Lot> lots;
+  for (const Street& street : plan.streets) {
+    for (const double side : {1.0, -1.0}) {  // left, right of increasing station
+      double s = 1;
+      while (s + 6 < street.Length()) {
+        const double width = random.Uniform(7, 19);
+        const double depth = random.Uniform(9, 14);
+        const double setback = random.Chance(0.15) ? random.Uniform(0.5, 3) : 0.0;
+        const double end = std::min(s + width, street.Length());
+        // The front is a chord parallel to the street between s and s + width.
+        const auto kerb_side = [&](double station) -> Vector2d {
+          const StreetPoint p = street.At(station);
+          const Vector2d left(-p.tangent.y(), p.tangent.x());
+          return p.position + side * (p.half_width + street.pavement + setback) * left;
+        };
+        const Vector2d a = kerb_side(s);
+        const Vector2d b = kerb_side(end);
+        // Seen from the street, a building on the left of it has its left end at the lower station.
+        Rectangle lot;
+        lot.corner = side > 0 ? a : b;
+        lot.right = (side > 0 ? Vector2d(b - a) : Vector2d(a - b)).normalized();
+        lot.back = {-lot.right.y(), lot.right.x()};
+        lot.width = (b - a).norm();
+        lot.depth = depth;
+        const bool fits = lot.width > 5 && ClearOfRoads(plan, lot, street.pavement - 0.6) &&
+                          std::none_of(taken.begin(), taken.end(), [&](const Rectangle& other) {
+                            return Overlap(lot, other, 0.4);
+                          });
+        if (!fits) {
+          s += 1.5;
+          continue;
+        }
+        taken.push_back(lot);
+        double highest = -1e30;
+        double lowest = 1e30;
+        for (const Vector2d& p : {lot.At(0, 0), lot.At(lot.width, 0), lot.At(0, lot.depth),
+                                  lot.At(lot.width, lot.depth), lot.At(0.5 * lot.width, 0)}) {
+          highest = std::max(highest, plan.Height(p));
+          lowest = std::min(lowest, plan.Height(p));
+        }
+        const double base = highest + kKerbHeight;
+        lots.push_back({Eigen::Vector3d(lot.corner.x(), lot.corner.y(), base).cast<float>(),
+                        Eigen::Vector3d(lot.right.x(), lot.right.y(), 0).cast<float>(),
+                        static_cast<float>(lot.width), static_cast<float>(lot.depth),
+                        static_cast<float>(highest - lowest)});
+        s = end + (random.Chance(0.12) ? random.Uniform(2, 6) : 0.02);
+      }
+    }
+  }
+  return lots;
+}
+
+}  // namespace orb360::town

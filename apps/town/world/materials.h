@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "apps/town/image/texture.h"
+
+namespace orb360::town {
+
+using MaterialId = uint16_t;
+
+/// How a surface answers light.
+enum class Finish : uint8_t {
+  kMatte,
+  kPaint,    ///< clear coat over the colour; takes the instance's tint
+  kGlass,    ///< what lies behind, and the reflection of the surroundings
+  kFoliage,  ///< lets light through
+  kLamp,     ///< shines by itself
+};
+
+struct Material {
+  uint16_t texture = 0;
+  Finish finish = Finish::kMatte;
+  bool cutout = false;        ///< absent where the texture's coverage is below one half
+  float tiles_per_metre = 1;  ///< for faces textured in metres
+  float blotches = 0;         ///< strength of the large-scale variation
+};
+
+/// The town's textures and materials, with the names the builders use.
+struct Materials {
+  std::vector<Texture> textures;
+  std::vector<Material> all;
+
+  MaterialId asphalt, setts, paving, kerb, grass, road_paint;
+  MaterialId plaster, ashlar, concrete, roof_tiles, gravel;
+  MaterialId trim;   ///< painted wood or stone around openings, to be tinted
+  MaterialId metal;  ///< dark painted metal
+  MaterialId railing, bark, paint, car_glass, rubber, lamp;
+  std::vector<MaterialId> bricks, rooms, shops, doors, signs, leaves;
+  uint16_t blotches_texture = 0;
+
+  const Material& operator[](MaterialId id) const { return all[id]; }
+};
+
+/// Paints every texture; the same materials for the same seed.
+Materials PaintMaterials(uint64_t seed);
+
+}  // namespace orb360::town

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "apps/town/world/materials.h"
+
+namespace orb360::town {
+
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+/// What is interpolated over a triangle besides its position.
+struct Vertex {
+  float u = 0;  ///< in tiles of the texture
+  float v = 0;
+  Eigen::Matrix<int8_t, 3, 1> normal{0, 0, 127};  ///< unit normal times 127
+  uint8_t openness = 255;  ///< share of the sky a cosine-weighted look sees, times 255
+  std::array<uint8_t, 4> tint{255, 255, 255, 255};  ///< square root of a linear factor, times 255
+};
+static_assert(sizeof(Vertex) == 16, "three of these are read for each hit");
+
+struct Triangle {
+  std::array<uint32_t, 3> vertices;
+  MaterialId material = 0;
+  float tiles_per_metre = 1;  ///< texture coordinates per metre along the surface
+};
+
+/// Triangles with materials. Front faces are counter-clockwise.
+struct Mesh {
+  std::vector<Vector3f> positions;
+  std::vector<Vertex> vertices;
+  std::vector<Triangle> triangles;
+  size_t opaque_count = 0;  ///< triangles before this one have no cut-outs; set by PartitionCutouts
+
+  /// Brings the triangles of materials with cut-outs to the end.
+  void PartitionCutouts(const Materials& materials);
+  void Append(const Mesh& other, const Eigen::Affine3f& mesh_from_other);
+};
+
+/// A linear tint as stored in Vertex.
+std::array<uint8_t, 4> EncodeTint(const Rgba& tint);
+
+/// A plane piece to draw on: x to the right, z up along it, depth outward, all in metres.
+struct Panel {
+  Vector3f origin;
+  Vector3f right;
+  Vector3f up;
+  Vector3f out;
+
+  Vector3f At(float x, float z, float depth = 0) const {
+    return origin + x * right + z * up + depth * out;
+  }
+};
+
+/// Adds faces to a mesh, with flat normals. Texture coordinates are in metres times the
+/// material's tiles per metre unless stated.
+class MeshBuilder {
+ public:
+  explicit MeshBuilder(const Materials& materials) : materials_(&materials) {}
+
+  Mesh& mesh() { return mesh_; }
+  const Materials& materials() const { return *materials_; }
+  /// The linear factor on the material's colour of the faces that follow.
+  void set_tint(const Rgba& tint) { tint_ = EncodeTint(tint); }
+  /// Shifts the texture of the metre-scaled faces that follow.
+  void set_texture_origin(const Vector2f& origin) { texture_origin_ = origin; }
+
+  /// Corners counter-clockwise seen from the front; `uv` in tiles.
+  void AddQuad(MaterialId material, const std::array<Vector3f, 4>& corners,
+               const std::array<Vector2f, 4>& uv);
+  /// The rectangle [x0, x1] x [z0, z1] of a panel at `depth`, with a texture in metres.
+  void AddRectangle(MaterialId material, const Panel& panel, float x0, float x1, float z0, float z1,
+                    float depth = 0);
+  /// As above, the unit tile of the texture spanning the rectangle.
+  void AddPicture(MaterialId material, const Panel& panel, float x0, float x1, float z0, float z1,
+                  float depth = 0);
+  /// A quad of any orientation, textured in metres along its first edge and across it.
+  void AddFace(MaterialId material, const Vector3f& a, const Vector3f& b, const Vector3f& c,
+               const Vector3f& d);
+  /// Convex polygon, fan-triangulated, with the texture laid in metres along x and y.
+  void AddGroundPolygon(MaterialId material, const std::vector<Vector3f>& corners);
+  /// A box on a panel without its back: [x0, x1] x [z0, z1] x [depth0, depth1].
+  void AddBox(MaterialId material, const Panel& panel, float x0, float x1, float z0, float z1,
+              float depth0, float depth1);
+  /// A cylinder or cone stump around the segment from `a` to `b` with smooth normals, no caps.
+  void AddTube(MaterialId material, const Vector3f& a, const Vector3f& b, float radius_a,
+               float radius_b, int sides);
+
+  /// Adds a vertex; `normal` must have unit length.
+  uint32_t AddVertex(const Vector3f& position, const Vector3f& normal, float u, float v);
+  void AddTriangle(MaterialId material, uint32_t a, uint32_t b, uint32_t c);
+
+ private:
+  Mesh mesh_;
+  const Materials* materials_;
+  std::array<uint8_t, 4> tint_{255, 255, 255, 255};
+  Vector2f texture_origin_ = Vector2f::Zero();
+};
+
+}  // namespace orb360::town

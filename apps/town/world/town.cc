@@ -1,0 +1,34 @@
+#include "apps/town/world/town.h"
+
+#include <utility>
+
+#include "apps/town/image/random.h"
+#include "apps/town/world/building.h"
+#include "apps/town/world/ground.h"
+#include "apps/town/world/lots.h"
+
+namespace orb360::town {
+
+Town BuildTown(uint64_t seed) {
+  const Random random(seed);
+  Town town;
+  town.materials = PaintMaterials(random.Fork(1).Next());
+  PlanOptions options;
+  options.seed = random.Fork(2).Next();
+  town.plan = PlanStreets(options);
+  MeshBuilder builder(town.materials);
+  AddGround(town.plan, builder);
+  AddRoadMarkings(town.plan, builder);
+  Random lots_random = random.Fork(3);
+  uint64_t number = 100;
+  for (const Lot& lot : LayOutLots(town.plan, lots_random)) {
+    Random lot_random = random.Fork(number++);
+    AddBuilding(lot, lot_random, builder);
+  }
+  town.fixed = std::move(builder.mesh());
+  town.fixed.PartitionCutouts(town.materials);
+  for (Mesh& model : town.models) model.PartitionCutouts(town.materials);
+  return town;
+}
+
+}  // namespace orb360::town

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "apps/town/world/materials.h"
+#include "apps/town/world/mesh.h"
+#include "apps/town/world/street_plan.h"
+
+namespace orb360::town {
+
+/// A model placed in the world by a rotation and a translation.
+struct Instance {
+  uint32_t model = 0;
+  Eigen::Isometry3f world_from_model = Eigen::Isometry3f::Identity();
+  Rgba tint;  ///< linear factor on the surfaces with Finish::kPaint
+};
+
+/// Everything that stands still, and the models that things are made from.
+struct Town {
+  Materials materials;
+  StreetPlan plan;
+  Mesh fixed;                ///< ground and buildings
+  std::vector<Mesh> models;  ///< trees, lamp posts, cars, ... shared by instances
+  std::vector<Instance> instances;
+};
+
+/// The town of a seed.
+Town BuildTown(uint64_t seed);
+
+}  // namespace orb360::town
