@@ -34,12 +34,13 @@ bool IsDataset(const std::filesystem::path& path) {
 Dataset OpenDataset(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / kFileName;
   const YAML::Node root = LoadYamlMap(file);
-  const YAML::Node model = root["camera_model"];
+  const YAML::Node camera = root["camera"];
+  const YAML::Node model = camera && camera.IsMap() ? camera["model"] : YAML::Node();
   if (!model || !model.IsScalar() || model.Scalar() != "equirectangular") {
-    throw UserError(file.string() + ": camera_model must be `equirectangular`");
+    throw UserError(file.string() + ": camera.model must be `equirectangular`");
   }
-  const std::optional<double> frame_rate = PositiveNumber(root, "frame_rate", file);
-  if (!frame_rate) throw UserError(file.string() + ": frame_rate (frames a second) is missing");
+  const std::optional<double> frame_rate = PositiveNumber(root, "fps", file);
+  if (!frame_rate) throw UserError(file.string() + ": fps (frames a second) is missing");
   return {folder, *frame_rate, PositiveNumber(root, "camera_height", file)};
 }
 

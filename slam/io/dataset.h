@@ -23,7 +23,7 @@ struct Dataset {
 /// True when `path` is a folder that holds a `sequence.yaml`.
 bool IsDataset(const std::filesystem::path& path);
 
-/// Reads `sequence.yaml`: `camera_model` (must be `equirectangular`), `frame_rate` (frames a
+/// Reads `sequence.yaml`: `camera.model` (must be `equirectangular`), `fps` (frames a
 /// second) and, optional, `camera_height` (metres). Throws UserError, naming file and line.
 Dataset OpenDataset(const std::filesystem::path& folder);
 

@@ -301,17 +301,17 @@ TEST(SequenceOfDataset, ReadsCameraHeightAndRateAndNothingElse) {
     cv::imwrite((folder / ("rgb/00000" + std::to_string(i) + ".png")).string(), Numbered(i));
   }
   WriteText(folder / "sequence.yaml",
-            "camera_model: equirectangular\nframe_rate: 20\ncamera_height: 1.9\nseed: 7\n");
+            "camera: {model: equirectangular}\nfps: 20\ncamera_height: 1.9\nseed: 7\n");
   const auto sequence = OpenSequence(folder.path().string(), {});
   EXPECT_EQ(sequence->camera_height(), 1.9);
   const std::vector<Frame> frames = ReadAll(*sequence);
   ASSERT_THAT(frames, SizeIs(3));
   EXPECT_DOUBLE_EQ(frames[2].timestamp, 0.1);
 
-  WriteText(folder / "sequence.yaml", "camera_model: equirectangular\n\nframe_rate: fast\n");
+  WriteText(folder / "sequence.yaml", "camera: {model: equirectangular}\n\nfps: fast\n");
   EXPECT_THAT(RefusalOf(folder.path()), HasSubstr("sequence.yaml:3: frame_rate"));
-  WriteText(folder / "sequence.yaml", "camera_model: pinhole\nframe_rate: 20\n");
-  EXPECT_THAT(RefusalOf(folder.path()), HasSubstr("camera_model"));
+  WriteText(folder / "sequence.yaml", "camera: {model: pinhole}\nfps: 20\n");
+  EXPECT_THAT(RefusalOf(folder.path()), HasSubstr("camera.model"));
 }
 
 TEST(Sequence, CanBeDroppedWhileFramesAreBeingDecoded) {
