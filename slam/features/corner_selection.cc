@@ -1,9 +1,10 @@
 #include "slam/features/corner_selection.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstring>
 #include <numbers>
+#include <span>
 
 #include "slam/features/fast_score.h"
 
@@ -96,39 +97,55 @@ std::vector<Candidate> FindCandidates(const PyramidLevel& level, int y_begin, in
   return candidates;
 }
 
-}  // namespace
-
-std::vector<Corner> SelectCorners(const PyramidLevel& level, int count, uint8_t min_score,
-                                  const cv::Mat& mask) {
-  const int height = level.camera.height();
-  std::vector<std::vector<Candidate>> chosen(kBands);
-  std::vector<std::vector<Candidate>> spare(kBands);
-#pragma omp parallel for schedule(dynamic)
-  for (int band = 0; band < kBands; ++band) {
-    const int y_begin = band * height / kBands;
-    const int y_end = (band + 1) * height / kBands;
-    std::vector<Candidate> candidates = FindCandidates(level, y_begin, y_end, min_score, mask);
-    std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
-      return a.column != b.column ? a.column < b.column : StrongerInCell(a, b);
-    });
-    for (size_t i = 1; i < candidates.size(); ++i) {
-      const bool same_cell = candidates[i].column == candidates[i - 1].column;
-      candidates[i].rank = same_cell ? candidates[i - 1].rank + 1 : 0;
+// Orders candidates by cell and strength, keeping at most `max_per_cell`, and sets their ranks.
+void RankInCells(int max_per_cell, std::vector<Candidate>* candidates) {
+  std::array<std::vector<Candidate>, kSphereColumns> cells;
+  for (const Candidate& candidate : *candidates) cells[candidate.column].push_back(candidate);
+  candidates->clear();
+  for (std::vector<Candidate>& cell : cells) {
+    if (static_cast<int>(cell.size()) > max_per_cell) {
+      std::nth_element(cell.begin(), cell.begin() + max_per_cell, cell.end(), StrongerInCell);
+      cell.resize(max_per_cell);
     }
-    // Solid angle of a band over the sphere's: half the difference of the latitudes' sines.
-    const auto sine = [&](int y) { return std::cos(std::numbers::pi * y / height); };
-    const double quota = count * 0.5 * (sine(y_begin) - sine(y_end));
-    const int cap = static_cast<int>(std::ceil(quota / kSphereColumns));
-    chosen[band] = TakeStrongest(std::move(candidates), static_cast<int>(std::lround(quota)), cap,
-                                 &spare[band]);
+    std::sort(cell.begin(), cell.end(), StrongerInCell);
+    for (size_t i = 0; i < cell.size(); ++i) cell[i].rank = static_cast<int>(i);
+    candidates->insert(candidates->end(), cell.begin(), cell.end());
   }
+}
+
+struct Band {
+  std::vector<Candidate> chosen;
+  std::vector<Candidate> spare;
+};
+
+// The share of one band of latitude.
+Band SelectInBand(const PyramidLevel& level, int band, int count, uint8_t min_score,
+                  const cv::Mat& mask) {
+  const int height = level.camera.height();
+  const int y_begin = band * height / kBands;
+  const int y_end = (band + 1) * height / kBands;
+  std::vector<Candidate> candidates = FindCandidates(level, y_begin, y_end, min_score, mask);
+  // Solid angle of a band over the sphere's: half the difference of the latitudes' sines.
+  const auto sine = [&](int y) { return std::cos(std::numbers::pi * y / height); };
+  const double quota = count * 0.5 * (sine(y_begin) - sine(y_end));
+  const int cap = static_cast<int>(std::ceil(quota / kSphereColumns));
+  // More than a few times its share no cell will ever be asked for.
+  RankInCells(4 * (cap + 1), &candidates);
+  Band result;
+  result.chosen = TakeStrongest(std::move(candidates), static_cast<int>(std::lround(quota)), cap,
+                                &result.spare);
+  return result;
+}
+
+// All bands of a level, filled up to `count` with what is spare.
+std::vector<Corner> Combine(std::span<const Band> bands, int count) {
   std::vector<Candidate> all;
   std::vector<Candidate> rest;
-  for (int band = 0; band < kBands; ++band) {
-    all.insert(all.end(), chosen[band].begin(), chosen[band].end());
-    rest.insert(rest.end(), spare[band].begin(), spare[band].end());
+  for (const Band& band : bands) {
+    all.insert(all.end(), band.chosen.begin(), band.chosen.end());
+    rest.insert(rest.end(), band.spare.begin(), band.spare.end());
   }
-  if (static_cast<int>(all.size()) < count && !rest.empty()) {
+  if (static_cast<int>(all.size()) < count) {
     std::vector<Candidate> unused;
     // Twice the even share of a cell, so that what is added is spread as well.
     const int cap = 2 + 2 * count / (kBands * kSphereColumns);
@@ -141,6 +158,30 @@ std::vector<Corner> SelectCorners(const PyramidLevel& level, int count, uint8_t 
   for (const Candidate& candidate : all) corners.push_back(candidate.corner);
   std::sort(corners.begin(), corners.end(),
             [](const Corner& a, const Corner& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
+  return corners;
+}
+
+}  // namespace
+
+std::vector<std::vector<Corner>> SelectCorners(const std::vector<PyramidLevel>& levels,
+                                               const std::vector<int>& counts, uint8_t min_score,
+                                               const cv::Mat& mask) {
+  const int num_bands = static_cast<int>(levels.size()) * kBands;
+  std::vector<Band> bands(num_bands);
+  std::vector<std::vector<Corner>> corners(levels.size());
+#pragma omp parallel
+  {
+#pragma omp for schedule(dynamic)
+    for (int i = 0; i < num_bands; ++i) {
+      const int level = i / kBands;
+      bands[i] = SelectInBand(levels[level], i % kBands, counts[level], min_score, mask);
+    }
+#pragma omp for schedule(dynamic)
+    for (size_t level = 0; level < levels.size(); ++level) {
+      corners[level] =
+          Combine(std::span<const Band>(bands).subspan(level * kBands, kBands), counts[level]);
+    }
+  }
   return corners;
 }
 

@@ -22,18 +22,20 @@ struct OrbOptions {
 /// with orientation and descriptor sampled in the tangent plane (design: docs/features.md).
 ///
 /// Rolling the image by k/32 of its width (if that is divisible by 32) gives exactly the same
-/// features, shifted. Reusable and stateless between images; one object serves one thread, and
-/// itself uses OpenMP threads, whose number does not change the result.
+/// features, shifted. One object serves one thread, keeping nothing between images but memory; it
+/// uses OpenMP threads itself, whose number does not change the result.
 class OrbExtractor {
  public:
   explicit OrbExtractor(const OrbOptions& options);
 
   /// `gray`: CV_8U, the whole sphere. `mask`: CV_8U of the same size, or empty; features whose
   /// centre has mask 0 are left out. Features are ordered by level, then row, then column.
-  Features Extract(const cv::Mat& gray, const cv::Mat& mask = {}) const;
+  Features Extract(const cv::Mat& gray, const cv::Mat& mask = {});
 
  private:
   OrbOptions options_;
+  std::vector<PyramidLevel> levels_;
+  std::vector<cv::Mat> blurred_;  // by level, padded as it is
 };
 
 }  // namespace orb360

@@ -35,9 +35,9 @@ struct PyramidLevel {
 
 /// Scales grow by 2^(1/4) a level: levels 1 to 3 are resampled from the input, and level l + 4 is
 /// level l at exactly half size. `gray` is CV_8U and covers the whole sphere. Levels that would
-/// be narrower than 64 pixels are left out. Runs on OpenMP threads; the result does not depend on
-/// their number.
-std::vector<PyramidLevel> BuildSpherePyramid(const cv::Mat& gray, int num_levels);
+/// be narrower than 64 pixels are left out. `levels` may be those of an image of the same size: its
+/// memory is used again. Runs on OpenMP threads; the result does not depend on their number.
+void BuildSpherePyramid(const cv::Mat& gray, int num_levels, std::vector<PyramidLevel>* levels);
 
 /// Fills the margins of a level from its image.
 void FillSphereMargin(PyramidLevel* level);

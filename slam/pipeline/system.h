@@ -93,7 +93,7 @@ class System {
   const EquirectangularCamera camera_;
   const Options options_;
   const cv::Mat mask_;
-  const OrbExtractor extractor_;
+  OrbExtractor extractor_;
   const double pixel_sigma_;  // rad, on pyramid level 0
 
   TrackingState state_ = TrackingState::kInitializing;

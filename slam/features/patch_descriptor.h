@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "slam/features/features.h"
+#include "slam/features/tangent_sampling.h"
+
+namespace orb360 {
+
+/// Orientation and binary descriptor of the patch around one pixel, sampled in the tangent plane.
+///
+/// The angle is that of the intensity centroid (Rublee et al., ORB, ICCV 2011), radians from east
+/// towards south; the descriptor compares 256 pairs of points turned by it. `center` points to the
+/// patch's central pixel in a blurred, padded pyramid level with rows `stride` bytes apart.
+struct OrientedDescriptor {
+  float angle;
+  Descriptor bits;
+};
+OrientedDescriptor DescribePatch(const uint8_t* center, ptrdiff_t stride,
+                                 const TangentSampling& sampling);
+
+}  // namespace orb360
