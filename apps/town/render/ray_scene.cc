@@ -24,7 +24,6 @@ RayScene::RayScene(const Town& town) : town_(&town), device_(rtcNewDevice("threa
   const auto new_scene = [this] {
     Scene scene(rtcNewScene(device_.get()));
     rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
-    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
     return scene;
   };
   scene_ = new_scene();

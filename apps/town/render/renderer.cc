@@ -82,7 +82,23 @@ void ClearHit(RTCHit16& hit, int lane) {
   hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
 }
 
-/// Traces and shades the packet of four pixels that starts at (column, row).
+/// Whether two lanes of a packet lie on the same flat piece of one mesh, so that they can share
+/// what is looked up for a surface.
+bool SameSurface(const RTCHit16& hit, int i, int j, const SurfaceHit& a, const SurfaceHit& b) {
+  if (a.mesh != b.mesh || a.instance != b.instance || a.triangle->material != b.triangle->material)
+    return false;
+  const float dot =
+      hit.Ng_x[i] * hit.Ng_x[j] + hit.Ng_y[i] * hit.Ng_y[j] + hit.Ng_z[i] * hit.Ng_z[j];
+  const float squared_i =
+      hit.Ng_x[i] * hit.Ng_x[i] + hit.Ng_y[i] * hit.Ng_y[i] + hit.Ng_z[i] * hit.Ng_z[i];
+  const float squared_j =
+      hit.Ng_x[j] * hit.Ng_x[j] + hit.Ng_y[j] * hit.Ng_y[j] + hit.Ng_z[j] * hit.Ng_z[j];
+  return dot > 0 && dot * dot > 0.98F * squared_i * squared_j;  // within 8 degrees
+}
+
+/// Traces and shades packets of kPixels pixels in a row. Samples of a pixel that meet the same
+/// surface share its description and its lighting; each has its own texture sample and its own
+/// ray to the sun.
 class PacketRenderer {
  public:
   PacketRenderer(const RayScene& scene, const Shader& shader, const RayDirections& directions,
@@ -91,11 +107,18 @@ class PacketRenderer {
         shader_(&shader),
         directions_(&directions),
         origin_(origin),
-        sample_angle_(sample_angle) {
+        sample_angle_(sample_angle),
+        has_sun_(shader.light().sun.maxCoeff() > 0) {
+    // Points of the sun's disc: each sample of a pixel has its own ring of equal area.
     const Vector3f& to_sun = shader.light().to_sun;
-    sun_x_ = to_sun.unitOrthogonal();
-    sun_y_ = to_sun.cross(sun_x_);
-    has_sun_ = shader.light().sun.maxCoeff() > 0;
+    const Vector3f x = to_sun.unitOrthogonal();
+    const Vector3f y = to_sun.cross(x);
+    for (size_t i = 0; i < to_sun_.size(); ++i) {
+      const auto turn = static_cast<float>(Hash(i) & 0xffffU) * (6.2831853F / 65536);
+      const float radius =
+          kSunRadius * std::sqrt((static_cast<float>(i % kSamples) + 0.5F) / kSamples);
+      to_sun_[i] = to_sun + radius * (std::cos(turn) * x + std::sin(turn) * y);
+    }
   }
 
   void Render(int column, int row, std::array<Vector3f, kPixels>* result) {
@@ -106,75 +129,117 @@ class PacketRenderer {
       valid_[static_cast<size_t>(lane)] = -1;
     }
     scene_->Intersect(valid_.data(), &rays_);
-    bool any_shadow_ray = false;
-    for (int lane = 0; lane < kPacket; ++lane) any_shadow_ray |= EvaluateLane(column, row, lane);
-    if (any_shadow_ray) scene_->Occluded(valid_.data(), &shadows_);
-    result->fill(Vector3f::Zero());
-    for (int lane = 0; lane < kPacket; ++lane) {
-      (*result)[static_cast<size_t>(lane / kSamples)] +=
-          Radiance(lane).cwiseMin(kMaximumRadiance) * (1.0F / kSamples);
-    }
+    patch_count_ = 0;
+    valid_.fill(0);
+    for (int pixel = 0; pixel < kPixels; ++pixel) DescribePixel(column + pixel, row, pixel);
+    if (std::any_of(valid_.begin(), valid_.end(), [](int valid) { return valid != 0; }))
+      scene_->Occluded(valid_.data(), &shadows_);
+    for (int pixel = 0; pixel < kPixels; ++pixel)
+      (*result)[static_cast<size_t>(pixel)] = ShadePixel(pixel);
   }
 
  private:
+  /// The part of a pixel that one surface fills.
+  struct Patch {
+    Surface surface;
+    SurfaceHit hit;
+    Vector3f lift;                       ///< from the surface to where rays to the sun start
+    Vector3f colour = Vector3f::Zero();  ///< sum of its samples' texture colours
+    int first_lane = 0;
+    int samples = 0;
+  };
+
   Vector3f Direction(int lane) const {
     return {rays_.ray.dir_x[lane], rays_.ray.dir_y[lane], rays_.ray.dir_z[lane]};
   }
-  bool Missed(int lane) const { return rays_.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID; }
 
-  /// Finds the lane's surface and sets up its ray to the sun; false if it needs none.
-  bool EvaluateLane(int column, int row, int lane) {
-    const auto index = static_cast<size_t>(lane);
-    valid_[index] = 0;
-    if (Missed(lane)) return false;
+  Patch NewPatch(const SurfaceHit& hit, int lane) const {
     const Vector3f direction = Direction(lane);
     const float range = rays_.ray.tfar[lane];
-    const SurfaceHit hit = scene_->Resolve(rays_.hit, lane);
-    surfaces_[index] = shader_->Evaluate(hit, rays_.hit.u[lane], rays_.hit.v[lane], direction,
-                                         range * sample_angle_, kLevelOffset[index % kSamples]);
-    if (!has_sun_ || surfaces_[index].sun_cosine <= 0) return false;
-    // Just off the surface, on the side the ray came from.
+    Patch patch;
+    patch.hit = hit;
+    patch.first_lane = lane;
+    patch.surface = shader_->Describe(hit, rays_.hit.u[lane], rays_.hit.v[lane], direction,
+                                      range * sample_angle_);
     Vector3f geometric(rays_.hit.Ng_x[lane], rays_.hit.Ng_y[lane], rays_.hit.Ng_z[lane]);
     if (hit.instance != nullptr) geometric = hit.instance->world_from_model.linear() * geometric;
     geometric.normalize();
-    if (geometric.dot(direction) > 0) geometric = -geometric;
-    constexpr float kOffset = 2e-3F;  // metres; well above the rounding of coordinates
-    const Vector3f origin = origin_ + range * direction + (kOffset + 1e-5F * range) * geometric;
-    // A point of the sun's disc: one of four rings' sectors, turned by a hash of the pixel.
-    const uint64_t bits =
-        Hash(static_cast<uint64_t>(row) << 24 | static_cast<uint64_t>(column * kSamples + lane));
-    const float angle = 6.2831853F * static_cast<float>(bits & 0xffffU) * 0x1p-16F;
-    const float radius =
-        kSunRadius * std::sqrt((static_cast<float>(lane % kSamples) +
-                                static_cast<float>(bits >> 16 & 0xffffU) * 0x1p-16F) /
-                               kSamples);
-    const Vector3f to_sun =
-        shader_->light().to_sun + radius * (std::cos(angle) * sun_x_ + std::sin(angle) * sun_y_);
-    SetRay(shadows_, lane, origin, to_sun, kFar);
-    valid_[index] = -1;
-    return true;
+    const float side = geometric.dot(direction) > 0 ? -1.0F : 1.0F;
+    patch.lift = side * (2e-3F + 1e-5F * range) *
+                 geometric;  // metres; well above the rounding of coordinates
+    return patch;
   }
 
-  Vector3f Radiance(int lane) const {
-    const auto index = static_cast<size_t>(lane);
-    const Vector3f direction = Direction(lane);
-    if (Missed(lane)) return shader_->sky().Radiance(direction);
-    const bool sunlit = valid_[index] != 0 && shadows_.tfar[lane] >= 0;
-    return shader_->Radiance(surfaces_[index], sunlit, direction, rays_.ray.tfar[lane]);
+  /// Sorts the pixel's samples into patches and sets up their rays to the sun.
+  void DescribePixel(int column, int row, int pixel) {
+    const size_t first_patch = patch_count_;
+    const uint64_t disc = Hash(static_cast<uint64_t>(row) << 20 | static_cast<uint64_t>(column)) %
+                          (to_sun_.size() / kSamples);
+    for (int lane = pixel * kSamples; lane < (pixel + 1) * kSamples; ++lane) {
+      const auto index = static_cast<size_t>(lane);
+      patch_of_[index] = kNoPatch;
+      if (rays_.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
+      const SurfaceHit hit = scene_->Resolve(rays_.hit, lane);
+      size_t p = first_patch;
+      while (p < patch_count_ &&
+             !SameSurface(rays_.hit, patches_[p].first_lane, lane, patches_[p].hit, hit))
+        ++p;
+      if (p == patch_count_) patches_[patch_count_++] = NewPatch(hit, lane);
+      Patch& patch = patches_[p];
+      patch_of_[index] = p;
+      ++patch.samples;
+      patch.colour += shader_->Colour(patch.surface, hit, rays_.hit.u[lane], rays_.hit.v[lane],
+                                      kLevelOffset[index % kSamples]);
+      if (!has_sun_ || patch.surface.sun_cosine <= 0) continue;
+      const Vector3f point = origin_ + rays_.ray.tfar[lane] * Direction(lane) + patch.lift;
+      SetRay(shadows_, lane, point, to_sun_[disc * kSamples + index % kSamples], kFar);
+      valid_[index] = -1;
+    }
   }
+
+  Vector3f ShadePixel(int pixel) const {
+    Vector3f sum = Vector3f::Zero();
+    for (int lane = pixel * kSamples; lane < (pixel + 1) * kSamples; ++lane) {
+      const size_t p = patch_of_[static_cast<size_t>(lane)];
+      if (p == kNoPatch) {
+        sum += shader_->sky().Radiance(Direction(lane)).cwiseMin(kMaximumRadiance);
+      } else if (patches_[p].first_lane == lane) {
+        sum += ShadePatch(p, pixel);
+      }
+    }
+    return sum * (1.0F / kSamples);
+  }
+
+  /// A patch's radiance times its number of samples.
+  Vector3f ShadePatch(size_t p, int pixel) const {
+    const Patch& patch = patches_[p];
+    int sunlit = 0;
+    for (int lane = pixel * kSamples; lane < (pixel + 1) * kSamples; ++lane) {
+      const auto index = static_cast<size_t>(lane);
+      if (patch_of_[index] == p && valid_[index] != 0 && shadows_.tfar[lane] >= 0) ++sunlit;
+    }
+    const auto samples = static_cast<float>(patch.samples);
+    const Vector3f radiance = shader_->Radiance(
+        patch.surface, patch.colour / samples, static_cast<float>(sunlit) / samples,
+        Direction(patch.first_lane), rays_.ray.tfar[patch.first_lane]);
+    return samples * radiance.cwiseMin(kMaximumRadiance);
+  }
+
+  static constexpr size_t kNoPatch = kPacket;
 
   const RayScene* scene_;
   const Shader* shader_;
   const RayDirections* directions_;
   Vector3f origin_;
   float sample_angle_;
-  Vector3f sun_x_;
-  Vector3f sun_y_;
   bool has_sun_;
+  std::array<Vector3f, 64> to_sun_;
   RTCRayHit16 rays_;
   RTCRay16 shadows_;
   alignas(64) std::array<int, kPacket> valid_;
-  std::array<Surface, kPacket> surfaces_;
+  std::array<Patch, kPacket> patches_;
+  std::array<size_t, kPacket> patch_of_;
+  size_t patch_count_ = 0;
 };
 
 }  // namespace

@@ -10,13 +10,18 @@ constexpr float kBlotchTile = 31.0F;  // metres across which the blotches repeat
 
 float Pow5(float x) { return x * x * x * x * x; }
 
+/// Mip level at which `tiles` of a texture are one texel.
+float Level(const Texture& texture, float tiles) {
+  return FastLog2(std::max(tiles * static_cast<float>(texture.width()), 1e-6F));
+}
+
 }  // namespace
 
 Shader::Shader(const Town& town, const Light& light, const Sky& sky)
     : town_(&town), light_(&light), sky_(&sky) {}
 
-Surface Shader::Evaluate(const SurfaceHit& hit, float b, float c, const Vector3f& direction,
-                         float footprint, float level_offset) const {
+Surface Shader::Describe(const SurfaceHit& hit, float b, float c, const Vector3f& direction,
+                         float footprint) const {
   const float a = 1 - b - c;
   const Vertex& va = hit.mesh->vertices[hit.triangle->vertices[0]];
   const Vertex& vb = hit.mesh->vertices[hit.triangle->vertices[1]];
@@ -38,33 +43,27 @@ Surface Shader::Evaluate(const SurfaceHit& hit, float b, float c, const Vector3f
                       c * static_cast<float>(vc.openness)) *
                      (1.0F / 255);
 
-  const Texture& texture = town_->materials.textures[material.texture];
-  const float u = a * va.u + b * vb.u + c * vc.u;
-  const float v = a * va.v + b * vb.v + c * vc.v;
   // A tilted surface stretches the footprint one way by 1/cos: the geometric mean of both ways.
   const float stretched = footprint / std::sqrt(std::max(-facing, 0.04F));
-  const float tiles = stretched * hit.triangle->tiles_per_metre;
-  const float level =
-      FastLog2(std::max(tiles * static_cast<float>(texture.width()), 1e-6F)) + level_offset;
-  const Rgba colour = texture.Sample(u, v, level);
-  Vector3f tint = (a * Vector3f(va.tint[0], va.tint[1], va.tint[2]) +
-                   b * Vector3f(vb.tint[0], vb.tint[1], vb.tint[2]) +
-                   c * Vector3f(vc.tint[0], vc.tint[1], vc.tint[2])) *
-                  (1.0F / 255);
-  tint = tint.cwiseProduct(tint);
+  surface.texture = &town_->materials.textures[material.texture];
+  surface.level = Level(*surface.texture, stretched * hit.triangle->tiles_per_metre);
+  surface.tone = (a * Vector3f(va.tint[0], va.tint[1], va.tint[2]) +
+                  b * Vector3f(vb.tint[0], vb.tint[1], vb.tint[2]) +
+                  c * Vector3f(vc.tint[0], vc.tint[1], vc.tint[2])) *
+                 (1.0F / 255);
+  surface.tone = surface.tone.cwiseProduct(surface.tone);
   if (material.finish == Finish::kPaint && hit.instance != nullptr) {
-    tint = tint.cwiseProduct(
-        Vector3f(hit.instance->tint.r, hit.instance->tint.g, hit.instance->tint.b));
+    const Rgba& tint = hit.instance->tint;
+    surface.tone = surface.tone.cwiseProduct(Vector3f(tint.r, tint.g, tint.b));
   }
-  surface.albedo = Vector3f(colour.r, colour.g, colour.b).cwiseProduct(tint);
   if (material.blotches > 0) {
     const Texture& blotches = town_->materials.textures[town_->materials.blotches_texture];
     const float scale = 1 / (kBlotchTile * material.tiles_per_metre);
-    const float blotch_level =
-        FastLog2(std::max(stretched * static_cast<float>(blotches.width()) / kBlotchTile, 1e-6F)) +
-        level_offset;
-    const Rgba blotch = blotches.Sample(u * scale, v * scale, blotch_level);
-    surface.albedo *= 1 + material.blotches * (1.6F * (blotch.r - 0.5F) + 0.8F * (blotch.g - 0.5F));
+    const float u = a * va.u + b * vb.u + c * vc.u;
+    const float v = a * va.v + b * vb.v + c * vc.v;
+    const Rgba blotch =
+        blotches.Sample(u * scale, v * scale, 1 + Level(blotches, stretched / kBlotchTile));
+    surface.tone *= 1 + material.blotches * (1.6F * (blotch.r - 0.5F) + 0.8F * (blotch.g - 0.5F));
   }
   const float sun_cosine = normal.dot(light_->to_sun);
   surface.sun_cosine = material.finish == Finish::kFoliage
@@ -73,14 +72,25 @@ Surface Shader::Evaluate(const SurfaceHit& hit, float b, float c, const Vector3f
   return surface;
 }
 
-Vector3f Shader::Radiance(const Surface& surface, bool sunlit, const Vector3f& direction,
-                          float range) const {
+Vector3f Shader::Colour(const Surface& surface, const SurfaceHit& hit, float b, float c,
+                        float level_offset) const {
+  const float a = 1 - b - c;
+  const Vertex& va = hit.mesh->vertices[hit.triangle->vertices[0]];
+  const Vertex& vb = hit.mesh->vertices[hit.triangle->vertices[1]];
+  const Vertex& vc = hit.mesh->vertices[hit.triangle->vertices[2]];
+  const Rgba colour = surface.texture->Sample(
+      a * va.u + b * vb.u + c * vc.u, a * va.v + b * vb.v + c * vc.v, surface.level + level_offset);
+  return {colour.r, colour.g, colour.b};
+}
+
+Vector3f Shader::Radiance(const Surface& surface, const Vector3f& albedo, float sunlit,
+                          const Vector3f& direction, float range) const {
   const float up = 0.5F + 0.5F * surface.normal.z();
   const Vector3f ambient = surface.openness * (up * sky_->mean() + (1 - up) * light_->ground) +
                            (1 - surface.openness) * 0.45F * light_->ground;
-  Vector3f light = ambient;
-  if (sunlit) light += surface.sun_cosine * light_->sun;
-  Vector3f radiance = surface.albedo.cwiseProduct(light);
+  const Vector3f light = ambient + sunlit * surface.sun_cosine * light_->sun;
+  const Vector3f colour = albedo.cwiseProduct(surface.tone);
+  Vector3f radiance = colour.cwiseProduct(light);
   if (surface.finish == Finish::kGlass || surface.finish == Finish::kPaint) {
     const float cosine = -surface.normal.dot(direction);
     const bool glass = surface.finish == Finish::kGlass;
@@ -94,7 +104,7 @@ Vector3f Shader::Radiance(const Surface& surface, bool sunlit, const Vector3f& d
     reflected = open * reflected + (1 - open) * 0.8F * light_->ground;
     radiance = (1 - fresnel) * (glass ? 0.55F : 1.0F) * radiance + fresnel * reflected;
   } else if (surface.finish == Finish::kLamp) {
-    radiance += 0.7F * surface.albedo;
+    radiance += 0.7F * colour;
   }
   const float clear = std::exp(-range / light_->haze);
   return clear * radiance + (1 - clear) * light_->horizon;

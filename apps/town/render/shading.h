@@ -6,9 +6,11 @@
 
 namespace orb360::town {
 
-/// The point where a ray met a surface, with what lighting needs.
+/// A piece of surface that fills (a part of) a pixel, with what is the same all over it.
 struct Surface {
-  Vector3f albedo;
+  Vector3f tone;  ///< factor on the texture: tint and blotches
+  const Texture* texture;
+  float level;       ///< mip level for one sample
   Vector3f normal;   ///< unit, on the side of the ray's origin
   float openness;    ///< share of the sky that is seen
   float sun_cosine;  ///< how squarely the sun shines on it; 0 if from behind
@@ -24,14 +26,19 @@ class Shader {
   const Sky& sky() const { return *sky_; }
 
   /// `b` and `c` are the barycentric weights of the triangle's second and third corner, `footprint`
-  /// the width in metres of the area a sample stands for (across the ray), `level_offset` in
-  /// [0, 1) spreads samples over two mip levels.
-  Surface Evaluate(const SurfaceHit& hit, float b, float c, const Vector3f& direction,
-                   float footprint, float level_offset) const;
+  /// the width in metres, across the ray, of the area that one sample stands for.
+  Surface Describe(const SurfaceHit& hit, float b, float c, const Vector3f& direction,
+                   float footprint) const;
 
-  /// Light that leaves the surface against `direction`, `range` metres from the eye.
-  Vector3f Radiance(const Surface& surface, bool sunlit, const Vector3f& direction,
-                    float range) const;
+  /// The texture's colour at a hit on a surface. Offsets in [0, 1) that are spread evenly over a
+  /// pixel's samples blend two mip levels.
+  Vector3f Colour(const Surface& surface, const SurfaceHit& hit, float b, float c,
+                  float level_offset) const;
+
+  /// Light that leaves the surface against `direction`, `range` metres from the eye; `albedo` is
+  /// the mean colour of its texture, `sunlit` the share of it that the sun reaches.
+  Vector3f Radiance(const Surface& surface, const Vector3f& albedo, float sunlit,
+                    const Vector3f& direction, float range) const;
 
  private:
   const Town* town_;

@@ -50,9 +50,9 @@ Street MakeStreet(const std::vector<Vector2d>& knots, double half_width, double 
   return street;
 }
 
-/// Signed distance to one street's carriageway edge.
-double DistanceToStreet(const Street& street, const Vector2d& p) {
-  double best = 1e30;
+/// Signed distance to one street's carriageway edge, or `bound` if that is less.
+double DistanceToStreet(const Street& street, const Vector2d& p, double bound) {
+  double best = bound;
   // Each point's distance bounds the distance to its neighbourhood, so far stretches are skipped.
   for (size_t i = 0; i + 1 < street.points.size();) {
     const StreetPoint& a = street.points[i];
@@ -102,8 +102,9 @@ double StreetPlan::DistanceToOtherRoads(const Vector2d& p, size_t except) const 
   constexpr double kCornerBlend = 7.0;  // metres: gives kerb radii of about 5 m
   double distance = 1e30;
   for (size_t i = 0; i < streets.size(); ++i) {
-    if (i != except)
-      distance = SmoothMinimum(distance, DistanceToStreet(streets[i], p), kCornerBlend);
+    if (i == except) continue;
+    const double other = DistanceToStreet(streets[i], p, distance + kCornerBlend);
+    distance = SmoothMinimum(distance, other, kCornerBlend);
   }
   return distance;
 }
@@ -116,7 +117,7 @@ double StreetPlan::PavementAt(const Vector2d& p) const {
   double best = 1e30;
   double pavement = 3;
   for (const Street& street : streets) {
-    const double distance = DistanceToStreet(street, p);
+    const double distance = DistanceToStreet(street, p, best);
     if (distance < best) {
       best = distance;
       pavement = street.pavement;
