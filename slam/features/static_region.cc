@@ -1,0 +1,171 @@
+#include "slam/features/static_region.h"
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
+
+#include "slam/check.h"
+
+namespace orb360 {
+namespace {
+
+// Working resolution: 1.4 degrees a pixel, so that motion shows as a few pixels at most.
+constexpr int kWidth = 256;
+constexpr int kHeight = 128;
+// What moves with the camera is looked for below this latitude, rad (12 degrees below the horizon,
+// where the ground is nearer than five times the camera's height).
+constexpr double kMaxLatitude = -0.21;
+// Pictures to compare before a judgement.
+constexpr int kMinPairs = 8;
+// Texture, grey levels per pixel: below, a change says nothing.
+constexpr float kMinTexture = 1.5f;
+// Pixels over which texture and change are averaged.
+constexpr int kBox = 5;
+// The median change per texture is about the motion in pixels of the working resolution; below
+// this the camera stands still.
+constexpr float kMinMotion = 0.25f;
+// Static: less than this share of the median motion.
+constexpr float kStaticShare = 0.3f;
+// Differences are capped (grey levels), so that an occluding edge does not outweigh the rest.
+constexpr float kMaxChange = 40.0f;
+// Never brighter than this (of 255): nothing was recorded there.
+constexpr double kBlack = 12.0;
+// Regions smaller than this share of the sphere are left in.
+constexpr double kMinArea = 0.004;
+
+double SolidAngleShare(const cv::Mat& region) {
+  double share = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    const double row = 0.5 * (std::cos(std::numbers::pi * y / kHeight) -
+                              std::cos(std::numbers::pi * (y + 1) / kHeight));
+    share += row * cv::countNonZero(region.row(y)) / kWidth;
+  }
+  return share;
+}
+
+// Continues the panorama across the seam, so that filters and regions go on there.
+cv::Mat Unroll(const cv::Mat& image, int margin) {
+  cv::Mat wide;
+  cv::copyMakeBorder(image, wide, 0, 0, margin, margin, cv::BORDER_WRAP);
+  return wide;
+}
+
+// Root of the structure tensor's smaller eigenvalue: the gradient (grey levels per pixel) across
+// the direction in which the picture varies least. An edge has none: along itself it may move
+// unseen.
+cv::Mat CornerStrength(const cv::Mat& dx, const cv::Mat& dy) {
+  cv::Mat xx;
+  cv::Mat xy;
+  cv::Mat yy;
+  cv::blur(dx.mul(dx), xx, {kBox, kBox});
+  cv::blur(dx.mul(dy), xy, {kBox, kBox});
+  cv::blur(dy.mul(dy), yy, {kBox, kBox});
+  cv::Mat root;
+  cv::sqrt((xx - yy).mul(xx - yy) + 4.0 * xy.mul(xy), root);
+  cv::Mat strength;
+  cv::sqrt(cv::max(0.5 * (xx + yy - root), 0.0), strength);
+  return strength;
+}
+
+// Keeps connected regions (across the seam too) of at least kMinArea, grown by two pixels.
+cv::Mat LargeRegions(const cv::Mat& region) {
+  cv::Mat labels;
+  const int count = cv::connectedComponents(Unroll(region, kWidth / 2), labels, 8, CV_32S);
+  cv::Mat kept = cv::Mat::zeros(region.size(), CV_8U);
+  for (int label = 1; label < count; ++label) {
+    // Every region lies whole in one of the two halves of the unrolled picture, or spans all.
+    const cv::Mat wide = labels == label;
+    cv::Mat folded = wide(cv::Rect(kWidth / 2, 0, kWidth, kHeight)).clone();
+    folded.colRange(kWidth / 2, kWidth) |= wide.colRange(0, kWidth / 2);
+    folded.colRange(0, kWidth / 2) |= wide.colRange(kWidth + kWidth / 2, 2 * kWidth);
+    if (SolidAngleShare(folded) >= kMinArea) kept |= folded;
+  }
+  cv::Mat grown;
+  cv::dilate(Unroll(kept, 4), grown, cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
+  return grown.colRange(4, 4 + kWidth).clone();
+}
+
+}  // namespace
+
+void StaticRegionDetector::Add(const cv::Mat& image) {
+  ORB360_CHECK(image.type() == CV_8UC1 || image.type() == CV_8UC3, image.type());
+  cv::Mat gray = image;
+  cv::Mat small;
+  cv::resize(gray, small, {kWidth, kHeight}, 0, 0, cv::INTER_AREA);
+  if (small.channels() == 3) cv::cvtColor(small, small, cv::COLOR_BGR2GRAY);
+  small.convertTo(small, CV_32F);
+  if (previous_.empty()) {
+    change_ = cv::Mat::zeros(small.size(), CV_32F);
+    gradient_ = cv::Mat::zeros(small.size(), CV_32F);
+    brightest_ = small.clone();
+  } else {
+    cv::Mat change;
+    cv::absdiff(small, previous_, change);
+    change_ += cv::min(change, kMaxChange);
+    cv::Mat dx;
+    cv::Mat dy;
+    cv::Scharr(Unroll(small, kBox), dx, CV_32F, 1, 0, 1.0 / 32.0);
+    cv::Scharr(Unroll(small, kBox), dy, CV_32F, 0, 1, 1.0 / 32.0);
+    gradient_ += CornerStrength(dx, dy).colRange(kBox, kBox + kWidth);
+    brightest_ = cv::max(brightest_, small);
+    ++pairs_;
+  }
+  previous_ = small;
+}
+
+cv::Mat StaticRegionDetector::ChangePerTexture(cv::Mat* texture) const {
+  const auto smooth = [&](const cv::Mat& sum) {
+    cv::Mat wide;
+    cv::blur(Unroll(sum, kBox), wide, {kBox, kBox}, {-1, -1}, cv::BORDER_REPLICATE);
+    return cv::Mat(wide.colRange(kBox, kBox + kWidth) / pairs_);
+  };
+  *texture = smooth(gradient_);
+  return smooth(change_) / (*texture + 0.5f * kMinTexture);
+}
+
+bool StaticRegionDetector::HasEvidence() const {
+  if (pairs_ < kMinPairs) return false;
+  cv::Mat texture;
+  const cv::Mat ratio = ChangePerTexture(&texture);
+  std::vector<float> textured;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      if (texture.at<float>(y, x) > kMinTexture) textured.push_back(ratio.at<float>(y, x));
+    }
+  }
+  if (textured.size() < 100) return false;
+  std::nth_element(textured.begin(), textured.begin() + textured.size() / 2, textured.end());
+  return textured[textured.size() / 2] > kMinMotion;
+}
+
+cv::Mat StaticRegionDetector::Mask(cv::Size size) const {
+  cv::Mat hidden = cv::Mat::zeros(kHeight, kWidth, CV_8U);
+  if (!previous_.empty()) hidden |= LargeRegions(brightest_ < kBlack);
+  if (HasEvidence()) {
+    cv::Mat texture;
+    const cv::Mat ratio = ChangePerTexture(&texture);
+    const cv::Mat textured = texture > kMinTexture;
+    std::vector<float> motion;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        if (textured.at<uint8_t>(y, x) != 0) motion.push_back(ratio.at<float>(y, x));
+      }
+    }
+    std::nth_element(motion.begin(), motion.begin() + motion.size() / 2, motion.end());
+    cv::Mat still = (ratio < kStaticShare * motion[motion.size() / 2]) & textured;
+    const int first_row = static_cast<int>((0.5 - kMaxLatitude / std::numbers::pi) * kHeight);
+    still.rowRange(0, first_row).setTo(0);
+    // Smooth parts between still texture belong to the same body.
+    cv::Mat closed;
+    cv::morphologyEx(Unroll(still, 16), closed, cv::MORPH_CLOSE,
+                     cv::getStructuringElement(cv::MORPH_ELLIPSE, {9, 9}));
+    hidden |= LargeRegions(closed.colRange(16, 16 + kWidth).clone());
+  }
+  cv::Mat mask;
+  cv::resize(255 - hidden, mask, size, 0, 0, cv::INTER_NEAREST);
+  return mask;
+}
+
+}  // namespace orb360
