@@ -7,17 +7,18 @@
 
 namespace orb360 {
 
-cv::Mat FindSelfMask(const std::string& input, SequenceOptions options) {
-  constexpr double kInterval = 0.2;   // s: walking and driving then show as pixels of motion
+cv::Mat FindSelfMask(const std::string& input, const SequenceOptions& options, double frame_rate) {
+  constexpr double kInterval = 0.2;  // s: walking and driving then show as pixels of motion
   constexpr double kLongest = 10.0;  // s
-  const double frame_rate = OpenSequence(input, options)->frame_rate();
-  const int step = std::max(1, static_cast<int>(std::lround(kInterval * frame_rate)));
-  options.stride = options.stride * std::max(1, step / options.stride);
-  const int longest = 1 + static_cast<int>(kLongest * frame_rate / options.stride);
-  options.max_frames =
-      options.max_frames > 0 ? std::min(longest, 1 + options.max_frames * step / options.stride)
-                             : longest;
-  const std::unique_ptr<Sequence> sequence = OpenSequence(input, options);
+  SequenceOptions sampled = options;
+  sampled.stride =
+      std::max(options.stride, static_cast<int>(std::lround(kInterval * frame_rate)));
+  double source_frames = kLongest * frame_rate;
+  if (options.max_frames > 0) {
+    source_frames = std::min(source_frames, 1.0 * options.max_frames * options.stride);
+  }
+  sampled.max_frames = 1 + static_cast<int>(source_frames / sampled.stride);
+  const std::unique_ptr<Sequence> sequence = OpenSequence(input, sampled);
   StaticRegionDetector detector;
   while (!detector.HasEvidence()) {
     const std::optional<Frame> frame = sequence->Next();
