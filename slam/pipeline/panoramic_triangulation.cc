@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slam/features/epipolar_scan.h"
 #include "slam/features/hamming.h"
 #include "slam/geometry/essential_matrix.h"
 #include "slam/geometry/triangulation.h"
@@ -11,38 +12,23 @@
 namespace orb360 {
 namespace {
 
-// The features of a keyframe without a landmark, as columns for the scan below.
+// The features of a keyframe without a landmark.
 struct FreeFeatures {
   std::vector<int> index;
-  std::vector<float> x, y, z;
-
-  explicit FreeFeatures(const Keyframe& keyframe) {
-    for (int f = 0; f < keyframe.features->size(); ++f) {
-      if (keyframe.landmarks[f] != kNoId) continue;
-      const Eigen::Vector3d& bearing = keyframe.features->bearings[f];
-      index.push_back(f);
-      x.push_back(static_cast<float>(bearing.x()));
-      y.push_back(static_cast<float>(bearing.y()));
-      z.push_back(static_cast<float>(bearing.z()));
-    }
-  }
+  BearingColumns columns;
 };
 
-// Positions (in FreeFeatures) of bearings within `max_sine` of a plane.
-void FindNearPlane(const FreeFeatures& features, const Eigen::Vector3d& normal, double max_sine,
-                   std::vector<float>* sines, std::vector<int>* positions) {
-  const Eigen::Vector3f n = normal.cast<float>();
-  const int count = static_cast<int>(features.index.size());
-  sines->resize(count);
-  float* out = sines->data();
-  for (int i = 0; i < count; ++i) {
-    out[i] = n.x() * features.x[i] + n.y() * features.y[i] + n.z() * features.z[i];
+FreeFeatures CollectFree(const Keyframe& keyframe) {
+  std::vector<int> index;
+  std::vector<Eigen::Vector3d> bearings;
+  std::vector<double> sigmas;
+  for (int f = 0; f < keyframe.features->size(); ++f) {
+    if (keyframe.landmarks[f] != kNoId) continue;
+    index.push_back(f);
+    bearings.push_back(keyframe.features->bearings[f]);
+    sigmas.push_back(keyframe.features->keypoints[f].sigma);
   }
-  positions->clear();
-  const float limit = static_cast<float>(max_sine);
-  for (int i = 0; i < count; ++i) {
-    if (std::abs(out[i]) < limit) positions->push_back(i);
-  }
+  return {std::move(index), BearingColumns(bearings, sigmas)};
 }
 
 struct EpipolarMatch {
@@ -56,43 +42,25 @@ std::vector<EpipolarMatch> MatchEpipolar(const Keyframe& keyframe1, const FreeFe
                                          const Rigid3& camera1_from_camera2,
                                          const TriangulationOptions& options) {
   const Eigen::Matrix3d essential = EssentialMatrix(camera1_from_camera2);
-  const Eigen::Vector3d epipole = EpipoleInCamera2(camera1_from_camera2);
   const Eigen::Quaterniond camera2_from_camera1 = camera1_from_camera2.rotation.conjugate();
-  const double max_epipole_cosine = std::cos(options.min_epipole_angle);
-  const double min_parallax_cosine = std::cos(options.max_parallax);
   const Features& features1 = *keyframe1.features;
   const Features& features2 = *keyframe2.features;
-  double max_sigma2 = 0;
-  for (const Keypoint& keypoint : features2.keypoints) {
-    max_sigma2 = std::max<double>(max_sigma2, keypoint.sigma);
-  }
-
+  EpipolarArc arc;
+  arc.epipole = EpipoleInCamera2(camera1_from_camera2);
+  arc.max_sigmas = options.max_plane_sigmas;
+  arc.max_parallax = options.max_parallax;
+  arc.max_epipole_cosine = std::cos(options.min_epipole_angle);
   std::vector<EpipolarMatch> matches(free1.index.size());
-  std::vector<float> sines;
-  std::vector<int> positions;
   std::vector<int> candidates;
   for (size_t i = 0; i < free1.index.size(); ++i) {
     const int f1 = free1.index[i];
     const Eigen::Vector3d& bearing1 = features1.bearings[f1];
     const double sigma1 = features1.keypoints[f1].sigma;
-    const Eigen::Vector3d normal = EpipolarPlaneNormal(essential, bearing1);
-    FindNearPlane(free2, normal, options.max_plane_sigmas * std::hypot(sigma1, max_sigma2), &sines,
-                  &positions);
-    // The match lies on the arc from bearing 1 (a point at infinity) to the epipole (range zero).
-    const Eigen::Vector3d far = camera2_from_camera1 * bearing1;
-    const Eigen::Vector3d towards_epipole = (epipole - epipole.dot(far) * far).normalized();
-    candidates.clear();
-    for (const int position : positions) {
-      const int f2 = free2.index[position];
-      const Eigen::Vector3d& bearing2 = features2.bearings[f2];
-      const double sigma = std::hypot(sigma1, features2.keypoints[f2].sigma);
-      if (AngleToPlane(normal, bearing2) > options.max_plane_sigmas * sigma ||
-          !IsAwayFromEpipole(epipole, bearing2, max_epipole_cosine) ||
-          far.dot(bearing2) < min_parallax_cosine || towards_epipole.dot(bearing2) < -sigma) {
-        continue;
-      }
-      candidates.push_back(f2);
-    }
+    arc.normal = EpipolarPlaneNormal(essential, bearing1);
+    arc.infinity = camera2_from_camera1 * bearing1;
+    arc.variance = sigma1 * sigma1;
+    FindOnArc(free2.columns, arc, &candidates);
+    for (int& candidate : candidates) candidate = free2.index[candidate];
     const NearestTwo nearest =
         FindNearestTwo(features1.descriptors[f1], features2.descriptors, candidates);
     if (nearest.best_distance > options.max_distance) continue;
@@ -154,8 +122,8 @@ std::vector<LandmarkId> TriangulateNewLandmarks(KeyframeId id, const Triangulati
         options.min_baseline * map->MedianRange(neighbour.keyframe)) {
       continue;
     }
-    const FreeFeatures free1(keyframe1);
-    const FreeFeatures free2(keyframe2);
+    const FreeFeatures free1 = CollectFree(keyframe1);
+    const FreeFeatures free2 = CollectFree(keyframe2);
     const std::vector<EpipolarMatch> matches =
         MatchEpipolar(keyframe1, free1, keyframe2, free2, camera1_from_camera2, options);
     // One feature of keyframe 2 goes to the nearest descriptor only.

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace orb360 {
+
+/// Bearings as columns, for scans over all of them. Columns are longer than size() by up to a
+/// vector, filled with zero bearings, which lie on no arc.
+class BearingColumns {
+ public:
+  BearingColumns(std::span<const Eigen::Vector3d> bearings, std::span<const double> sigmas);
+
+  int size() const { return size_; }
+  const float* x() const { return x_.data(); }
+  const float* y() const { return y_.data(); }
+  const float* z() const { return z_.data(); }
+  const float* variance() const { return variance_.data(); }  // of the angle, rad^2
+
+ private:
+  int size_;
+  std::vector<float> x_, y_, z_, variance_;
+};
+
+/// Where the match of a bearing of camera 1 may lie in camera 2: near its epipolar plane, and on
+/// the arc from where it would be at infinity towards the epipole, where the range is zero.
+struct EpipolarArc {
+  Eigen::Vector3d normal;    // unit, of the epipolar plane
+  Eigen::Vector3d infinity;  // unit: the bearing of camera 1, turned into camera 2
+  Eigen::Vector3d epipole;   // unit: the centre of camera 1 in camera 2
+  double variance = 0;       // of the bearing of camera 1, rad^2
+  double max_sigmas = 0;     // distance from the plane, in standard deviations of both bearings
+  double max_parallax = 0;   // length of the arc, rad, below pi/2
+  double max_epipole_cosine = 1;  // matches nearer to the epipole or its antipode are left out
+};
+
+/// Replaces `indices` by those of the bearings on the arc, ascending.
+void FindOnArc(const BearingColumns& bearings, const EpipolarArc& arc, std::vector<int>* indices);
+
+}  // namespace orb360
