@@ -9,6 +9,8 @@ namespace orb360 {
 /// `sequence.yaml`. Of the last, only the camera model, the frame rate and the camera's height are
 /// read: the rest would tell a SLAM system the answer.
 struct Dataset {
+  static constexpr const char* kGroundTruthName = "groundtruth.txt";
+
   std::filesystem::path folder;
   /// Frames a second.
   double frame_rate = 0.0;
@@ -17,7 +19,7 @@ struct Dataset {
 
   std::filesystem::path images() const { return folder / "rgb"; }
   std::filesystem::path depth() const { return folder / "depth"; }
-  std::filesystem::path groundtruth() const { return folder / "groundtruth.txt"; }
+  std::filesystem::path groundtruth() const { return folder / kGroundTruthName; }
 };
 
 /// True when `path` is a folder that holds a `sequence.yaml`.

@@ -60,11 +60,10 @@ Sequence::Sequence(std::unique_ptr<FrameSource> source, const SequenceOptions& o
       queue_(kFramesAhead) {
   ORB360_CHECK(
       options.fps >= 0.0 && options.stride >= 1 && options.start >= 0 && options.max_frames >= 0,
-      options.fps, options.stride, options.start, options.max_frames);
+      options.fps, options.stride, options.start, options.max_frames, options.resize);
   const SourceInfo& info = source_->info();
   RequireFullSphere(name_, info.image_size);
   image_size_ = options.resize.empty() ? info.image_size : options.resize;
-  RequireFullSphere("--resize", image_size_);
   frame_rate_ = options.fps > 0.0 ? options.fps : info.frame_rate;
   if (info.frame_count) frame_count_ = SelectedCount(*info.frame_count, options);
   decoder_ = std::thread([this] { DecodeAhead(); });

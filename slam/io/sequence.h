@@ -22,7 +22,7 @@ struct SequenceOptions {
   int start = 0;
   /// At most so many frames; 0: all.
   int max_frames = 0;
-  /// Scales every image to this size; empty: as it is. Must be near 2:1 (RequireFullSphere).
+  /// Scales every image to this size; empty: as it is. Must be near 2:1 (IsFullSphere).
   cv::Size resize;
 };
 

@@ -309,7 +309,7 @@ TEST(SequenceOfDataset, ReadsCameraHeightAndRateAndNothingElse) {
   EXPECT_DOUBLE_EQ(frames[2].timestamp, 0.1);
 
   WriteText(folder / "sequence.yaml", "camera: {model: equirectangular}\n\nfps: fast\n");
-  EXPECT_THAT(RefusalOf(folder.path()), HasSubstr("sequence.yaml:3: frame_rate"));
+  EXPECT_THAT(RefusalOf(folder.path()), HasSubstr("sequence.yaml:3: fps must be"));
   WriteText(folder / "sequence.yaml", "camera: {model: pinhole}\nfps: 20\n");
   EXPECT_THAT(RefusalOf(folder.path()), HasSubstr("camera.model"));
 }
