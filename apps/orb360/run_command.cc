@@ -1,0 +1,220 @@
+#include <chrono>
+#include <exception>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <omp.h>
+#include <opencv2/core/utility.hpp>
+#include <sys/resource.h>
+
+#include "apps/orb360/commands.h"
+#include "apps/orb360/interrupt.h"
+#include "apps/orb360/mask.h"
+#include "apps/orb360/progress.h"
+#include "apps/orb360/run_output.h"
+#include "apps/orb360/stage_times.h"
+#include "slam/check.h"
+#include "slam/io/full_sphere.h"
+#include "slam/io/number_text.h"
+#include "slam/io/sequence.h"
+#include "slam/pipeline/options.h"
+#include "slam/pipeline/system.h"
+#include "slam/version.h"
+
+namespace orb360 {
+namespace {
+
+struct RunOptions {
+  std::string input;
+  std::string out;
+  std::string config;
+  std::string mask = "none";
+  int threads = 0;  // 0: one for each core
+  std::string resize;
+  SequenceOptions sequence;
+  bool is_quiet = false;
+};
+
+/// What the loop over the frames leaves behind.
+struct RunRecord {
+  int frames = 0;
+  double seconds = 0.0;
+  StageTimes times;
+  std::vector<std::string> warnings;
+  std::exception_ptr failure;  // of the input or the disk, in the middle
+};
+
+/// The size that --resize asks for; empty for "".
+cv::Size ParseSize(const std::string& text) {
+  if (text.empty()) return {};
+  const size_t x = std::min(text.find('x'), text.size() - 1);
+  const std::optional<int> width = ParseNumber<int>(std::string_view(text).substr(0, x));
+  const std::optional<int> height = ParseNumber<int>(std::string_view(text).substr(x + 1));
+  if (width && height && IsFullSphere({*width, *height})) return {*width, *height};
+  throw UserError("--resize: `" + text +
+                  "` is not WIDTHxHEIGHT with a width of twice the height, such as 2048x1024");
+}
+
+/// Sets the number of threads everything below uses, and gives it.
+int SetThreads(int wanted) {
+  const int threads =
+      wanted > 0 ? wanted : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  omp_set_num_threads(threads);
+  cv::setNumThreads(threads);
+  return threads;
+}
+
+double PeakMemoryMb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // KiB on Linux
+}
+
+/// Tracks frame by frame to the end, an interrupt, or a failure of input or disk.
+RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, bool is_quiet) {
+  const auto start = std::chrono::steady_clock::now();
+  RunRecord record;
+  Progress progress(sequence->frame_count(), is_quiet);
+  const auto pass_on_warnings = [&] {
+    for (std::string& warning : sequence->TakeWarnings()) {
+      progress.Warn(warning);
+      record.warnings.push_back(std::move(warning));
+    }
+  };
+  try {
+    while (CaughtInterrupt() == 0) {
+      const std::optional<Frame> frame = sequence->Next();
+      pass_on_warnings();
+      if (!frame) break;
+      const FrameReport report = system->Process(*frame);
+      if (report.world_from_camera) output->Append(frame->timestamp, *report.world_from_camera);
+      record.times.Add(report.timing_ms);
+      progress.Update(frame->index, report);
+    }
+  } catch (const UserError&) {
+    record.failure = std::current_exception();
+    pass_on_warnings();
+  }
+  record.frames = progress.num_frames();
+  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return record;
+}
+
+nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& record,
+                         const RunOptions& options, int threads) {
+  nlohmann::json summary = {
+      {"version", Version()},
+      {"input", options.input},
+      {"frames", record.frames},
+      {"tracked", reconstruction.frames.size()},
+      {"lost", reconstruction.lost},
+      {"maps", reconstruction.maps.size()},
+      {"initialized_at", nullptr},
+      {"keyframes", reconstruction.keyframes.size()},
+      {"landmarks", reconstruction.landmarks.size()},
+      {"features_per_keyframe", reconstruction.features_per_keyframe},
+      {"scale", {{"source", "none"}, {"value", 1.0}}},
+      {"timing_ms", record.times.Summary()},
+      {"seconds", record.seconds},
+      {"frames_per_second", record.frames / std::max(record.seconds, 1e-9)},
+      {"peak_memory_mb", PeakMemoryMb()},
+      {"threads", threads},
+      {"weights", "none"},
+      {"interrupted", CaughtInterrupt() != 0 || record.failure != nullptr},
+      {"warnings", record.warnings},
+  };
+  if (reconstruction.initialized_at) summary["initialized_at"] = *reconstruction.initialized_at;
+  return summary;
+}
+
+void PrintResult(const nlohmann::json& summary, const std::filesystem::path& folder) {
+  std::cout
+      << summary["tracked"] << " of " << summary["frames"] << " frames tracked in "
+      << summary["maps"] << (summary["maps"] == 1 ? " map, " : " maps, ") << summary["keyframes"]
+      << " keyframes, " << summary["landmarks"] << " landmarks, "
+      << std::lround(summary["frames_per_second"].get<double>())
+      << " frames a second\nwrote trajectory.txt, keyframes.txt, cloud.ply and summary.json to "
+      << folder.string() << std::endl;
+}
+
+int Run(const RunOptions& options) {
+  Options system_options;
+  if (!options.config.empty()) MakeConfigSchema(&system_options).Load(options.config);
+  SequenceOptions sequence_options = options.sequence;
+  sequence_options.resize = ParseSize(options.resize);
+  const std::unique_ptr<Sequence> sequence = OpenSequence(options.input, sequence_options);
+  const cv::Size size = sequence->image_size();
+  const cv::Mat mask = options.mask == "none" ? cv::Mat() : LoadMask(options.mask, size);
+  RunOutput output(options.out);
+  CatchInterrupts();
+
+  const int threads = SetThreads(options.threads);
+  System system(EquirectangularCamera(size.width, size.height), system_options, mask);
+  const RunRecord record = ProcessFrames(sequence.get(), &system, &output, options.is_quiet);
+  const Reconstruction reconstruction = system.Finish();
+  const nlohmann::json summary = Summarize(reconstruction, record, options, threads);
+  output.Finish(reconstruction, summary);
+  if (!options.is_quiet) PrintResult(summary, output.folder());
+
+  if (record.failure) std::rethrow_exception(record.failure);
+  if (CaughtInterrupt() != 0) {
+    std::cerr << "orb360: interrupted after " << record.frames << " frames; what was done is in "
+              << output.folder().string() << '\n';
+    return 128 + CaughtInterrupt();  // as shells report it
+  }
+  if (reconstruction.frames.empty()) {
+    throw UserError(options.input + ": no pose was found in its " + std::to_string(record.frames) +
+                    " frames; the camera must move and see some texture");
+  }
+  return EXIT_SUCCESS;
+}
+
+}  // namespace
+
+void AddRunCommand(CLI::App* app, Command* chosen) {
+  CLI::App* command = app->add_subcommand("run", "Track a 360-degree video and map what it sees");
+  const auto options = std::make_shared<RunOptions>();
+  SequenceOptions& sequence = options->sequence;
+  command
+      ->add_option("INPUT", options->input,
+                   "Equirectangular video, folder of images, or sequence folder")
+      ->required();
+  command->add_option("--out", options->out, "Folder for the results; created if need be")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--config", options->config, "Options as `orb360 config` prints them")
+      ->type_name("FILE");
+  command->add_option("--weights", "Network for dense depth; this version knows none")
+      ->check(CLI::IsMember({"none"}))
+      ->type_name("none");
+  command
+      ->add_option("--mask", options->mask,
+                   "none, or an image that is black where the camera's carrier is seen")
+      ->type_name("none|FILE")
+      ->capture_default_str();
+  command->add_option("--threads", options->threads, "Threads (default: one for each core)")
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  command->add_option("--max-frames", sequence.max_frames, "Stop after so many frames")
+      ->check(CLI::Range(1, 1 << 30))
+      ->type_name("N");
+  command
+      ->add_option("--fps", sequence.fps,
+                   "Frames a second, instead of what the input says (image folders: 30)")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->type_name("RATE");
+  command->add_option("--stride", sequence.stride, "Use every N-th frame")
+      ->check(CLI::Range(1, 1 << 30))
+      ->type_name("N");
+  command->add_option("--start", sequence.start, "First frame to use, counted from 0")
+      ->check(CLI::Range(0, 1 << 30))
+      ->type_name("N");
+  command->add_option("--resize", options->resize, "Scale every image first")->type_name("WxH");
+  command->add_flag("--quiet", options->is_quiet, "Show no progress");
+  command->callback([options, chosen] { *chosen = [options] { return Run(*options); }; });
+}
+
+}  // namespace orb360

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+#include "slam/io/trajectory.h"
+#include "slam/pipeline/reconstruction.h"
+
+namespace orb360 {
+
+/// The folder a run writes into. While the run lasts it holds `trajectory.journal`, each pose as
+/// it is first known; at the end the finished files take its place.
+class RunOutput {
+ public:
+  /// Creates the folder if need be and begins the journal. Throws UserError where that fails.
+  explicit RunOutput(const std::filesystem::path& folder);
+
+  /// Adds to the journal. Its world is that of the first pose.
+  void Append(double timestamp, const Rigid3& map_from_camera);
+
+  /// Writes trajectory.txt, keyframes.txt, cloud.ply and summary.json, then removes the journal.
+  void Finish(const Reconstruction& reconstruction, const nlohmann::json& summary);
+
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+  TrajectoryJournal journal_;
+  std::optional<Rigid3> file_world_from_map_;
+};
+
+}  // namespace orb360

@@ -1,0 +1,7 @@
+#include "slam/version.h"
+
+namespace orb360 {
+
+std::string_view Version() { return ORB360_VERSION; }
+
+}  // namespace orb360
