@@ -12,6 +12,7 @@
 #include "apps/town/drive/camera_path.h"
 #include "apps/town/image/random.h"
 #include "apps/town/output/sequence_writer.h"
+#include "apps/town/render/openness.h"
 #include "apps/town/render/renderer.h"
 #include "apps/town/world/town.h"
 #include "slam/check.h"
@@ -44,9 +45,10 @@ void Render(const RenderArguments& arguments) {
   const uint64_t seed = SeedOf(arguments.town);
   if (arguments.threads > 0) omp_set_num_threads(arguments.threads);
   const Light light = MakeLight(arguments.light, seed);
-  const Town town = BuildTown(seed);
+  Town town = BuildTown(seed);
   const Sky sky(light, seed);
   const RayScene scene(town);
+  BakeOpenness(scene, &town);
   const Shader shader(town, light, sky);
 
   DriveOptions drive;

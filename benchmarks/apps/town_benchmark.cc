@@ -77,18 +77,7 @@ void BM_BareEmbree(benchmark::State& state) {
           const Vector3f d = static_cast<float>(-latitude.x()) *
                                  horizontal[static_cast<size_t>(column + lane % 8)] +
                              static_cast<float>(latitude.z()) * up;
-          rays.ray.org_x[lane] = origin.x();
-          rays.ray.org_y[lane] = origin.y();
-          rays.ray.org_z[lane] = origin.z();
-          rays.ray.dir_x[lane] = d.x();
-          rays.ray.dir_y[lane] = d.y();
-          rays.ray.dir_z[lane] = d.z();
-          rays.ray.tnear[lane] = 0;
-          rays.ray.tfar[lane] = 3000;
-          rays.ray.time[lane] = 0;
-          rays.ray.mask[lane] = ~0U;
-          rays.ray.id[lane] = 0;
-          rays.ray.flags[lane] = 0;
+          SetRay(rays.ray, lane, origin, d, 3000);
           rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
           rays.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
           valid[static_cast<size_t>(lane)] = -1;

@@ -39,7 +39,7 @@ Vector2d LanePoint(const StreetPlan& plan, const Leg& leg, double station) {
   const StreetPoint p = plan.streets[leg.street].At(station);
   const double direction = leg.to > leg.from ? 1 : -1;
   const Vector2d right(direction * p.tangent.y(), -direction * p.tangent.x());
-  return p.position + 0.5 * p.half_width * right;
+  return p.position + plan.streets[leg.street].LaneOffset(p.half_width) * right;
 }
 
 Vector2d LaneDirection(const StreetPlan& plan, const Leg& leg, double station) {

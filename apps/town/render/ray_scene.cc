@@ -104,6 +104,11 @@ void RayScene::Occluded(const int* valid, RTCRay16* rays) const {
   rtcOccluded16(valid, scene_.get(), &context, rays);
 }
 
+void RayScene::OccludedByModel(uint32_t model, const int* valid, RTCRay16* rays) const {
+  RTCIntersectContext context = CoherentContext();
+  rtcOccluded16(valid, model_scenes_[model].get(), &context, rays);
+}
+
 SurfaceHit RayScene::Resolve(const RTCHit16& hit, int lane) const {
   const unsigned instance_id = hit.instID[0][lane];
   const Instance* instance = nullptr;

@@ -14,6 +14,23 @@ namespace orb360::town {
 /// Number of rays traced together.
 inline constexpr int kPacket = 16;
 
+/// Fills one lane of a packet.
+inline void SetRay(RTCRay16& rays, int lane, const Vector3f& origin, const Vector3f& direction,
+                   float far) {
+  rays.org_x[lane] = origin.x();
+  rays.org_y[lane] = origin.y();
+  rays.org_z[lane] = origin.z();
+  rays.dir_x[lane] = direction.x();
+  rays.dir_y[lane] = direction.y();
+  rays.dir_z[lane] = direction.z();
+  rays.tnear[lane] = 0;
+  rays.tfar[lane] = far;
+  rays.time[lane] = 0;
+  rays.mask[lane] = ~0U;
+  rays.id[lane] = 0;
+  rays.flags[lane] = 0;
+}
+
 /// A handle of Embree's, released with its owner.
 template <typename T, void (*Release)(T)>
 class EmbreeHandle {
@@ -54,6 +71,8 @@ class RayScene {
   void Intersect(const int* valid, RTCRayHit16* rays) const;
   /// tfar becomes -infinity in the lanes whose ray meets anything.
   void Occluded(const int* valid, RTCRay16* rays) const;
+  /// As Occluded, in a model's own frame and with the model alone.
+  void OccludedByModel(uint32_t model, const int* valid, RTCRay16* rays) const;
   /// The surface in one lane of a packet which hit (geomID is not invalid).
   SurfaceHit Resolve(const RTCHit16& hit, int lane) const;
 

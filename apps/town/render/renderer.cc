@@ -6,7 +6,6 @@
 #include <limits>
 #include <vector>
 
-#include "apps/town/image/random.h"
 #include "apps/town/render/tone.h"
 
 namespace orb360::town {
@@ -61,22 +60,6 @@ class RayDirections {
   Vector3f up_;
 };
 
-void SetRay(RTCRay16& rays, int lane, const Vector3f& origin, const Vector3f& direction,
-            float far) {
-  rays.org_x[lane] = origin.x();
-  rays.org_y[lane] = origin.y();
-  rays.org_z[lane] = origin.z();
-  rays.dir_x[lane] = direction.x();
-  rays.dir_y[lane] = direction.y();
-  rays.dir_z[lane] = direction.z();
-  rays.tnear[lane] = 0;
-  rays.tfar[lane] = far;
-  rays.time[lane] = 0;
-  rays.mask[lane] = ~0U;
-  rays.id[lane] = 0;
-  rays.flags[lane] = 0;
-}
-
 void ClearHit(RTCHit16& hit, int lane) {
   hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
   hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
@@ -109,14 +92,13 @@ class PacketRenderer {
         origin_(origin),
         sample_angle_(sample_angle),
         has_sun_(shader.light().sun.maxCoeff() > 0) {
-    // Points of the sun's disc: each sample of a pixel has its own ring of equal area.
+    // Points of the sun's disc, one for each sample of a pixel.
     const Vector3f& to_sun = shader.light().to_sun;
     const Vector3f x = to_sun.unitOrthogonal();
     const Vector3f y = to_sun.cross(x);
-    for (size_t i = 0; i < to_sun_.size(); ++i) {
-      const auto turn = static_cast<float>(Hash(i) & 0xffffU) * (6.2831853F / 65536);
-      const float radius =
-          kSunRadius * std::sqrt((static_cast<float>(i % kSamples) + 0.5F) / kSamples);
+    for (size_t i = 0; i < kSamples; ++i) {
+      const float turn = 2.39996F * static_cast<float>(i);  // the golden angle
+      const float radius = kSunRadius * std::sqrt((static_cast<float>(i) + 0.5F) / kSamples);
       to_sun_[i] = to_sun + radius * (std::cos(turn) * x + std::sin(turn) * y);
     }
   }
@@ -131,7 +113,7 @@ class PacketRenderer {
     scene_->Intersect(valid_.data(), &rays_);
     patch_count_ = 0;
     valid_.fill(0);
-    for (int pixel = 0; pixel < kPixels; ++pixel) DescribePixel(column + pixel, row, pixel);
+    for (int pixel = 0; pixel < kPixels; ++pixel) DescribePixel(pixel);
     if (std::any_of(valid_.begin(), valid_.end(), [](int valid) { return valid != 0; }))
       scene_->Occluded(valid_.data(), &shadows_);
     for (int pixel = 0; pixel < kPixels; ++pixel)
@@ -171,10 +153,8 @@ class PacketRenderer {
   }
 
   /// Sorts the pixel's samples into patches and sets up their rays to the sun.
-  void DescribePixel(int column, int row, int pixel) {
+  void DescribePixel(int pixel) {
     const size_t first_patch = patch_count_;
-    const uint64_t disc = Hash(static_cast<uint64_t>(row) << 20 | static_cast<uint64_t>(column)) %
-                          (to_sun_.size() / kSamples);
     for (int lane = pixel * kSamples; lane < (pixel + 1) * kSamples; ++lane) {
       const auto index = static_cast<size_t>(lane);
       patch_of_[index] = kNoPatch;
@@ -192,7 +172,7 @@ class PacketRenderer {
                                       kLevelOffset[index % kSamples]);
       if (!has_sun_ || patch.surface.sun_cosine <= 0) continue;
       const Vector3f point = origin_ + rays_.ray.tfar[lane] * Direction(lane) + patch.lift;
-      SetRay(shadows_, lane, point, to_sun_[disc * kSamples + index % kSamples], kFar);
+      SetRay(shadows_, lane, point, to_sun_[index % kSamples], kFar);
       valid_[index] = -1;
     }
   }
@@ -233,7 +213,7 @@ class PacketRenderer {
   Vector3f origin_;
   float sample_angle_;
   bool has_sun_;
-  std::array<Vector3f, 64> to_sun_;
+  std::array<Vector3f, kSamples> to_sun_;
   RTCRayHit16 rays_;
   RTCRay16 shadows_;
   alignas(64) std::array<int, kPacket> valid_;

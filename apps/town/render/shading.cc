@@ -43,6 +43,8 @@ Surface Shader::Describe(const SurfaceHit& hit, float b, float c, const Vector3f
                       c * static_cast<float>(vc.openness)) *
                      (1.0F / 255);
 
+  if (hit.instance != nullptr) surface.openness *= hit.instance->openness;
+
   // A tilted surface stretches the footprint one way by 1/cos: the geometric mean of both ways.
   const float stretched = footprint / std::sqrt(std::max(-facing, 0.04F));
   surface.texture = &town_->materials.textures[material.texture];
@@ -87,7 +89,7 @@ Vector3f Shader::Radiance(const Surface& surface, const Vector3f& albedo, float 
                           const Vector3f& direction, float range) const {
   const float up = 0.5F + 0.5F * surface.normal.z();
   const Vector3f ambient = surface.openness * (up * sky_->mean() + (1 - up) * light_->ground) +
-                           (1 - surface.openness) * 0.45F * light_->ground;
+                           (1 - surface.openness) * 0.9F * light_->ground;
   const Vector3f light = ambient + sunlit * surface.sun_cosine * light_->sun;
   const Vector3f colour = albedo.cwiseProduct(surface.tone);
   Vector3f radiance = colour.cwiseProduct(light);

@@ -172,7 +172,7 @@ void AddRoadMarkings(const StreetPlan& plan, MeshBuilder& builder) {
     }
     for (double s = 1; s + 2 < street.Length(); s += 2) {
       if (!clear(s, 9) || !clear(s + 2, 9)) continue;
-      const double edge = street.At(s).half_width - 0.35;
+      const double edge = street.At(s).half_width - (street.parking ? kParkingWidth : 0.35);
       AddStrip(plan, street, s, s + 2, edge - 0.1, edge, builder);
       AddStrip(plan, street, s, s + 2, -edge, -edge + 0.1, builder);
     }

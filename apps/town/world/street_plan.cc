@@ -163,9 +163,10 @@ StreetPlan PlanStreets(const PlanOptions& options) {
     knots.push_back(at(nodes.size() - 1) +
                     extent * (at(nodes.size() - 1) - at(nodes.size() - 2)).normalized());
     std::vector<double> stations;
-    Street street = MakeStreet(knots, random.Uniform(4.2, 6.2), random.Uniform(0.0, 0.35),
+    Street street = MakeStreet(knots, random.Uniform(3.3, 6.9), random.Uniform(0.0, 0.3),
                                random.Uniform(0, 6.28), &stations);
     street.pavement = random.Uniform(2.2, 4.2);
+    street.parking = street.points.front().half_width > 5.2;
     street.has_centre_line = random.Chance(0.8);
     for (size_t i = 0; i < nodes.size(); ++i) {
       plan.junctions[nodes[i]].arms.push_back({plan.streets.size(), stations[knot_of_node[i]]});

@@ -17,11 +17,19 @@ struct StreetPoint {
   double half_width = 0;  ///< of the carriageway, between the kerbs
 };
 
+inline constexpr double kParkingWidth = 2.1;  // metres
+
 /// A street: a smooth centreline sampled every metre or so, carriageway width varying along it.
 struct Street {
   std::vector<StreetPoint> points;
   double pavement = 3;  ///< width of the pavement on either side
   bool has_centre_line = true;
+  bool parking = false;  ///< a row of parked cars on either side, kParkingWidth wide
+
+  /// Metres from the centreline to the middle of the lane on either side.
+  double LaneOffset(double half_width) const {
+    return 0.5 * (half_width - (parking ? kParkingWidth : 0.0));
+  }
 
   double Length() const { return points.back().station; }
   /// Interpolated at `station`, clamped to the street.

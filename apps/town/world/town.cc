@@ -4,6 +4,7 @@
 
 #include "apps/town/image/random.h"
 #include "apps/town/world/building.h"
+#include "apps/town/world/furnish.h"
 #include "apps/town/world/ground.h"
 #include "apps/town/world/lots.h"
 
@@ -26,6 +27,7 @@ Town BuildTown(uint64_t seed) {
     AddBuilding(lot, lot_random, builder);
   }
   town.fixed = std::move(builder.mesh());
+  FurnishStreets(random.Fork(4), &town);
   town.fixed.PartitionCutouts(town.materials);
   for (Mesh& model : town.models) model.PartitionCutouts(town.materials);
   return town;

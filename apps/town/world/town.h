@@ -13,7 +13,9 @@ namespace orb360::town {
 struct Instance {
   uint32_t model = 0;
   Eigen::Isometry3f world_from_model = Eigen::Isometry3f::Identity();
-  Rgba tint;  ///< linear factor on the surfaces with Finish::kPaint
+  Rgba tint;           ///< linear factor on the surfaces with Finish::kPaint
+  float lookout = 3;   ///< metres above its origin from which it sees its surroundings freely
+  float openness = 1;  ///< share of the sky seen from there
 };
 
 /// Everything that stands still, and the models that things are made from.

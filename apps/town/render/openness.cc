@@ -1,0 +1,124 @@
+#include "apps/town/render/openness.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+namespace orb360::town {
+namespace {
+
+constexpr int kDirections = 2 * kPacket;
+constexpr float kFar = 120;  // metres; what is farther away takes next to nothing of the sky
+
+/// Directions over the hemisphere about +z, dense in proportion to the cosine (a Fibonacci
+/// spiral on the disc, lifted).
+std::array<Vector3f, kDirections> CosineDirections() {
+  std::array<Vector3f, kDirections> directions;
+  for (size_t i = 0; i < directions.size(); ++i) {
+    const float squared_radius = (static_cast<float>(i) + 0.5F) / kDirections;
+    const float angle = std::numbers::pi_v<float> * (3 - std::sqrt(5.0F)) * static_cast<float>(i);
+    directions[i] = {std::sqrt(squared_radius) * std::cos(angle),
+                     std::sqrt(squared_radius) * std::sin(angle), std::sqrt(1 - squared_radius)};
+  }
+  return directions;
+}
+
+/// Share of the directions about `normal` in which `occluded` finds nothing.
+template <typename Occluded>
+float Openness(const Vector3f& point, const Vector3f& normal, const Occluded& occluded) {
+  static const std::array<Vector3f, kDirections> kPattern = CosineDirections();
+  const Vector3f x = normal.unitOrthogonal();
+  const Vector3f y = normal.cross(x);
+  int open = 0;
+  for (int first = 0; first < kDirections; first += kPacket) {
+    RTCRay16 rays;
+    alignas(64) std::array<int, kPacket> valid;
+    valid.fill(-1);
+    for (int lane = 0; lane < kPacket; ++lane) {
+      const Vector3f& d = kPattern[static_cast<size_t>(first + lane)];
+      SetRay(rays, lane, point, d.x() * x + d.y() * y + d.z() * normal, kFar);
+    }
+    occluded(valid.data(), &rays);
+    for (int lane = 0; lane < kPacket; ++lane) open += rays.tfar[lane] >= 0 ? 1 : 0;
+  }
+  return static_cast<float>(open) / kDirections;
+}
+
+/// Where a vertex looks from: a little off the surface and towards the inside of a triangle, so
+/// that it does not stand in the wall next to it.
+std::vector<Vector3f> LookoutPoints(const Mesh& mesh) {
+  std::vector<Vector3f> points = mesh.positions;
+  for (const Triangle& triangle : mesh.triangles) {
+    const Vector3f centre =
+        (mesh.positions[triangle.vertices[0]] + mesh.positions[triangle.vertices[1]] +
+         mesh.positions[triangle.vertices[2]]) /
+        3;
+    for (const uint32_t index : triangle.vertices) {
+      const Vector3f inward = centre - mesh.positions[index];
+      const float step = std::min(0.06F, 0.3F * inward.norm());  // metres
+      points[index] = mesh.positions[index] + step * inward.normalized() +
+                      0.02F * mesh.vertices[index].normal.cast<float>() / 127;
+    }
+  }
+  return points;
+}
+
+template <typename Occluded>
+void BakeMesh(const Occluded& occluded, Mesh* mesh) {
+  const std::vector<Vector3f> points = LookoutPoints(*mesh);
+  // Neighbouring faces repeat their corners: look once for each place, to the decimetre.
+  using Key = std::array<int, 6>;
+  const auto key = [&](uint32_t i) -> Key {
+    const Eigen::Vector3i place = (points[i] * 10).array().round().cast<int>();
+    const auto& n = mesh->vertices[i].normal;
+    return {place.x(), place.y(), place.z(), n.x(), n.y(), n.z()};
+  };
+  std::vector<std::pair<Key, uint32_t>> order;
+  order.reserve(points.size());
+  for (uint32_t i = 0; i < points.size(); ++i) order.emplace_back(key(i), i);
+  std::sort(order.begin(), order.end());
+  std::vector<size_t> starts;
+  for (size_t i = 0; i < order.size(); ++i) {
+    if (i == 0 || order[i].first != order[i - 1].first) starts.push_back(i);
+  }
+#pragma omp parallel for schedule(dynamic, 64)
+  for (size_t k = 0; k < starts.size(); ++k) {
+    const uint32_t first = order[starts[k]].second;
+    const Vector3f normal = mesh->vertices[first].normal.cast<float>().normalized();
+    const float openness = Openness(points[first], normal, occluded);
+    const size_t end = k + 1 < starts.size() ? starts[k + 1] : order.size();
+    for (size_t i = starts[k]; i < end; ++i)
+      mesh->vertices[order[i].second].openness = static_cast<uint8_t>(std::lround(255 * openness));
+  }
+}
+
+}  // namespace
+
+void BakeOpenness(const RayScene& scene, Town* town) {
+  BakeMesh([&](const int* valid, RTCRay16* rays) { scene.Occluded(valid, rays); }, &town->fixed);
+  for (uint32_t i = 0; i < town->models.size(); ++i) {
+    const auto occluded = [&](const int* valid, RTCRay16* rays) {
+      scene.OccludedByModel(i, valid, rays);
+      for (int lane = 0; lane < kPacket; ++lane) {
+        const bool meets_ground =
+            rays->dir_z[lane] < 0 && -rays->org_z[lane] / rays->dir_z[lane] < kFar;
+        if (meets_ground) rays->tfar[lane] = -1;
+      }
+    };
+    BakeMesh(occluded, &town->models[i]);
+  }
+#pragma omp parallel for schedule(dynamic, 16)
+  for (size_t i = 0; i < town->instances.size(); ++i) {
+    Instance& instance = town->instances[i];
+    // From above the thing itself, so that it does not shade itself twice.
+    const Vector3f top = instance.world_from_model.translation() + Vector3f(0, 0, instance.lookout);
+    instance.openness = Openness(top, Vector3f::UnitZ(), [&](const int* valid, RTCRay16* rays) {
+      scene.Occluded(valid, rays);
+    });
+  }
+}
+
+}  // namespace orb360::town

@@ -1,0 +1,102 @@
+#include "apps/town/world/tree.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <vector>
+
+namespace orb360::town {
+namespace {
+
+/// A direction uniform over the sphere.
+Vector3f RandomDirection(Random& random) {
+  const auto z = static_cast<float>(random.Uniform(-1, 1));
+  const auto angle = static_cast<float>(random.Uniform(0, 2 * std::numbers::pi));
+  const float radius = std::sqrt(1 - z * z);
+  return {radius * std::cos(angle), radius * std::sin(angle), z};
+}
+
+/// A square card with leaves on it, its twig at `root`, lit as part of a crown whose surface faces
+/// `outward` there.
+void AddLeafCard(MeshBuilder& b, MaterialId leaves, const Vector3f& root, const Vector3f& along,
+                 float size, const Vector3f& outward, Random& random) {
+  const Vector3f up = along.normalized();
+  const Vector3f across = (up.cross(RandomDirection(random)) + Vector3f(1e-3F, 0, 0)).normalized();
+  std::array<uint32_t, 4> index{};
+  for (size_t i = 0; i < 4; ++i) {
+    const float u = i == 1 || i == 2 ? 1.0F : 0.0F;
+    const float v = i >= 2 ? 1.0F : 0.0F;
+    const Vector3f corner = root + size * ((u - 0.5F) * across + v * up);
+    index[i] = b.AddVertex(corner, (outward + 0.35F * RandomDirection(random)).normalized(), u, v);
+  }
+  b.AddTriangle(leaves, index[0], index[1], index[2]);
+  b.AddTriangle(leaves, index[0], index[2], index[3]);
+}
+
+/// A branch with branches, down to `levels`; the ends of the last ones are collected.
+void Grow(MeshBuilder& b, const Vector3f& base, const Vector3f& direction, float length,
+          float radius, int levels, Random& random, std::vector<Vector3f>* tips) {
+  const Vector3f middle = base + 0.5F * length * direction;
+  const Vector3f bent =
+      (direction + 0.25F * RandomDirection(random) + Vector3f(0, 0, 0.15F)).normalized();
+  const Vector3f end = middle + 0.5F * length * bent;
+  b.AddTube(b.materials().bark, base, middle, radius, 0.8F * radius, levels > 2 ? 9 : 5);
+  b.AddTube(b.materials().bark, middle, end, 0.8F * radius, 0.55F * radius, levels > 2 ? 9 : 5);
+  if (levels <= 2) tips->push_back(middle);
+  tips->push_back(end);
+  if (levels <= 1) return;
+  const int children = 3 + random.Int(2);
+  for (int i = 0; i < children; ++i) {
+    Vector3f side = RandomDirection(random);
+    side.z() = 0.25F + 0.5F * std::abs(side.z());
+    const Vector3f child = (0.55F * bent + side.normalized()).normalized();
+    Grow(b, i % 2 == 0 ? end : Vector3f(0.35F * middle + 0.65F * end), child,
+         length * static_cast<float>(random.Uniform(0.55, 0.8)), 0.5F * radius, levels - 1, random,
+         tips);
+  }
+}
+
+}  // namespace
+
+Mesh MakeTree(const Materials& materials, Random random) {
+  MeshBuilder b(materials);
+  std::vector<Vector3f> tips;
+  const auto trunk = static_cast<float>(random.Uniform(2.2, 3.2));
+  const auto crown = static_cast<float>(random.Uniform(0.8, 1.25));
+  Grow(b, {0, 0, -0.3F}, Vector3f::UnitZ(), trunk, static_cast<float>(random.Uniform(0.12, 0.2)), 4,
+       random, &tips);
+  Vector3f centre = Vector3f::Zero();
+  for (const Vector3f& tip : tips) centre += tip / static_cast<float>(tips.size());
+  const MaterialId leaves = random.Pick(std::span<const MaterialId>(materials.leaves));
+  const auto hue = static_cast<float>(random.Uniform(0.6, 1.0));
+  const float yellow = static_cast<float>(random.Uniform(0.55, 1.0));
+  for (const Vector3f& tip : tips) {
+    for (int i = 0; i < 5; ++i) {
+      const Vector3f outward = (tip - centre + Vector3f(0, 0, 0.4F)).normalized();
+      const auto shade = static_cast<float>(random.Uniform(0.65, 1.0));
+      b.set_tint({shade * yellow, shade * hue, shade * 0.7F, 1});
+      AddLeafCard(b, leaves, tip + 0.15F * RandomDirection(random),
+                  RandomDirection(random) + 0.6F * outward,
+                  crown * static_cast<float>(random.Uniform(0.6, 1.0)), outward, random);
+    }
+  }
+  return std::move(b.mesh());
+}
+
+Mesh MakeBush(const Materials& materials, Random random) {
+  MeshBuilder b(materials);
+  const MaterialId leaves = random.Pick(std::span<const MaterialId>(materials.leaves));
+  for (int i = 0; i < 90; ++i) {
+    const Vector3f p(static_cast<float>(random.Uniform(-0.5, 0.5)),
+                     static_cast<float>(random.Uniform(-0.35, 0.35)),
+                     static_cast<float>(random.Uniform(0, 0.95)));
+    const Vector3f outward = Vector3f(0, 2.5F * p.y(), p.z()).normalized();
+    const auto shade = static_cast<float>(random.Uniform(0.5, 0.9));
+    b.set_tint({shade * 0.8F, shade, shade * 0.7F, 1});
+    AddLeafCard(b, leaves, p, RandomDirection(random) + outward, 0.42F, outward, random);
+  }
+  return std::move(b.mesh());
+}
+
+}  // namespace orb360::town

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "apps/town/image/random.h"
+#include "apps/town/world/mesh.h"
+
+namespace orb360::town {
+
+enum class VehicleKind { kHatchback, kSaloon, kSuv, kVan };
+inline constexpr int kVehicleKinds = 4;
+
+/// Length over all in metres.
+float VehicleLength(VehicleKind kind);
+
+/// A car on its wheels: x forward, y left, z up from the road, the origin below its middle. Its
+/// body takes the tint of the instance.
+Mesh MakeVehicle(VehicleKind kind, const Materials& materials);
+
+/// A car colour, most of them greys.
+Rgba DrawPaint(Random& random);
+
+}  // namespace orb360::town
