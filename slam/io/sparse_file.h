@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+
+#include <opencv2/core.hpp>
+
+#include "slam/depth/sparse_depth.h"
+#include "slam/geometry/rigid3.h"
+
+namespace orb360 {
+
+/// What one keyframe gives to depth completion.
+struct SparseSample {
+  cv::Mat image;  // CV_8UC3, BGR
+  SparseDepth sparse;
+  int frame_index = 0;
+  double timestamp = 0;  // s
+  Rigid3 world_from_camera;  // map frame and units, camera -X forward
+};
+
+/// Writes one HDF5 file: datasets `image` (height x width x 3, uint8, RGB), `range` and
+/// `confidence` (height x width, float32, 0 = no point; range along the ray in the map's units),
+/// and attributes `frame_index`, `timestamp` and `world_from_camera` (tx ty tz qx qy qz qw).
+/// Throws UserError where the file cannot be written; no partial file stays.
+void WriteSparseSample(const std::filesystem::path& path, const SparseSample& sample);
+
+/// Reads it back. Throws UserError for a file that is missing or not of this form.
+SparseSample ReadSparseSample(const std::filesystem::path& path);
+
+}  // namespace orb360
