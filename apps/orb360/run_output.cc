@@ -39,7 +39,8 @@ void RunOutput::Append(double timestamp, const Rigid3& map_from_camera) {
 void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::json& summary) {
   Rigid3 file_world_from_map;
   if (!reconstruction.frames.empty()) {
-    file_world_from_map = FileWorldFromMap(reconstruction.frames.front().world_from_camera);
+    file_world_from_map = FileWorldFromMap(reconstruction.frames.front().world_from_camera,
+                                           reconstruction.up);
   }
   std::vector<ColoredPoint> cloud;
   cloud.reserve(reconstruction.landmarks.size());

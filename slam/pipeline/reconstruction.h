@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -7,8 +8,17 @@
 
 #include "slam/features/features.h"
 #include "slam/geometry/rigid3.h"
+#include "slam/map/map.h"
 
 namespace orb360 {
+
+/// A frame's pose relative to a keyframe of a map, so that it follows the keyframe's corrections.
+struct Placement {
+  double timestamp;  // s
+  int map;
+  KeyframeId reference;
+  Rigid3 reference_from_camera;
+};
 
 struct FramePose {
   int index;         // in the sequence
@@ -40,6 +50,12 @@ struct Reconstruction {
   std::optional<int> initialized_at;  // frame at which the first map was made
   int lost = 0;                       // times tracking was lost after that
   double features_per_keyframe = 0;   // mean number matched to landmarks
+  /// Normal of the ground in the world, unit, towards the sky; where one was found.
+  std::optional<Eigen::Vector3d> up;
 };
+
+/// Everything but `initialized_at` and `lost`. Placements are by frame index.
+Reconstruction MakeReconstruction(const std::vector<Map>& maps,
+                                  const std::map<int, Placement>& placements);
 
 }  // namespace orb360

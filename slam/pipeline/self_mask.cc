@@ -11,8 +11,7 @@ cv::Mat FindSelfMask(const std::string& input, const SequenceOptions& options, d
   constexpr double kInterval = 0.2;  // s: walking and driving then show as pixels of motion
   constexpr double kLongest = 10.0;  // s
   SequenceOptions sampled = options;
-  sampled.stride =
-      std::max(options.stride, static_cast<int>(std::lround(kInterval * frame_rate)));
+  sampled.stride = std::max(options.stride, static_cast<int>(std::lround(kInterval * frame_rate)));
   double source_frames = kLongest * frame_rate;
   if (options.max_frames > 0) {
     source_frames = std::min(source_frames, 1.0 * options.max_frames * options.stride);

@@ -37,7 +37,8 @@ System::System(const EquirectangularCamera& camera, const Options& options, cons
       options_(options),
       mask_(mask),
       extractor_(options.orb),
-      pixel_sigma_(camera.AngleOfPixels(options.orb.pixel_sigma)) {}
+      pixel_sigma_(camera.AngleOfPixels(options.orb.pixel_sigma)),
+      num_threads_(omp_get_max_threads()) {}
 
 System::~System() = default;
 
@@ -45,6 +46,7 @@ FrameReport System::Process(const Frame& frame) {
   ORB360_CHECK(frame.image.type() == CV_8UC3 && frame.image.cols == camera_.width() &&
                    frame.image.rows == camera_.height(),
                frame.image.type(), frame.image.cols, frame.image.rows);
+  omp_set_num_threads(FreeThreads());
   FrameReport report;
   const Clock::time_point start = Clock::now();
   cv::Mat gray;
@@ -91,6 +93,13 @@ FrameReport System::Process(const Frame& frame) {
   report.num_keyframes = num_keyframes_;
   report.num_landmarks = num_landmarks_;
   return report;
+}
+
+// Threads waiting for one that has no core cost more than they bring: one core is left to mapping.
+int System::FreeThreads() const {
+  const bool is_mapping =
+      job_ && job_->map.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+  return is_mapping ? std::max(1, num_threads_ - 1) : num_threads_;
 }
 
 // --- tracking ---------------------------------------------------------------------------------
@@ -363,40 +372,9 @@ Reconstruction System::Finish() {
   if (initialized_at_) finished_maps_.push_back(std::move(map_));
   map_ = Map();
 
-  Reconstruction result;
+  Reconstruction result = MakeReconstruction(finished_maps_, placements_);
   result.initialized_at = initialized_at_;
   result.lost = num_lost_;
-  result.maps.resize(finished_maps_.size());
-  for (const auto& [index, placement] : placements_) {
-    const Map& map = finished_maps_[placement.map];
-    result.frames.push_back({index, placement.timestamp, placement.map,
-                             map.PoseOf(placement.reference) * placement.reference_from_camera});
-    MapSummary& summary = result.maps[placement.map];
-    if (summary.tracked++ == 0) summary.first_frame = index;
-    summary.last_frame = index;
-  }
-  int64_t matched = 0;
-  for (size_t m = 0; m < finished_maps_.size(); ++m) {
-    const Map& map = finished_maps_[m];
-    result.maps[m].keyframes = map.num_keyframes();
-    result.maps[m].landmarks = map.num_landmarks();
-    for (const KeyframeId id : map.KeyframeIds()) {
-      const Keyframe& keyframe = map.keyframe(id);
-      result.keyframes.push_back({keyframe.frame_index, keyframe.timestamp, static_cast<int>(m),
-                                  keyframe.world_from_camera});
-      matched += std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
-                               [](LandmarkId l) { return l != kNoId; });
-    }
-    for (LandmarkId id = 0; id < map.landmark_end(); ++id) {
-      if (!map.HasLandmark(id)) continue;
-      result.landmarks.push_back({map.landmark(id).position, map.landmark(id).color});
-    }
-  }
-  std::sort(result.keyframes.begin(), result.keyframes.end(),
-            [](const FramePose& a, const FramePose& b) { return a.index < b.index; });
-  if (!result.keyframes.empty()) {
-    result.features_per_keyframe = matched / static_cast<double>(result.keyframes.size());
-  }
   return result;
 }
 

@@ -55,6 +55,9 @@ class System {
   /// Waits for mapping and returns everything computed. The system takes no further frames.
   Reconstruction Finish();
 
+  /// The maps, in the order they were begun; complete after Finish().
+  const std::vector<Map>& maps() const { return finished_maps_; }
+
  private:
   struct PendingFrame {  // without a pose so far
     int index;
@@ -66,14 +69,6 @@ class System {
     TrackedFrame frame;  // the keyframe as it was tracked
     int adopt_at;        // value of num_processed_ at which it is due
   };
-  /// A pose relative to a keyframe, so that it follows the keyframe's corrections.
-  struct Placement {
-    double timestamp;
-    int map;
-    KeyframeId reference;
-    Rigid3 reference_from_camera;
-  };
-
   void TrackFrame(const PendingFrame& frame);
   void RecoverFrame(const PendingFrame& frame);
   void InitializeMap(const PendingFrame& frame);
@@ -88,6 +83,7 @@ class System {
   void AdoptMapping();
   void CountSightings(Map* map);
   void UpdateLocalMap();
+  int FreeThreads() const;
   void Place(int index, double timestamp, const Rigid3& world_from_camera);
 
   const EquirectangularCamera camera_;
@@ -95,6 +91,7 @@ class System {
   const cv::Mat mask_;
   OrbExtractor extractor_;
   const double pixel_sigma_;  // rad, on pyramid level 0
+  const int num_threads_;
 
   TrackingState state_ = TrackingState::kInitializing;
   int num_processed_ = 0;

@@ -1,0 +1,47 @@
+#include "slam/pipeline/reconstruction.h"
+
+#include <algorithm>
+
+#include "slam/pipeline/ground.h"
+
+namespace orb360 {
+
+Reconstruction MakeReconstruction(const std::vector<Map>& maps,
+                                  const std::map<int, Placement>& placements) {
+  Reconstruction result;
+  result.maps.resize(maps.size());
+  for (const auto& [index, placement] : placements) {
+    const Map& map = maps[placement.map];
+    result.frames.push_back({index, placement.timestamp, placement.map,
+                             map.PoseOf(placement.reference) * placement.reference_from_camera});
+    MapSummary& summary = result.maps[placement.map];
+    if (summary.tracked++ == 0) summary.first_frame = index;
+    summary.last_frame = index;
+  }
+  int64_t matched = 0;
+  for (size_t m = 0; m < maps.size(); ++m) {
+    const Map& map = maps[m];
+    result.maps[m].keyframes = map.num_keyframes();
+    result.maps[m].landmarks = map.num_landmarks();
+    for (const KeyframeId id : map.KeyframeIds()) {
+      const Keyframe& keyframe = map.keyframe(id);
+      result.keyframes.push_back({keyframe.frame_index, keyframe.timestamp, static_cast<int>(m),
+                                  keyframe.world_from_camera});
+      matched += std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
+                               [](LandmarkId l) { return l != kNoId; });
+    }
+    for (LandmarkId id = 0; id < map.landmark_end(); ++id) {
+      if (!map.HasLandmark(id)) continue;
+      result.landmarks.push_back({map.landmark(id).position, map.landmark(id).color});
+    }
+  }
+  std::sort(result.keyframes.begin(), result.keyframes.end(),
+            [](const FramePose& a, const FramePose& b) { return a.index < b.index; });
+  if (!result.keyframes.empty()) {
+    result.features_per_keyframe = matched / static_cast<double>(result.keyframes.size());
+  }
+  if (!maps.empty()) result.up = EstimateUp(maps.front());
+  return result;
+}
+
+}  // namespace orb360
