@@ -32,6 +32,12 @@ double Cost(const Transform& transform, const std::vector<Vector3d>& source,
   return cost;
 }
 
+Vector3d Centroid(const std::vector<Vector3d>& points) {
+  Vector3d sum = Vector3d::Zero();
+  for (const Vector3d& point : points) sum += point;
+  return sum / static_cast<double>(points.size());
+}
+
 std::vector<Vector3d> RandomPoints(int count, RandomGeometry* random) {
   std::vector<Vector3d> points;
   for (int i = 0; i < count; ++i) points.push_back(random->Point(0.0, 10.0));
@@ -98,6 +104,15 @@ TEST(Alignment, MirroredPointsGetTheBestProperRotation) {
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->rotation.toRotationMatrix().determinant(), 1.0, 1e-12);
   EXPECT_LT(LogSo3(found->rotation).norm(), 0.1);
+
+  const auto similarity = AlignSimilarity(source, target);
+  ASSERT_TRUE(similarity);
+  for (const double factor : {0.99, 1.01}) {
+    Similarity3 other = *similarity;  // about the centroid
+    other.scale *= factor;
+    other.translation = Centroid(target) - other.scale * (other.rotation * Centroid(source));
+    EXPECT_GT(Cost(other, source, target), Cost(*similarity, source, target));
+  }
 }
 
 TEST(Alignment, StraightPathsAlignWithTheSmallestTurn) {
@@ -146,9 +161,11 @@ TEST(Alignment, TwoPointsAreAStraightPath) {
 }
 
 TEST(Alignment, ASinglePlaceIsMovedButHasNoScale) {
-  const std::vector<Vector3d> here(7, Vector3d(0.1, 1e6 / 3.0, 0.7)), there(7, Vector3d(4, 5, 6));
-  const std::vector<Vector3d> apart = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0},
-                                       {4, 0, 0}, {5, 0, 0}, {6, 0, 0}};
+  // Thirteen times these values, the means are off by rounding.
+  const std::vector<Vector3d> here(13, Vector3d(0.1, 1e6 / 3.0, 0.7));
+  const std::vector<Vector3d> there(13, Vector3d(-0.3, 1e5 / 3.0, 0.7));
+  std::vector<Vector3d> apart;
+  for (int i = 0; i < 13; ++i) apart.emplace_back(i, 0, 0);
   const auto moved = AlignRigid(here, there);
   ASSERT_TRUE(moved);
   EXPECT_EQ(moved->rotation.coeffs(), Eigen::Quaterniond::Identity().coeffs());
