@@ -83,7 +83,13 @@ InitializationResult InitializeFromTwoViews(const Features& features1, const Fea
   if (!views.pose) return result;
   result.num_inliers = views.pose->num_inliers;
   result.failure = InitializationFailure::kLittleParallax;
-  if (views.pose->median_parallax < options.min_parallax) return result;
+  const double finest_sigma =
+      std::min_element(features1.keypoints.begin(), features1.keypoints.end(),
+                       [](const Keypoint& a, const Keypoint& b) { return a.sigma < b.sigma; })
+          ->sigma;
+  const double min_parallax =
+      std::max(options.min_parallax, options.min_parallax_sigmas * finest_sigma);
+  if (views.pose->median_parallax < min_parallax) return result;
 
   TwoViewMap map;
   map.world_from_camera2 = views.pose->camera1_from_camera2;

@@ -13,8 +13,11 @@ struct InitializerOptions {
   double nearby_radius = 0.3;
   /// Landmarks the first map must have.
   int min_landmarks = 80;
-  /// Median parallax of the matches that makes a baseline, radians.
+  /// Median parallax of the matches that makes a baseline, radians ...
   double min_parallax = 0.026;
+  /// ... and in standard deviations of a feature on pyramid level 0: with less, the direction of
+  /// motion is a guess.
+  double min_parallax_sigmas = 5.0;
   /// Parallax of a single landmark, radians.
   double min_landmark_parallax = 0.01;
   /// Of all matches, the share that must agree with the motion.
