@@ -1,0 +1,37 @@
+#include "slam/pipeline/ground.h"
+
+#include <gtest/gtest.h>
+
+#include "slam/geometry/bearing.h"
+#include "tests/slam/pipeline/synthetic_scene.h"
+
+namespace orb360 {
+namespace {
+
+// A camera 1.5 over the plane z = 0 of a world that is tilted by `tilt` in the map.
+Map MapOverGround(const Eigen::Quaterniond& tilt, double ground_share) {
+  SyntheticScene scene(400, 2.0, 8.0);
+  for (size_t i = 0; i < scene.points.size(); ++i) {
+    Eigen::Vector3d& p = scene.points[i].position;
+    p.z() = i < ground_share * static_cast<double>(scene.points.size())
+                ? -1.5 + scene.random.Normal(0.02)
+                : scene.random.Uniform(-1.4, 4.0);
+  }
+  for (SyntheticScene::Point& point : scene.points) point.position = tilt * point.position;
+  return scene.MakeMap(Walk(3, {-0.3, 0.0, 0.0}), 400);
+}
+
+TEST(Ground, IsThePlaneBelowATiltedCamera) {
+  const Eigen::Quaterniond tilt = ExpSo3({0.2, -0.15, 0.4});
+  const auto up = EstimateUp(MapOverGround(tilt, 0.5));
+  ASSERT_TRUE(up.has_value());
+  EXPECT_LT(AngleBetween(*up, tilt * Eigen::Vector3d::UnitZ()), 0.03);
+}
+
+TEST(Ground, IsNotInventedWhereThereIsNone) {
+  EXPECT_FALSE(EstimateUp(MapOverGround(Eigen::Quaterniond::Identity(), 0.0)).has_value());
+  EXPECT_FALSE(EstimateUp(Map()).has_value());
+}
+
+}  // namespace
+}  // namespace orb360

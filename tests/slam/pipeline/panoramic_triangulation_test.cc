@@ -1,0 +1,88 @@
+#include "slam/pipeline/panoramic_triangulation.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/slam/pipeline/synthetic_scene.h"
+
+namespace orb360 {
+namespace {
+
+// The point whose descriptor a landmark carries.
+int PointOf(const SyntheticScene& scene, const Landmark& landmark) {
+  for (size_t i = 0; i < scene.points.size(); ++i) {
+    if (scene.points[i].descriptor == landmark.descriptor) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+TEST(PanoramicTriangulation, FindsTheRemainingPointsAllAroundWhereTheyAre) {
+  SyntheticScene scene(600);
+  Map map = scene.MakeMap(Walk(2, {-0.8, 0.3, 0.1}), 50, /*noise=*/0.0);
+  const std::vector<LandmarkId> created = TriangulateNewLandmarks(1, {}, &map);
+  EXPECT_GT(created.size(), 350u);
+  for (const LandmarkId id : created) {
+    const int point = PointOf(scene, map.landmark(id));
+    ASSERT_GE(point, 50);
+    EXPECT_LT((map.landmark(id).position - scene.points[point].position).norm(), 1e-6);
+    EXPECT_EQ(map.landmark(id).observations.size(), 2u);
+  }
+  map.CheckConsistency();
+}
+
+TEST(PanoramicTriangulation, KeepsNoisyPointsWithinTheirExpectedError) {
+  SyntheticScene scene(600);
+  const std::vector<Rigid3> poses = Walk(2, {-0.8, 0.3, 0.1});
+  Map map = scene.MakeMap(poses, 50);
+  const std::vector<LandmarkId> created = TriangulateNewLandmarks(1, {}, &map);
+  ASSERT_GT(created.size(), 200u);
+  int within = 0;
+  for (const LandmarkId id : created) {
+    const SyntheticScene::Point& point = scene.points[PointOf(scene, map.landmark(id))];
+    const Eigen::Vector3d to1 = point.position - poses[0].translation;
+    const Eigen::Vector3d to2 = point.position - poses[1].translation;
+    const double parallax = std::acos(to1.normalized().dot(to2.normalized()));
+    const double level_sigma =
+        map.keyframe(1).features->keypoints[map.landmark(id).observations[1].feature].sigma;
+    const double range_sigma = to2.norm() * std::sqrt(2.0) * level_sigma / parallax;
+    within += (map.landmark(id).position - point.position).norm() < 3.0 * range_sigma;
+  }
+  EXPECT_GT(within, 0.95 * static_cast<double>(created.size()));
+}
+
+TEST(PanoramicTriangulation, MakesNothingWithoutABaseline) {
+  SyntheticScene scene(300);
+  Map map = scene.MakeMap({Rigid3(), {ExpSo3({0.1, 0.2, 0.3}), {0.001, 0, 0}}}, 50);
+  EXPECT_TRUE(TriangulateNewLandmarks(1, {}, &map).empty());
+}
+
+TEST(PanoramicTriangulation, MakesNothingNearTheEpipoles) {
+  SyntheticScene scene(600);
+  const std::vector<Rigid3> poses = Walk(2, {-1.0, 0.0, 0.0});
+  for (int i = 300; i < 600; ++i) {  // ahead and behind within 0.04 rad of the line of motion
+    Eigen::Vector3d& p = scene.points[i].position;
+    p = Eigen::Vector3d((i % 2 == 0 ? -1.0 : 1.0) * p.norm(), 0.02 * (i % 3 - 1), 0.02);
+  }
+  Map map = scene.MakeMap(poses, 50, /*noise=*/0.0);
+  for (const LandmarkId id : TriangulateNewLandmarks(1, {}, &map)) {
+    EXPECT_LT(PointOf(scene, map.landmark(id)), 300);
+  }
+}
+
+TEST(PanoramicTriangulation, RefusesMatchesThatBreakTheEpipolarGeometry) {
+  SyntheticScene scene(400);
+  const std::vector<Rigid3> poses = Walk(2, {-0.8, 0.3, 0.1});
+  Map map = scene.MakeMap(poses, 50, /*noise=*/0.0);
+  // The same descriptors seen from elsewhere than the keyframe claims.
+  Map moved;
+  moved.AddKeyframe(0, 0.0, poses[0], map.keyframe(0).features);
+  const Rigid3 elsewhere{ExpSo3({0.5, -0.4, 0.8}), {3.0, 2.0, -1.0}};
+  moved.AddKeyframe(1, 0.1, poses[1], scene.See(elsewhere, 0.0));
+  const LandmarkId shared = moved.AddLandmark(scene.points[0].position, {});
+  moved.AddObservation(shared, 0, 0);
+  moved.AddObservation(shared, 1, 0);
+  moved.UpdateAppearance(shared);
+  EXPECT_LT(TriangulateNewLandmarks(1, {}, &moved).size(), 8u);
+}
+
+}  // namespace
+}  // namespace orb360

@@ -1,0 +1,73 @@
+#include "slam/pipeline/tracker.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "tests/slam/pipeline/synthetic_scene.h"
+
+namespace orb360 {
+namespace {
+
+class TrackerTest : public testing::Test {
+ protected:
+  TrackerTest() : map_(scene_.MakeMap(Walk(3, {-0.3, 0.1, 0.0}), 400)) {
+    local_ = MakeLocalMap(map_, 2, 10);
+    last_.features = map_.keyframe(2).features;
+    last_.world_from_camera = map_.keyframe(2).world_from_camera;
+    last_.landmarks = map_.keyframe(2).landmarks;
+  }
+
+  SyntheticScene scene_{500};
+  Map map_;
+  LocalMap local_;
+  TrackedFrame last_;
+  const Rigid3 truth_{ExpSo3({0.05, -0.05, 0.12}), {-0.85, 0.35, 0.05}};
+};
+
+void ExpectNear(const Rigid3& found, const Rigid3& truth) {
+  // 400 bearings of 3 mrad to points about 10 away.
+  EXPECT_LT(found.rotation.angularDistance(truth.rotation), 1e-3);
+  EXPECT_LT((found.translation - truth.translation).norm(), 0.01);
+}
+
+TEST_F(TrackerTest, FindsThePoseAndItsLandmarksFromARoughPrediction) {
+  const auto features = scene_.See(truth_);
+  const auto result =
+      TrackFromPrediction(*features, last_.world_from_camera, last_, local_, scene_.sigma, {});
+  ASSERT_TRUE(result.has_value());
+  ExpectNear(result->world_from_camera, truth_);
+  EXPECT_GT(result->num_inliers, 320);
+  for (int f = 0; f < features->size(); ++f) {
+    if (result->landmarks[f] != kNoId) EXPECT_EQ(result->landmarks[f], f);
+  }
+}
+
+TEST_F(TrackerTest, FindsThePoseWithoutAnyPrediction) {
+  const Rigid3 turned{ExpSo3({0.4, 1.2, -2.0}), {-0.5, 0.3, 0.2}};
+  const auto result = TrackWithoutPrediction(*scene_.See(turned), local_, scene_.sigma, {});
+  ASSERT_TRUE(result.has_value());
+  ExpectNear(result->world_from_camera, turned);
+}
+
+TEST_F(TrackerTest, GivesUpWhereNothingMatches) {
+  SyntheticScene other(900);
+  other.points.erase(other.points.begin(), other.points.begin() + 500);
+  const auto features = other.See(truth_);
+  EXPECT_FALSE(TrackFromPrediction(*features, truth_, last_, local_, scene_.sigma, {}).has_value());
+  EXPECT_FALSE(TrackWithoutPrediction(*features, local_, scene_.sigma, {}).has_value());
+}
+
+TEST_F(TrackerTest, LeavesOutLandmarksThatMoved) {
+  for (int i = 0; i < 80; ++i) scene_.points[i].position += Eigen::Vector3d(0.0, 0.0, 1.5);
+  const auto result = TrackFromPrediction(*scene_.See(truth_), last_.world_from_camera, last_,
+                                          local_, scene_.sigma, {});
+  ASSERT_TRUE(result.has_value());
+  ExpectNear(result->world_from_camera, truth_);
+  EXPECT_LT(std::count_if(result->landmarks.begin(), result->landmarks.begin() + 80,
+                          [](LandmarkId id) { return id != kNoId; }),
+            8);
+}
+
+}  // namespace
+}  // namespace orb360
