@@ -1,0 +1,46 @@
+#include "slam/evaluation/depth_folder.h"
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "slam/check.h"
+#include "slam/io/depth_image.h"
+#include "tests/slam/io/temp_folder.h"
+
+namespace orb360 {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+cv::Mat Constant(float range, cv::Size size = {32, 16}) {
+  return {size, CV_32FC1, cv::Scalar(range)};
+}
+
+TEST(CompareDepthFolders, PairsImagesByNameAndAddsThemUp) {
+  const TempFolder truth;
+  const TempFolder estimate;
+  for (const char* name : {"0.png", "1.png", "2.png"}) WriteDepthImage(truth / name, Constant(10));
+  WriteDepthImage(estimate / "0.png", Constant(11));
+  WriteDepthImage(estimate / "2.png", Constant(13));
+  WriteDepthImage(estimate / "7.png", Constant(50));
+  WriteText(estimate / "notes.txt", "");
+  const DepthFolderErrors result = CompareDepthFolders(truth.path(), estimate.path());
+  EXPECT_EQ(result.images, 2);
+  EXPECT_NEAR(result.errors.total.Mae(), 2.0, 1e-9);
+}
+
+TEST(CompareDepthFolders, NamesAnImageOfAnotherSize) {
+  const TempFolder truth;
+  const TempFolder estimate;
+  WriteDepthImage(truth / "0.png", Constant(10));
+  WriteDepthImage(estimate / "0.png", Constant(10, {16, 8}));
+  EXPECT_THAT(
+      MessageOf<UserError>([&] { CompareDepthFolders(truth.path(), estimate.path()); }),
+      AllOf(HasSubstr((estimate / "0.png").string()), HasSubstr("16x8"), HasSubstr("32x16")));
+}
+
+}  // namespace
+}  // namespace orb360
