@@ -1,6 +1,5 @@
 #include <filesystem>
 #include <fstream>
-#include <iomanip>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -9,7 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/orb360/commands.h"
+#include "apps/orb360/evaluation_report.h"
 #include "slam/check.h"
+#include "slam/evaluation/depth_folder.h"
 #include "slam/evaluation/plot.h"
 #include "slam/evaluation/trajectory_error.h"
 #include "slam/io/atomic_file.h"
@@ -39,50 +40,27 @@ nlohmann::json RunSummary(const std::filesystem::path& estimate) {
   return file ? nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false) : nlohmann::json();
 }
 
-nlohmann::json ToJson(const TrajectoryErrors& errors, size_t pairs) {
-  return {{"pairs", pairs},
-          {"ate_rmse_se3", errors.ate_se3.rmse},
-          {"ate_median_se3", errors.ate_se3.median},
-          {"ate_mean_se3", errors.ate_se3.mean},
-          {"ate_max_se3", errors.ate_se3.max},
-          {"ate_rmse_sim3", errors.ate_sim3.rmse},
-          {"ate_median_sim3", errors.ate_sim3.median},
-          {"ate_mean_sim3", errors.ate_sim3.mean},
-          {"ate_max_sim3", errors.ate_sim3.max},
-          {"scale_factor", errors.truth_from_estimate.scale},
-          {"rpe_trans_percent", errors.rpe.translation_percent},
-          {"rpe_raw_percent", errors.rpe_raw.translation_percent},
-          {"rpe_rot_deg_per_m", errors.rpe.rotation_deg_per_m},
-          {"rpe_piece_m", errors.rpe.piece_length},
-          {"rpe_pieces", errors.rpe.pieces},
-          {"rpe_frame_trans_m", errors.rpe_frame.translation},
-          {"rpe_frame_rot_deg", errors.rpe_frame.rotation_deg}};
-}
-
-void PrintRow(const std::string& label, double value, const std::string& unit, int decimals) {
-  std::cout << std::left << std::setw(44) << label << std::right << std::setw(12) << std::fixed
-            << std::setprecision(decimals) << value << ' ' << unit << '\n';
-}
-
-void PrintTable(const TrajectoryErrors& errors, const nlohmann::json& json) {
-  PrintRow("pairs", json["pairs"], "", 0);
-  PrintRow("tracked share", 100.0 * json["tracked_share"].get<double>(), "%", 1);
-  if (json.contains("features_per_keyframe")) {
-    PrintRow("features per keyframe", json["features_per_keyframe"], "", 1);
+/// The share of the frames that have a pose, by the run's own account, else of the ground truth's
+/// poses that are paired; and what only the run's summary knows.
+void AddRunFigures(const std::filesystem::path& estimate, double paired_share,
+                   nlohmann::json* report) {
+  const nlohmann::json summary = RunSummary(estimate);
+  if (!summary.is_object() || summary.value("frames", 0) <= 0) {
+    (*report)["tracked_share"] = paired_share;
+    return;
   }
-  PrintRow("scale factor (1 is perfect)", errors.truth_from_estimate.scale, "", 5);
-  PrintRow("ATE after rigid alignment, RMSE", errors.ate_se3.rmse, "m", 4);
-  PrintRow("  median", errors.ate_se3.median, "m", 4);
-  PrintRow("  largest", errors.ate_se3.max, "m", 4);
-  PrintRow("ATE after similarity alignment, RMSE", errors.ate_sim3.rmse, "m", 4);
-  PrintRow("  median", errors.ate_sim3.median, "m", 4);
-  PrintRow("  largest", errors.ate_sim3.max, "m", 4);
-  PrintRow("RPE over pieces of the path, their length", errors.rpe.piece_length, "m", 1);
-  PrintRow("  translation, estimate scaled", errors.rpe.translation_percent, "%", 4);
-  PrintRow("  translation, estimate as it is", errors.rpe_raw.translation_percent, "%", 4);
-  PrintRow("  rotation", errors.rpe.rotation_deg_per_m, "deg/m", 6);
-  PrintRow("RPE from frame to frame, translation", errors.rpe_frame.translation, "m", 5);
-  PrintRow("  rotation", errors.rpe_frame.rotation_deg, "deg", 5);
+  (*report)["tracked_share"] = summary.value("tracked", 0.0) / summary.value("frames", 0.0);
+  (*report)["features_per_keyframe"] = summary.value("features_per_keyframe", 0.0);
+}
+
+/// Depth errors, where both folders have depth images of the same frames.
+void AddDepthErrors(const std::filesystem::path& truth, const std::filesystem::path& estimate,
+                    nlohmann::json* report) {
+  const std::filesystem::path true_images = truth / Dataset::kDepthName;
+  const std::filesystem::path images = estimate / Dataset::kDepthName;
+  if (!std::filesystem::is_directory(true_images) || !std::filesystem::is_directory(images)) return;
+  const DepthFolderErrors depth = CompareDepthFolders(true_images, images);
+  if (depth.images > 0) (*report)["depth"] = ToJson(depth);
 }
 
 int Evaluate(const EvaluateOptions& options) {
@@ -98,21 +76,17 @@ int Evaluate(const EvaluateOptions& options) {
                     " poses have a time in common, and at least three different ones are needed");
   }
 
-  nlohmann::json json = ToJson(*errors, pairs.size());
-  const nlohmann::json summary = RunSummary(options.estimate);
-  if (summary.is_object() && summary.value("frames", 0) > 0) {
-    json["tracked_share"] = summary.value("tracked", 0.0) / summary["frames"].get<double>();
-    json["features_per_keyframe"] = summary.value("features_per_keyframe", 0.0);
-  } else {
-    json["tracked_share"] = static_cast<double>(pairs.size()) / static_cast<double>(truth.size());
-  }
+  nlohmann::json report = ToJson(*errors);
+  AddRunFigures(options.estimate,
+                static_cast<double>(pairs.size()) / static_cast<double>(truth.size()), &report);
+  AddDepthErrors(options.groundtruth, options.estimate, &report);
   if (!options.plot.empty()) {
     WriteFileAtomically(options.plot, PlotTrajectory(truth, pairs, *errors));
   }
   if (options.prints_json) {
-    std::cout << json.dump(2) << '\n';
+    std::cout << report.dump(2) << '\n';
   } else {
-    PrintTable(*errors, json);
+    PrintReport(report, std::cout);
   }
   return EXIT_SUCCESS;
 }

@@ -9,6 +9,7 @@ namespace orb360 {
 /// `sequence.yaml`. Of the last, only the camera model, the frame rate and the camera's height are
 /// read: the rest would tell a SLAM system the answer.
 struct Dataset {
+  static constexpr const char* kDepthName = "depth";
   static constexpr const char* kGroundTruthName = "groundtruth.txt";
 
   std::filesystem::path folder;
@@ -18,7 +19,7 @@ struct Dataset {
   std::optional<double> camera_height;
 
   std::filesystem::path images() const { return folder / "rgb"; }
-  std::filesystem::path depth() const { return folder / "depth"; }
+  std::filesystem::path depth() const { return folder / kDepthName; }
   std::filesystem::path groundtruth() const { return folder / kGroundTruthName; }
 };
 

@@ -1,0 +1,145 @@
+#include "apps/orb360/evaluation_report.h"
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <string>
+
+namespace orb360 {
+namespace {
+
+/// A line of the table: what a key of the report means.
+struct Row {
+  const char* key;
+  const char* label;
+  const char* unit;
+  int decimals;
+  double factor = 1.0;  // from the report's unit to the table's
+};
+
+constexpr Row kRows[] = {
+    {"pairs", "pairs", "", 0},
+    {"tracked_share", "tracked share", "%", 1, 100.0},
+    {"features_per_keyframe", "features per keyframe", "", 1},
+    {"scale_factor", "scale factor (1 is perfect)", "", 5},
+    {"ate_rmse_se3", "ATE after rigid alignment, RMSE", "m", 4},
+    {"ate_median_se3", "  median", "m", 4},
+    {"ate_max_se3", "  largest", "m", 4},
+    {"ate_rmse_sim3", "ATE after similarity alignment, RMSE", "m", 4},
+    {"ate_median_sim3", "  median", "m", 4},
+    {"ate_max_sim3", "  largest", "m", 4},
+    {"rpe_piece_m", "RPE over pieces of the path, their length", "m", 1},
+    {"rpe_trans_percent", "  translation, estimate scaled", "%", 4},
+    {"rpe_raw_percent", "  translation, estimate as it is", "%", 4},
+    {"rpe_rot_deg_per_m", "  rotation", "deg/m", 6},
+    {"rpe_frame_trans_m", "RPE from frame to frame, translation", "m", 5},
+    {"rpe_frame_rot_deg", "  rotation", "deg", 5},
+};
+
+/// A column of the table of depth errors.
+constexpr Row kDepthColumns[] = {{"rmse", "RMSE", "m", 3},
+                                 {"mae", "MAE", "m", 3},
+                                 {"abs_rel", "AbsRel", "", 4},
+                                 {"delta_1.25", "<1.25", "%", 2, 100.0},
+                                 {"coverage", "covered", "%", 1, 100.0}};
+
+constexpr int kLabelWidth = 44;
+constexpr int kDepthLabelWidth = 18;
+constexpr int kNumberWidth = 12;
+
+nlohmann::json ToJson(const DepthErrorBin& bin) {
+  return {{"rmse", bin.Rmse()},
+          {"mae", bin.Mae()},
+          {"abs_rel", bin.AbsRel()},
+          {"delta_1.25", bin.Delta125()},
+          {"coverage", bin.Coverage()}};
+}
+
+nlohmann::json ToJson(const DepthErrorBin& bin, double from, double to) {
+  nlohmann::json json = ToJson(bin);
+  json["from"] = from;
+  json["to"] = to;
+  return json;
+}
+
+void PrintDepthRow(const std::string& label, const nlohmann::json& bin, std::ostream& out) {
+  out << std::left << std::setw(kDepthLabelWidth) << label << std::right;
+  for (const Row& column : kDepthColumns) {
+    out << std::setw(kNumberWidth) << std::setprecision(column.decimals)
+        << column.factor * bin[column.key].get<double>();
+  }
+  out << '\n';
+}
+
+void PrintDepthBins(const nlohmann::json& bins, const char* unit, std::ostream& out) {
+  for (const nlohmann::json& bin : bins) {
+    if (std::isnan(bin["rmse"].get<double>())) continue;
+    std::ostringstream label;
+    label << "  " << bin["from"].get<double>() << " to " << bin["to"].get<double>() << ' ' << unit;
+    PrintDepthRow(label.str(), bin, out);
+  }
+}
+
+void PrintDepth(const nlohmann::json& depth, std::ostream& out) {
+  std::ostringstream title;
+  title << "depth, " << depth["images"] << " images";
+  out << '\n' << std::left << std::setw(kDepthLabelWidth) << title.str() << std::right;
+  for (const Row& column : kDepthColumns) {
+    out << std::setw(kNumberWidth) << std::string(column.label) + ' ' + column.unit;
+  }
+  out << '\n';
+  PrintDepthRow("all", depth["all"], out);
+  PrintDepthBins(depth["by_range_m"], "m", out);
+  PrintDepthBins(depth["by_latitude_deg"], "deg", out);
+}
+
+}  // namespace
+
+nlohmann::json ToJson(const TrajectoryErrors& errors) {
+  return {{"pairs", errors.position_errors.size()},
+          {"ate_rmse_se3", errors.ate_se3.rmse},
+          {"ate_median_se3", errors.ate_se3.median},
+          {"ate_mean_se3", errors.ate_se3.mean},
+          {"ate_max_se3", errors.ate_se3.max},
+          {"ate_rmse_sim3", errors.ate_sim3.rmse},
+          {"ate_median_sim3", errors.ate_sim3.median},
+          {"ate_mean_sim3", errors.ate_sim3.mean},
+          {"ate_max_sim3", errors.ate_sim3.max},
+          {"scale_factor", errors.truth_from_estimate.scale},
+          {"rpe_trans_percent", errors.rpe.translation_percent},
+          {"rpe_raw_percent", errors.rpe_raw.translation_percent},
+          {"rpe_rot_deg_per_m", errors.rpe.rotation_deg_per_m},
+          {"rpe_piece_m", errors.rpe.piece_length},
+          {"rpe_pieces", errors.rpe.pieces},
+          {"rpe_frame_trans_m", errors.rpe_frame.translation},
+          {"rpe_frame_rot_deg", errors.rpe_frame.rotation_deg}};
+}
+
+nlohmann::json ToJson(const DepthFolderErrors& depth) {
+  nlohmann::json json = {{"images", depth.images}, {"all", ToJson(depth.errors.total)}};
+  double from = 0.0;
+  for (size_t i = 0; i < DepthErrors::kRangeEnds.size(); ++i) {
+    const double to = DepthErrors::kRangeEnds[i];
+    json["by_range_m"].push_back(ToJson(depth.errors.by_range[i], from, to));
+    from = to;
+  }
+  constexpr double kBandHeight = 180.0 / DepthErrors::kLatitudeBands;
+  for (int i = 0; i < DepthErrors::kLatitudeBands; ++i) {
+    json["by_latitude_deg"].push_back(ToJson(depth.errors.by_latitude[static_cast<size_t>(i)],
+                                             kBandHeight * i - 90.0, kBandHeight * (i + 1) - 90.0));
+  }
+  return json;
+}
+
+void PrintReport(const nlohmann::json& report, std::ostream& out) {
+  out << std::fixed;
+  for (const Row& row : kRows) {
+    if (!report.contains(row.key)) continue;
+    out << std::left << std::setw(kLabelWidth) << row.label << std::right << std::setw(kNumberWidth)
+        << std::setprecision(row.decimals) << row.factor * report[row.key].get<double>() << ' '
+        << row.unit << '\n';
+  }
+  if (report.contains("depth")) PrintDepth(report["depth"], out);
+}
+
+}  // namespace orb360
