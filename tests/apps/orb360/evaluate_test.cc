@@ -1,0 +1,123 @@
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "slam/geometry/rigid3.h"
+#include "slam/io/depth_image.h"
+#include "slam/io/trajectory.h"
+#include "tests/apps/orb360/program.h"
+#include "tests/apps/orb360/textured_room.h"
+
+namespace orb360 {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr int kFrames = 60;
+
+/// Ground truth, and an estimate of its first 45 poses at half the size.
+class EvaluateTest : public testing::Test {
+ protected:
+  EvaluateTest() {
+    std::vector<StampedPose> poses = TexturedRoom::Trajectory(kFrames, 20.0);
+    WriteTrajectory(Truth(), poses);
+    const Similarity3 half{0.5, Eigen::Quaterniond::Identity(), {3, 2, 1}};
+    for (StampedPose& pose : poses) {
+      pose.world_from_camera = TransformPose(half, pose.world_from_camera);
+    }
+    poses.resize(45);
+    WriteTrajectory(Estimate(), poses);
+  }
+
+  std::string Truth() const { return folder_ / "groundtruth.txt"; }
+  std::string Estimate() const { return folder_ / "trajectory.txt"; }
+
+  static nlohmann::json Report(const std::string& truth, const std::string& estimate) {
+    const ProgramResult result = RunOrb360({"evaluate", truth, estimate, "--json"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return nlohmann::json::parse(result.out, nullptr, false);
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(EvaluateTest, JsonHasTheErrorsOfAScaledTrajectory) {
+  const nlohmann::json report = Report(Truth(), Estimate());
+  EXPECT_EQ(report["pairs"], 45);
+  EXPECT_NEAR(report["tracked_share"], 0.75, 1e-9);
+  EXPECT_NEAR(report["scale_factor"], 2.0, 1e-6);
+  EXPECT_NEAR(report["ate_rmse_sim3"], 0.0, 1e-6);
+  EXPECT_GT(report["ate_rmse_se3"], 0.1);
+  EXPECT_NEAR(report["rpe_trans_percent"], 0.0, 1e-3);
+  EXPECT_NEAR(report["rpe_raw_percent"], 50.0, 1.0);
+  EXPECT_NEAR(report["rpe_rot_deg_per_m"], 0.0, 1e-3);
+}
+
+TEST_F(EvaluateTest, FoldersStandForTheFilesInThem) {
+  WriteText(folder_ / "summary.json",
+            R"({"frames": 50, "tracked": 45, "features_per_keyframe": 321.5})");
+  const nlohmann::json report = Report(folder_.path(), folder_.path());
+  EXPECT_EQ(report["pairs"], 45);
+  EXPECT_NEAR(report["tracked_share"], 0.9, 1e-9);
+  EXPECT_EQ(report["features_per_keyframe"], 321.5);
+}
+
+TEST_F(EvaluateTest, DepthIsComparedWhereBothFoldersHaveIt) {
+  const std::filesystem::path run = folder_ / "run";
+  std::filesystem::create_directories(run / "depth");
+  std::filesystem::create_directory(folder_ / "depth");
+  std::filesystem::copy(Estimate(), run / "trajectory.txt");
+  EXPECT_FALSE(Report(folder_.path(), run).contains("depth"));
+  WriteDepthImage(folder_ / "depth" / "000000.png", cv::Mat(16, 32, CV_32FC1, cv::Scalar(15.0f)));
+  WriteDepthImage(run / "depth" / "000000.png", cv::Mat(16, 32, CV_32FC1, cv::Scalar(18.0f)));
+  const nlohmann::json depth = Report(folder_.path(), run)["depth"];
+  EXPECT_EQ(depth["images"], 1);
+  EXPECT_NEAR(depth["all"]["rmse"], 3.0, 1e-6);
+  EXPECT_NEAR(depth["all"]["abs_rel"], 0.2, 1e-6);
+  EXPECT_NEAR(depth["by_range_m"][2]["mae"], 3.0, 1e-6);
+  EXPECT_TRUE(depth["by_range_m"][0]["mae"].is_null());
+  EXPECT_THAT(RunOrb360({"evaluate", folder_.path(), run}).out,
+              AllOf(HasSubstr("depth, 1 images"), HasSubstr("10 to 20 m")));
+}
+
+TEST_F(EvaluateTest, WithoutJsonATableIsPrinted) {
+  const ProgramResult result = RunOrb360({"evaluate", Truth(), Estimate()});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.out, AllOf(HasSubstr("scale factor (1 is perfect)"), HasSubstr("2.00000")));
+}
+
+TEST_F(EvaluateTest, ThePlotIsAnSvgFile) {
+  const ProgramResult result =
+      RunOrb360({"evaluate", Truth(), Estimate(), "--plot", folder_ / "plot.svg"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(ReadText(folder_ / "plot.svg"), StartsWith("<svg "));
+}
+
+TEST_F(EvaluateTest, MistakesAreOneLine) {
+  const auto error = [](const std::vector<std::string>& arguments) {
+    const ProgramResult result = RunOrb360(arguments);
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(error({"evaluate", folder_ / "absent", Estimate()}), HasSubstr("absent: no such"));
+  WriteText(folder_ / "bad.txt", "0 0 0 0 0 0 0 1\n1 2 3\n");
+  EXPECT_THAT(error({"evaluate", Truth(), folder_ / "bad.txt"}), HasSubstr("bad.txt:2: "));
+  std::vector<StampedPose> later = TexturedRoom::Trajectory(kFrames, 20.0);
+  for (StampedPose& pose : later) pose.timestamp += 1000.0;
+  WriteTrajectory(folder_ / "later.txt", later);
+  EXPECT_THAT(error({"evaluate", Truth(), folder_ / "later.txt"}),
+              HasSubstr("0 of its 60 poses have a time in common"));
+  EXPECT_THAT(error({"evaluate", Truth(), Estimate(), "--plot", folder_ / "no" / "plot.svg"}),
+              HasSubstr("cannot be written"));
+}
+
+}  // namespace
+}  // namespace orb360

@@ -1,0 +1,336 @@
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "slam/io/ply.h"
+#include "slam/io/trajectory.h"
+#include "tests/apps/orb360/program.h"
+#include "tests/apps/orb360/textured_room.h"
+
+namespace orb360 {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+const cv::Size kSize(384, 192);
+constexpr int kFrames = 24;
+
+/// A text of exactly one line.
+MATCHER(IsOneLine, "") {
+  return !arg.empty() && arg.back() == '\n' && std::ranges::count(arg, '\n') == 1;
+}
+
+class RunTest : public testing::Test {
+ protected:
+  std::string Input() const { return folder_ / "input"; }
+  std::string Out() const { return folder_ / "out"; }
+
+  ProgramResult Run(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"run", Input(), "--out", Out(), "--threads", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunOrb360(arguments);
+  }
+
+  /// Exit status 1 and one line on standard error, which is returned.
+  std::string Refusal(const std::vector<std::string>& more = {}) const {
+    const ProgramResult result = Run(more);
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.err, AllOf(IsOneLine(), StartsWith("orb360: ")));
+    EXPECT_FALSE(std::filesystem::exists(Out())) << "nothing was done, so nothing is there";
+    return result.err;
+  }
+
+  std::filesystem::path OutFile(const std::string& name) const { return folder_ / "out" / name; }
+  nlohmann::json Summary() const {
+    return nlohmann::json::parse(ReadText(OutFile("summary.json")), nullptr, false);
+  }
+  size_t PosesIn(const std::string& name) const { return ReadTrajectory(OutFile(name)).size(); }
+
+  /// For what is refused before a picture is looked at.
+  void WriteBlanks() const {
+    WriteFolder(Input(), std::vector<cv::Mat>(3, cv::Mat(kSize, CV_8UC1, cv::Scalar(99))));
+  }
+  void WriteRoom() const { WriteFolder(Input(), TexturedRoom(kSize).DrawAll(kFrames)); }
+
+  TempFolder folder_;
+};
+
+TEST_F(RunTest, AFolderOfGreyImagesIsTrackedAndEverythingIsWritten) {
+  WriteRoom();
+  const ProgramResult result = Run();
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, IsEmpty());
+  EXPECT_THAT(result.out, HasSubstr("24 of 24 frames tracked in 1 map"));
+  const std::vector<StampedPose> poses = ReadTrajectory(OutFile("trajectory.txt"));
+  ASSERT_EQ(poses.size(), static_cast<size_t>(kFrames));
+  EXPECT_NEAR(poses[3].timestamp, 3 / 30.0, 1e-9);
+  // The first camera is the world: x forward, y left, z up.
+  EXPECT_LT(poses[0].world_from_camera.translation.norm(), 1e-8);
+  EXPECT_GT(poses[9].world_from_camera.translation.normalized().x(), 0.8);
+  EXPECT_GE(PosesIn("keyframes.txt"), 2u);
+  EXPECT_FALSE(std::filesystem::exists(OutFile("trajectory.journal")));
+
+  const nlohmann::json summary = Summary();
+  EXPECT_EQ(summary["frames"], kFrames);
+  EXPECT_EQ(summary["tracked"], kFrames);
+  EXPECT_EQ(summary["maps"], 1);
+  EXPECT_EQ(summary["lost"], 0);
+  EXPECT_EQ(summary["threads"], 1);
+  EXPECT_EQ(summary["weights"], "none");
+  EXPECT_EQ(summary["interrupted"], false);
+  EXPECT_EQ(summary["landmarks"], ReadPly(OutFile("cloud.ply")).size());
+  EXPECT_GT(summary["landmarks"], 100);
+  EXPECT_GE(summary["initialized_at"], 1);
+  EXPECT_GT(summary["timing_ms"]["frame"]["median"], 0.0);
+  EXPECT_GE(summary["timing_ms"]["frame"]["p95"], summary["timing_ms"]["frame"]["median"]);
+  for (const char* key : {"keyframes", "features_per_keyframe", "scale", "version"}) {
+    EXPECT_TRUE(summary.contains(key)) << key;
+  }
+}
+
+TEST_F(RunTest, TheSameInputGivesTheSameBytesWithOneAndTwoThreads) {
+  WriteRoom();
+  EXPECT_EQ(Run().status, 0);
+  EXPECT_EQ(RunOrb360({"run", Input(), "--out", folder_ / "two", "--threads", "2"}).status, 0);
+  for (const char* name : {"trajectory.txt", "keyframes.txt", "cloud.ply"}) {
+    EXPECT_EQ(ReadText(OutFile(name)), ReadText(folder_ / "two" / name)) << name;
+  }
+}
+
+TEST_F(RunTest, SixteenBitImagesGiveTheTrajectoryOfEightBitOnes) {
+  std::vector<cv::Mat> images = TexturedRoom(kSize).DrawAll(kFrames);
+  WriteFolder(Input(), images);
+  EXPECT_EQ(Run().status, 0);
+  for (cv::Mat& image : images) image.convertTo(image, CV_16U, 257.0);
+  WriteFolder(folder_ / "deep", images);
+  EXPECT_EQ(
+      RunOrb360({"run", folder_ / "deep", "--out", folder_ / "deep_out", "--threads", "1"}).status,
+      0);
+  EXPECT_EQ(ReadText(OutFile("trajectory.txt")), ReadText(folder_ / "deep_out" / "trajectory.txt"));
+}
+
+TEST_F(RunTest, ATruncatedVideoIsTrackedToWhereItEnds) {
+  WriteVideo(folder_ / "whole.avi", TexturedRoom(kSize).DrawAll(kFrames));
+  CopyTruncated(folder_ / "whole.avi", Input(), 0.6);
+  const ProgramResult result = Run();
+  EXPECT_EQ(result.status, 0) << result.err;
+  const int frames = Summary()["frames"];
+  EXPECT_GT(frames, 10);
+  EXPECT_LT(frames, 20);
+  EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr(Input()),
+                                HasSubstr("ends at frame " + std::to_string(frames) + " of 24")));
+  EXPECT_EQ(PosesIn("trajectory.txt"), static_cast<size_t>(frames));
+  EXPECT_EQ(Summary()["warnings"].size(), 1u);
+}
+
+TEST_F(RunTest, AZeroByteFrameCostsThatFrameOnly) {
+  WriteRoom();
+  WriteText(folder_ / "input" / "000012.png", "");
+  const ProgramResult result = Run();
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("000012.png"), HasSubstr("0 bytes")));
+  const std::vector<StampedPose> poses = ReadTrajectory(OutFile("trajectory.txt"));
+  ASSERT_EQ(poses.size(), static_cast<size_t>(kFrames - 1));
+  EXPECT_NEAR(poses[11].timestamp, 11 / 30.0, 1e-9);
+  EXPECT_NEAR(poses[12].timestamp, 13 / 30.0, 1e-9);
+}
+
+TEST_F(RunTest, ImagesOfMixedSizesAreRefused) {
+  WriteBlanks();
+  WriteFolder(folder_ / "small", {cv::Mat(128, 256, CV_8UC1, cv::Scalar(9))});
+  std::filesystem::rename(folder_ / "small" / "000000.png", folder_ / "input" / "000002.png");
+  EXPECT_THAT(Refusal(),
+              AllOf(HasSubstr("000002.png"), HasSubstr("256x128"), HasSubstr("384x192")));
+}
+
+TEST_F(RunTest, AnotherSizeThatShowsOnlyInTheMiddleKeepsWhatWasDone) {
+  std::vector<cv::Mat> images = TexturedRoom(kSize).DrawAll(kFrames);
+  cv::resize(images[20], images[20], kSize / 2);
+  WriteFolder(Input(), images, ".bmp");
+  const ProgramResult result = Run();
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("000020.bmp"), HasSubstr("192x96")));
+  EXPECT_EQ(PosesIn("trajectory.txt"), 20u);
+  EXPECT_EQ(Summary()["interrupted"], true);
+}
+
+TEST_F(RunTest, PerspectiveVideoIsRefusedWithTheReason) {
+  WriteVideo(folder_ / "input.avi",
+             std::vector<cv::Mat>(2, cv::Mat(288, 512, CV_8UC1, cv::Scalar(99))));
+  std::filesystem::rename(folder_ / "input.avi", Input());
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr(Input() + ": 512x288 is not a full sphere"),
+                               HasSubstr("equirectangular")));
+}
+
+TEST_F(RunTest, InputThatIsNotThereOrEmptyIsRefused) {
+  EXPECT_THAT(Refusal(), HasSubstr(Input() + ": no such file or folder"));
+  std::filesystem::create_directory(Input());
+  EXPECT_THAT(Refusal(), HasSubstr(Input() + ": contains no images"));
+}
+
+TEST_F(RunTest, AFolderThatCannotBeWrittenIsRefusedBeforeAnyWork) {
+  WriteBlanks();
+  WriteText(folder_ / "file", "");
+  for (const std::string& out : {std::string(folder_ / "file" / "out"), std::string("/proc/out")}) {
+    const ProgramResult result = RunOrb360({"run", Input(), "--out", out});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr(out), HasSubstr("cannot be written")));
+    EXPECT_THAT(result.out, IsEmpty());
+  }
+}
+
+TEST_F(RunTest, AConfigurationIsRefusedByKeyAndLine) {
+  WriteBlanks();
+  WriteText(folder_ / "c.yaml", "features:\n  count: 1000\n  colour: 3\n");
+  EXPECT_THAT(Refusal({"--config", folder_ / "c.yaml"}),
+              HasSubstr("c.yaml:3: unknown key features.colour"));
+  WriteText(folder_ / "c.yaml", "\nfeatures:\n  count: plenty\n");
+  EXPECT_THAT(Refusal({"--config", folder_ / "c.yaml"}),
+              HasSubstr("c.yaml:3: features.count must be a whole number"));
+  EXPECT_THAT(Refusal({"--config", folder_ / "absent.yaml"}), HasSubstr("absent.yaml"));
+}
+
+TEST_F(RunTest, AConfigurationIsUsed) {
+  WriteRoom();
+  EXPECT_EQ(Run().status, 0);
+  const double before = Summary()["features_per_keyframe"];
+  WriteText(folder_ / "c.yaml", "features:\n  count: 500\n");
+  EXPECT_EQ(Run({"--config", folder_ / "c.yaml"}).status, 0);
+  EXPECT_LT(Summary()["features_per_keyframe"], 0.7 * before);
+}
+
+TEST_F(RunTest, SelectionOfFramesKeepsTheSourcesTimes) {
+  WriteRoom();
+  EXPECT_EQ(Run({"--fps", "10", "--start", "3", "--stride", "2", "--max-frames", "9"}).status, 0);
+  const std::vector<StampedPose> poses = ReadTrajectory(OutFile("trajectory.txt"));
+  ASSERT_EQ(poses.size(), 9u);
+  EXPECT_NEAR(poses[0].timestamp, 0.3, 1e-9);
+  EXPECT_NEAR(poses[8].timestamp, 1.9, 1e-9);
+}
+
+TEST_F(RunTest, AMaskKeepsLandmarksOutOfWhatItCovers) {
+  WriteRoom();
+  cv::Mat mask(kSize, CV_8UC1, cv::Scalar(255));
+  mask.rowRange(kSize.height / 2, kSize.height).setTo(0);
+  WriteFolder(folder_ / "mask", {mask});
+  EXPECT_EQ(Run({"--mask", folder_ / "mask" / "000000.png"}).status, 0);
+  size_t below = 0;
+  const std::vector<ColoredPoint> cloud = ReadPly(OutFile("cloud.ply"));
+  for (const ColoredPoint& point : cloud) {
+    // The camera moves little up and down; its horizon is the mask's edge.
+    const double elevation = point.position.z() / point.position.head<2>().norm();
+    if (elevation < -0.15) ++below;
+  }
+  EXPECT_GT(cloud.size(), 100u);
+  EXPECT_LT(below, cloud.size() / 50);
+  EXPECT_THAT(Run({"--mask", folder_ / "absent.png"}).err,
+              AllOf(IsOneLine(), HasSubstr("absent.png: no such mask")));
+}
+
+TEST_F(RunTest, ResizeGivesASmallerSphereAndOnlyASphere) {
+  WriteRoom();
+  EXPECT_THAT(Refusal({"--resize", "300x300"}), HasSubstr("`300x300` is not WIDTHxHEIGHT"));
+  EXPECT_THAT(Refusal({"--resize", "300"}), HasSubstr("`300` is not WIDTHxHEIGHT"));
+  EXPECT_EQ(Run({"--resize", "320x160"}).status, 0);
+  EXPECT_EQ(Summary()["tracked"], kFrames);
+}
+
+TEST_F(RunTest, ACameraThatStandsStillEndsWithTheReason) {
+  WriteFolder(Input(), std::vector<cv::Mat>(6, TexturedRoom(kSize).Draw(0)));
+  const ProgramResult result = Run();
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("no pose was found in its 6 frames")));
+  EXPECT_EQ(Summary()["tracked"], 0);
+  EXPECT_EQ(Summary()["initialized_at"], nullptr);
+}
+
+TEST_F(RunTest, QuietShowsNothing) {
+  WriteRoom();
+  const ProgramResult result = Run({"--quiet"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.out, IsEmpty());
+  EXPECT_THAT(result.err, IsEmpty());
+}
+
+TEST_F(RunTest, AFullDiskEndsInOneLineAndKeepsWhatFits) {
+  WriteRoom();
+  const ProgramResult result =
+      Program({"run", Input(), "--out", Out(), "--threads", "1"}, 8000).Wait();
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("cloud.ply"), HasSubstr("free some space")));
+  EXPECT_EQ(PosesIn("trajectory.txt"), static_cast<size_t>(kFrames));
+  EXPECT_FALSE(std::filesystem::exists(OutFile("cloud.ply.tmp")));
+}
+
+/// A run long enough to be disturbed: the same walk to and fro.
+class InterruptedRunTest : public RunTest {
+ protected:
+  static constexpr int kLongRun = 2000;
+
+  InterruptedRunTest() {
+    WriteRoom();
+    constexpr int kPeriod = 2 * kFrames - 2;
+    for (int i = kFrames; i < kLongRun; ++i) {
+      const int phase = i % kPeriod;
+      std::filesystem::create_hard_link(Image(std::min(phase, kPeriod - phase)), Image(i));
+    }
+  }
+
+  std::filesystem::path Image(int i) const {
+    char name[32];
+    std::snprintf(name, sizeof name, "%06d.png", i);
+    return folder_ / "input" / name;
+  }
+
+  /// Starts a run and returns once the first pose is known.
+  std::unique_ptr<Program> Start() const {
+    auto program = std::make_unique<Program>(
+        std::vector<std::string>{"run", Input(), "--out", Out(), "--threads", "1"});
+    EXPECT_TRUE(program->WaitForOutput("first map made"));
+    return program;
+  }
+};
+
+TEST_F(InterruptedRunTest, CtrlCWritesWhatWasDone) {
+  const std::unique_ptr<Program> program = Start();
+  program->Signal(SIGINT);
+  const ProgramResult result = program->Wait();
+  EXPECT_EQ(result.status, 130);
+  EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("interrupted"), HasSubstr(Out())));
+  const nlohmann::json summary = Summary();
+  EXPECT_EQ(summary["interrupted"], true);
+  EXPECT_LT(summary["frames"], kLongRun);
+  EXPECT_EQ(PosesIn("trajectory.txt"), summary["tracked"]);
+  EXPECT_GE(summary["tracked"], 2);
+  EXPECT_FALSE(std::filesystem::exists(OutFile("trajectory.journal")));
+}
+
+TEST_F(InterruptedRunTest, TerminationWritesWhatWasDoneToo) {
+  const std::unique_ptr<Program> program = Start();
+  program->Signal(SIGTERM);
+  EXPECT_EQ(program->Wait().status, 143);
+  EXPECT_EQ(PosesIn("trajectory.txt"), Summary()["tracked"]);
+}
+
+TEST_F(InterruptedRunTest, AKilledRunLeavesTheJournal) {
+  const std::unique_ptr<Program> program = Start();
+  program->Signal(SIGKILL);
+  EXPECT_EQ(program->Wait().status, 128 + SIGKILL);
+  EXPECT_GE(PosesIn("trajectory.journal"), 1u);
+  EXPECT_FALSE(std::filesystem::exists(OutFile("trajectory.txt")));
+}
+
+}  // namespace
+}  // namespace orb360
