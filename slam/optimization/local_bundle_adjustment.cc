@@ -81,7 +81,8 @@ void AdjustLocally(KeyframeId center, const LocalBundleOptions& options, Map* ma
       fixed.push_back(observer.keyframe);
     }
   }
-  if (fixed.empty()) {  // the whole map is in the window: its oldest keyframe is the gauge
+  // Two poses at least hold the gauge, scale included; of a small map its oldest.
+  while (fixed.size() < 2 && moving.size() > 1) {
     const auto oldest = std::min_element(moving.begin(), moving.end());
     fixed.push_back(*oldest);
     moving.erase(oldest);

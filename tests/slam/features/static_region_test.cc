@@ -22,6 +22,7 @@ cv::Mat Texture(int seed) {
 }
 
 cv::Mat Roll(const cv::Mat& image, int shift) {
+  if (shift == 0) return image.clone();
   cv::Mat rolled;
   cv::hconcat(image.colRange(shift, image.cols), image.colRange(0, shift), rolled);
   return rolled;

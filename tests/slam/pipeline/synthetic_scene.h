@@ -18,7 +18,7 @@ struct SyntheticScene {
     double max_range;  // from which it is seen on pyramid level 0
   };
   std::vector<Point> points;
-  double sigma = 0.003;  // rad, noise of a bearing on level 0
+  double sigma = 0.001;  // rad, noise of a bearing on level 0
   RandomGeometry random{7};
 
   explicit SyntheticScene(int count, double nearest = 2.0, double farthest = 20.0) {
