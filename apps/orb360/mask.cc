@@ -1,12 +1,15 @@
 #include "apps/orb360/mask.h"
 
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include <opencv2/imgproc.hpp>
 
 #include "slam/check.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/image_file.h"
+#include "slam/pipeline/self_mask.h"
 
 namespace orb360 {
 
@@ -19,6 +22,24 @@ cv::Mat LoadMask(const std::string& file, cv::Size size) {
   cv::cvtColor(loaded.image, mask, cv::COLOR_BGR2GRAY);
   cv::resize(mask, mask, size, 0.0, 0.0, cv::INTER_NEAREST);
   return mask >= 128;
+}
+
+cv::Mat ChooseMask(const std::string& choice, const std::string& input,
+                   const SequenceOptions& options, const Sequence& sequence) {
+  if (choice == "none") return {};
+  if (choice == "auto") return FindSelfMask(input, options, sequence.frame_rate());
+  return LoadMask(choice, sequence.image_size());
+}
+
+double ExcludedShare(const cv::Mat& mask) {
+  double excluded = 0.0;
+  double all = 0.0;
+  for (int row = 0; row < mask.rows; ++row) {
+    const double solid_angle = std::sin(std::numbers::pi * (row + 0.5) / mask.rows);
+    excluded += solid_angle * (mask.cols - cv::countNonZero(mask.row(row)));
+    all += solid_angle * mask.cols;
+  }
+  return all > 0.0 ? excluded / all : 0.0;
 }
 
 }  // namespace orb360

@@ -4,11 +4,22 @@
 
 #include <opencv2/core.hpp>
 
+#include "slam/io/sequence.h"
+
 namespace orb360 {
 
 /// Reads a mask image, black where features are not wanted, and scales it to `size`: CV_8UC1, 0
 /// for excluded (darker than half), 255 for the rest. Throws UserError if it cannot be read or is
 /// no full sphere.
 cv::Mat LoadMask(const std::string& file, cv::Size size);
+
+/// The mask that --mask asks for: `auto` looks for what moves with the camera at the start of
+/// `input` (FindSelfMask), `none` is an empty mask, all else is an image's name. `sequence` is the
+/// input as opened with `options`.
+cv::Mat ChooseMask(const std::string& choice, const std::string& input,
+                   const SequenceOptions& options, const Sequence& sequence);
+
+/// The share of the sphere that a mask excludes; 0 for an empty one.
+double ExcludedShare(const cv::Mat& mask);
 
 }  // namespace orb360

@@ -15,6 +15,7 @@
 #include "apps/orb360/mask.h"
 #include "apps/orb360/progress.h"
 #include "apps/orb360/run_output.h"
+#include "apps/orb360/sparse_output.h"
 #include "apps/orb360/stage_times.h"
 #include "slam/check.h"
 #include "slam/io/full_sphere.h"
@@ -31,10 +32,11 @@ struct RunOptions {
   std::string input;
   std::string out;
   std::string config;
-  std::string mask = "none";
+  std::string mask = "auto";
   int threads = 0;  // 0: one for each core
   std::string resize;
   SequenceOptions sequence;
+  bool saves_sparse = false;
   bool is_quiet = false;
 };
 
@@ -104,7 +106,7 @@ RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, b
 }
 
 nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& record,
-                         const RunOptions& options, int threads) {
+                         const RunOptions& options, double masked_share, int threads) {
   nlohmann::json summary = {
       {"version", Version()},
       {"input", options.input},
@@ -121,6 +123,9 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
       {"seconds", record.seconds},
       {"frames_per_second", record.frames / std::max(record.seconds, 1e-9)},
       {"peak_memory_mb", PeakMemoryMb()},
+      {"mask", options.mask},
+      {"masked_share", masked_share},
+      {"levelled", reconstruction.up.has_value()},
       {"threads", threads},
       {"weights", "none"},
       {"interrupted", CaughtInterrupt() != 0 || record.failure != nullptr},
@@ -146,17 +151,25 @@ int Run(const RunOptions& options) {
   SequenceOptions sequence_options = options.sequence;
   sequence_options.resize = ParseSize(options.resize);
   const std::unique_ptr<Sequence> sequence = OpenSequence(options.input, sequence_options);
-  const cv::Size size = sequence->image_size();
-  const cv::Mat mask = options.mask == "none" ? cv::Mat() : LoadMask(options.mask, size);
   RunOutput output(options.out);
+  const int threads = SetThreads(options.threads);
+  const cv::Mat mask = ChooseMask(options.mask, options.input, sequence_options, *sequence);
+  const double masked_share = ExcludedShare(mask);
+  if (masked_share > 0.0 && !options.is_quiet) {
+    std::cout << std::lround(100.0 * masked_share) << " % of the sphere is masked" << std::endl;
+  }
   CatchInterrupts();
 
-  const int threads = SetThreads(options.threads);
+  const cv::Size size = sequence->image_size();
   System system(EquirectangularCamera(size.width, size.height), system_options, mask);
   const RunRecord record = ProcessFrames(sequence.get(), &system, &output, options.is_quiet);
   const Reconstruction reconstruction = system.Finish();
-  const nlohmann::json summary = Summarize(reconstruction, record, options, threads);
+  const nlohmann::json summary = Summarize(reconstruction, record, options, masked_share, threads);
   output.Finish(reconstruction, summary);
+  if (options.saves_sparse) {
+    WriteSparseKeyframes(output.folder() / "sparse", system.maps(),
+                         OpenSequence(options.input, sequence_options).get());
+  }
   if (!options.is_quiet) PrintResult(summary, output.folder());
 
   if (record.failure) std::rethrow_exception(record.failure);
@@ -192,8 +205,9 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
       ->type_name("none");
   command
       ->add_option("--mask", options->mask,
-                   "none, or an image that is black where the camera's carrier is seen")
-      ->type_name("none|FILE")
+                   "What to leave out: auto finds what moves with the camera; or none; or an image "
+                   "that is black there")
+      ->type_name("auto|none|FILE")
       ->capture_default_str();
   command->add_option("--threads", options->threads, "Threads (default: one for each core)")
       ->check(CLI::Range(1, 1024))
@@ -213,6 +227,8 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
       ->check(CLI::Range(0, 1 << 30))
       ->type_name("N");
   command->add_option("--resize", options->resize, "Scale every image first")->type_name("WxH");
+  command->add_flag("--save-sparse", options->saves_sparse,
+                    "Also write each keyframe with its sparse depth to DIR/sparse (HDF5)");
   command->add_flag("--quiet", options->is_quiet, "Show no progress");
   command->callback([options, chosen] { *chosen = [options] { return Run(*options); }; });
 }

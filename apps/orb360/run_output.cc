@@ -12,11 +12,12 @@ namespace {
 
 constexpr const char* kJournalName = "trajectory.journal";
 
-const std::filesystem::path& Created(const std::filesystem::path& folder) {
+/// Creates a folder and those above it; false if it was there.
+bool Create(const std::filesystem::path& folder) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  const bool is_new = std::filesystem::create_directories(folder, error);
   if (error) ThrowWriteError(folder, error.value());
-  return folder;
+  return is_new;
 }
 
 std::vector<StampedPose> ToStamped(const std::vector<FramePose>& frames) {
@@ -29,7 +30,14 @@ std::vector<StampedPose> ToStamped(const std::vector<FramePose>& frames) {
 }  // namespace
 
 RunOutput::RunOutput(const std::filesystem::path& folder)
-    : folder_(folder), journal_(Created(folder) / kJournalName) {}
+    : folder_(folder), is_new_folder_(Create(folder)), journal_(folder / kJournalName) {}
+
+RunOutput::~RunOutput() {
+  if (file_world_from_map_) return;
+  std::error_code ignored;
+  std::filesystem::remove(folder_ / kJournalName, ignored);
+  if (is_new_folder_) std::filesystem::remove(folder_, ignored);  // Fails unless it is empty.
+}
 
 void RunOutput::Append(double timestamp, const Rigid3& map_from_camera) {
   if (!file_world_from_map_) file_world_from_map_ = FileWorldFromMap(map_from_camera);
@@ -39,8 +47,8 @@ void RunOutput::Append(double timestamp, const Rigid3& map_from_camera) {
 void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::json& summary) {
   Rigid3 file_world_from_map;
   if (!reconstruction.frames.empty()) {
-    file_world_from_map = FileWorldFromMap(reconstruction.frames.front().world_from_camera,
-                                           reconstruction.up);
+    file_world_from_map =
+        FileWorldFromMap(reconstruction.frames.front().world_from_camera, reconstruction.up);
   }
   std::vector<ColoredPoint> cloud;
   cloud.reserve(reconstruction.landmarks.size());

@@ -16,6 +16,10 @@ class RunOutput {
  public:
   /// Creates the folder if need be and begins the journal. Throws UserError where that fails.
   explicit RunOutput(const std::filesystem::path& folder);
+  /// Removes a journal without a pose, and the folder if it was made for that.
+  ~RunOutput();
+  RunOutput(const RunOutput&) = delete;
+  RunOutput& operator=(const RunOutput&) = delete;
 
   /// Adds to the journal. Its world is that of the first pose.
   void Append(double timestamp, const Rigid3& map_from_camera);
@@ -26,7 +30,8 @@ class RunOutput {
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
-  std::filesystem::path folder_;
+  const std::filesystem::path folder_;
+  const bool is_new_folder_;
   TrajectoryJournal journal_;
   std::optional<Rigid3> file_world_from_map_;
 };

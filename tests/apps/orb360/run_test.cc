@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -9,9 +10,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "slam/io/ply.h"
+#include "slam/io/sparse_file.h"
 #include "slam/io/trajectory.h"
 #include "tests/apps/orb360/program.h"
 #include "tests/apps/orb360/textured_room.h"
@@ -57,6 +60,12 @@ class RunTest : public testing::Test {
     return nlohmann::json::parse(ReadText(OutFile("summary.json")), nullptr, false);
   }
   size_t PosesIn(const std::string& name) const { return ReadTrajectory(OutFile(name)).size(); }
+
+  std::filesystem::path Image(int i) const {
+    char name[32];
+    std::snprintf(name, sizeof name, "%06d.png", i);
+    return folder_ / "input" / name;
+  }
 
   /// For what is refused before a picture is looked at.
   void WriteBlanks() const {
@@ -235,8 +244,41 @@ TEST_F(RunTest, AMaskKeepsLandmarksOutOfWhatItCovers) {
   }
   EXPECT_GT(cloud.size(), 100u);
   EXPECT_LT(below, cloud.size() / 50);
-  EXPECT_THAT(Run({"--mask", folder_ / "absent.png"}).err,
-              AllOf(IsOneLine(), HasSubstr("absent.png: no such mask")));
+}
+
+TEST_F(RunTest, AMaskThatIsNotThereIsRefused) {
+  WriteBlanks();
+  EXPECT_THAT(Refusal({"--mask", folder_ / "absent.png"}), HasSubstr("absent.png: no such mask"));
+}
+
+TEST_F(RunTest, ByDefaultWhatMovesWithTheCameraIsMasked) {
+  std::vector<cv::Mat> images = TexturedRoom(kSize).DrawAll(kFrames);
+  for (cv::Mat& image : images) images[0].rowRange(144, 192).copyTo(image.rowRange(144, 192));
+  WriteFolder(Input(), images);
+  // Five frames a second: the clip is long enough to tell.
+  EXPECT_EQ(Run({"--fps", "5"}).status, 0);
+  // Below 45 degrees lie (1 - sin(45 deg)) / 2 = 14.6 % of the sphere.
+  EXPECT_NEAR(Summary()["masked_share"], 0.146, 0.04);
+  EXPECT_EQ(Run({"--fps", "5", "--mask", "none"}).status, 0);
+  EXPECT_EQ(Summary()["masked_share"], 0.0);
+}
+
+TEST_F(RunTest, SaveSparseWritesEveryKeyframeWithItsPicture) {
+  WriteRoom();
+  EXPECT_EQ(Run({"--save-sparse", "--start", "2"}).status, 0);
+  const std::vector<StampedPose> keyframes = ReadTrajectory(OutFile("keyframes.txt"));
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(OutFile("sparse"))) {
+    const SparseSample sample = ReadSparseSample(entry.path());
+    const cv::Mat picture = cv::imread(Image(sample.frame_index), cv::IMREAD_COLOR);
+    EXPECT_EQ(cv::norm(sample.image, picture, cv::NORM_INF), 0.0);
+    EXPECT_GT(cv::countNonZero(sample.sparse.range), 50);
+    EXPECT_TRUE(std::ranges::any_of(keyframes, [&](const StampedPose& pose) {
+      return std::abs(pose.timestamp - sample.timestamp) < 1e-6;
+    }));
+    ++files;
+  }
+  EXPECT_EQ(files, Summary()["keyframes"]);
 }
 
 TEST_F(RunTest, ResizeGivesASmallerSphereAndOnlyASphere) {
@@ -286,12 +328,6 @@ class InterruptedRunTest : public RunTest {
       const int phase = i % kPeriod;
       std::filesystem::create_hard_link(Image(std::min(phase, kPeriod - phase)), Image(i));
     }
-  }
-
-  std::filesystem::path Image(int i) const {
-    char name[32];
-    std::snprintf(name, sizeof name, "%06d.png", i);
-    return folder_ / "input" / name;
   }
 
   /// Starts a run and returns once the first pose is known.

@@ -1,0 +1,55 @@
+#include "apps/orb360/sparse_output.h"
+
+#include <cstdio>
+#include <map>
+#include <system_error>
+
+#include "slam/depth/sparse_depth.h"
+#include "slam/io/output_file.h"
+#include "slam/io/sparse_file.h"
+
+namespace orb360 {
+namespace {
+
+struct KeyframeOfMap {
+  const Map* map;
+  KeyframeId id;
+};
+
+std::filesystem::path SampleName(int frame_index) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06d.h5", frame_index);
+  return name;
+}
+
+}  // namespace
+
+void WriteSparseKeyframes(const std::filesystem::path& folder, const std::vector<Map>& maps,
+                          Sequence* sequence) {
+  std::map<int, KeyframeOfMap> keyframes;  // by frame index; a frame is in one map only
+  for (const Map& map : maps) {
+    for (const KeyframeId id : map.KeyframeIds()) {
+      keyframes.insert({map.keyframe(id).frame_index, {&map, id}});
+    }
+  }
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) ThrowWriteError(folder, error.value());
+
+  const cv::Size size = sequence->image_size();
+  const EquirectangularCamera camera(size.width, size.height);
+  for (auto next = keyframes.begin(); next != keyframes.end();) {
+    const std::optional<Frame> frame = sequence->Next();
+    if (!frame) break;
+    if (frame->index != next->first) continue;
+    const auto [map, id] = next->second;
+    const Keyframe& keyframe = map->keyframe(id);
+    WriteSparseSample(
+        folder / SampleName(frame->index),
+        {frame->image, RenderSparseDepth(ProjectLandmarks(*map, id, camera, {}), camera),
+         frame->index, keyframe.timestamp, keyframe.world_from_camera});
+    ++next;
+  }
+}
+
+}  // namespace orb360

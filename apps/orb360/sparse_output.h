@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "slam/io/sequence.h"
+#include "slam/map/map.h"
+
+namespace orb360 {
+
+/// Writes every keyframe's image with its sparse ranges and their confidence to
+/// `folder`/000123.h5, named by frame index (WriteSparseSample). `sequence` is the input of the
+/// run, opened again: a run does not keep its pictures. Throws UserError where a file cannot be
+/// written.
+void WriteSparseKeyframes(const std::filesystem::path& folder, const std::vector<Map>& maps,
+                          Sequence* sequence);
+
+}  // namespace orb360
