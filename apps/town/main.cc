@@ -45,10 +45,10 @@ void Render(const RenderArguments& arguments) {
   const uint64_t seed = SeedOf(arguments.town);
   if (arguments.threads > 0) omp_set_num_threads(arguments.threads);
   const Light light = MakeLight(arguments.light, seed);
-  Town town = BuildTown(seed);
+  auto T=[t0=std::clock()](const char*w){std::fprintf(stderr,"%s %.2f\n",w,double(std::clock()-t0)/CLOCKS_PER_SEC);};  Town town = BuildTown(seed);T("town");std::fprintf(stderr,"%zu verts %zu tris %zu inst\n",town.fixed.vertices.size(),town.fixed.triangles.size(),town.instances.size());
   const Sky sky(light, seed);
   const RayScene scene(town);
-  BakeOpenness(scene, &town);
+  T("scene");BakeOpenness(scene, &town);T("bake");
   const Shader shader(town, light, sky);
 
   DriveOptions drive;
@@ -74,14 +74,14 @@ void Render(const RenderArguments& arguments) {
     info.mean_speed += speed / static_cast<double>(poses.size() - 1);
     info.maximum_speed = std::max(info.maximum_speed, speed);
   }
-  const SequenceWriter writer(arguments.out, info, poses);
+  T("path");const SequenceWriter writer(arguments.out, info, poses);
   const auto start = std::chrono::steady_clock::now();
   for (int frame = 0; frame < arguments.frames; ++frame) {
     const Rigid3& pose = poses[static_cast<size_t>(frame)];
     writer.WriteColour(frame, RenderColour(scene, shader, camera, pose));
     if (frame % arguments.depth_every == 0)
       writer.WriteRange(frame, RenderRange(scene, camera, pose));
-    const double seconds =
+    T("frame");const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (frame % 20 == 19)
       std::fprintf(stderr, "frame %d of %d, %.1f frames/s\n", frame + 1, arguments.frames,

@@ -98,7 +98,9 @@ void BakeMesh(const Occluded& occluded, Mesh* mesh) {
 }  // namespace
 
 void BakeOpenness(const RayScene& scene, Town* town) {
-  BakeMesh([&](const int* valid, RTCRay16* rays) { scene.Occluded(valid, rays); }, &town->fixed);
+  BakeMesh(
+      [&](const int* valid, RTCRay16* rays) { scene.Occluded(valid, rays, Coherence::kSpread); },
+      &town->fixed);
   for (uint32_t i = 0; i < town->models.size(); ++i) {
     const auto occluded = [&](const int* valid, RTCRay16* rays) {
       scene.OccludedByModel(i, valid, rays);
@@ -116,7 +118,7 @@ void BakeOpenness(const RayScene& scene, Town* town) {
     // From above the thing itself, so that it does not shade itself twice.
     const Vector3f top = instance.world_from_model.translation() + Vector3f(0, 0, instance.lookout);
     instance.openness = Openness(top, Vector3f::UnitZ(), [&](const int* valid, RTCRay16* rays) {
-      scene.Occluded(valid, rays);
+      scene.Occluded(valid, rays, Coherence::kSpread);
     });
   }
 }

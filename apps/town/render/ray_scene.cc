@@ -7,10 +7,11 @@
 namespace orb360::town {
 namespace {
 
-RTCIntersectContext CoherentContext() {
+RTCIntersectContext MakeContext(Coherence coherence) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.flags = coherence == Coherence::kTogether ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                                                    : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   return context;
 }
 
@@ -26,9 +27,11 @@ RayScene::RayScene(const Town& town) : town_(&town), device_(rtcNewDevice("threa
     rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
     return scene;
   };
-  scene_ = new_scene();
+  fixed_scene_ = new_scene();
   fixed_parts_ = std::make_unique<Parts>(parts_of(town.fixed));
-  AttachMesh(scene_.get(), *fixed_parts_);
+  AttachMesh(fixed_scene_.get(), *fixed_parts_);
+  rtcCommitScene(fixed_scene_.get());
+  instance_scene_ = new_scene();
   model_parts_.reserve(town.models.size());
   for (const Mesh& model : town.models) {
     model_parts_.push_back(parts_of(model));
@@ -43,10 +46,10 @@ RayScene::RayScene(const Town& town) : town_(&town), device_(rtcNewDevice("threa
     const Eigen::Matrix<float, 3, 4> transform = instance.world_from_model.matrix().topRows<3>();
     rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, transform.data());
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene_.get(), geometry, static_cast<unsigned>(2 + i));
+    rtcAttachGeometryByID(instance_scene_.get(), geometry, static_cast<unsigned>(i));
     rtcReleaseGeometry(geometry);
   }
-  rtcCommitScene(scene_.get());
+  rtcCommitScene(instance_scene_.get());
   ORB360_CHECK(rtcGetDeviceError(device_.get()) == RTC_ERROR_NONE);
 }
 
@@ -95,17 +98,29 @@ void RayScene::RejectCutouts(const RTCFilterFunctionNArguments* arguments) {
 }
 
 void RayScene::Intersect(const int* valid, RTCRayHit16* rays) const {
-  RTCIntersectContext context = CoherentContext();
-  rtcIntersect16(valid, scene_.get(), &context, rays);
+  RTCIntersectContext together = MakeContext(Coherence::kTogether);
+  rtcIntersect16(valid, fixed_scene_.get(), &together, rays);
+  RTCIntersectContext spread = MakeContext(Coherence::kSpread);
+  rtcIntersect16(valid, instance_scene_.get(), &spread, rays);
 }
 
-void RayScene::Occluded(const int* valid, RTCRay16* rays) const {
-  RTCIntersectContext context = CoherentContext();
-  rtcOccluded16(valid, scene_.get(), &context, rays);
+void RayScene::Occluded(const int* valid, RTCRay16* rays, Coherence coherence) const {
+  RTCIntersectContext context = MakeContext(coherence);
+  rtcOccluded16(valid, fixed_scene_.get(), &context, rays);
+  alignas(64) std::array<int, kPacket> open;
+  bool any_open = false;
+  for (int lane = 0; lane < kPacket; ++lane) {
+    const bool is_open = valid[lane] != 0 && rays->tfar[lane] >= 0;
+    open[static_cast<size_t>(lane)] = is_open ? -1 : 0;
+    any_open |= is_open;
+  }
+  if (!any_open) return;
+  RTCIntersectContext spread = MakeContext(Coherence::kSpread);
+  rtcOccluded16(open.data(), instance_scene_.get(), &spread, rays);
 }
 
 void RayScene::OccludedByModel(uint32_t model, const int* valid, RTCRay16* rays) const {
-  RTCIntersectContext context = CoherentContext();
+  RTCIntersectContext context = MakeContext(Coherence::kSpread);
   rtcOccluded16(valid, model_scenes_[model].get(), &context, rays);
 }
 
@@ -114,7 +129,7 @@ SurfaceHit RayScene::Resolve(const RTCHit16& hit, int lane) const {
   const Instance* instance = nullptr;
   const Parts* parts = fixed_parts_.get();
   if (instance_id != RTC_INVALID_GEOMETRY_ID) {
-    instance = &town_->instances[instance_id - 2];
+    instance = &town_->instances[instance_id];
     parts = &model_parts_[instance->model];
   }
   const Part& part = (*parts)[hit.geomID[lane]];

@@ -11,6 +11,9 @@
 
 namespace orb360::town {
 
+/// Whether the rays of a packet keep together (from one eye, towards the sun) or spread out.
+enum class Coherence { kTogether, kSpread };
+
 /// Number of rays traced together.
 inline constexpr int kPacket = 16;
 
@@ -60,9 +63,12 @@ struct SurfaceHit {
   const Triangle* triangle;
 };
 
-/// Meshes and instances of models as ray-tracing structures. Keeps pointers to what it was made
-/// from. Building uses one thread, so that the structure (and the order in which surfaces at equal
-/// distances are found) is always the same.
+/// A town's fixed mesh and its instances of models as two ray-tracing structures. Keeps pointers to
+/// what it was made from. Building uses one thread, so that the structure (and the order in which
+/// surfaces at equal distances are found) is always the same.
+///
+/// Two, because Embree's frustum traversal of coherent packets is fast in plain meshes and very
+/// slow through instances, which are traversed ray by ray.
 class RayScene {
  public:
   explicit RayScene(const Town& town);
@@ -70,8 +76,8 @@ class RayScene {
   /// Nearest hits of a packet; lanes with valid[i] == 0 are left alone.
   void Intersect(const int* valid, RTCRayHit16* rays) const;
   /// tfar becomes -infinity in the lanes whose ray meets anything.
-  void Occluded(const int* valid, RTCRay16* rays) const;
-  /// As Occluded, in a model's own frame and with the model alone.
+  void Occluded(const int* valid, RTCRay16* rays, Coherence coherence = Coherence::kTogether) const;
+  /// As Occluded, for spread rays in a model's own frame and with the model alone.
   void OccludedByModel(uint32_t model, const int* valid, RTCRay16* rays) const;
   /// The surface in one lane of a packet which hit (geomID is not invalid).
   SurfaceHit Resolve(const RTCHit16& hit, int lane) const;
@@ -94,7 +100,8 @@ class RayScene {
   std::unique_ptr<Parts> fixed_parts_;  // Embree holds the addresses
   std::vector<Parts> model_parts_;
   std::vector<Scene> model_scenes_;
-  Scene scene_;
+  Scene fixed_scene_;
+  Scene instance_scene_;
 };
 
 }  // namespace orb360::town
