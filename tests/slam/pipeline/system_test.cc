@@ -1,0 +1,207 @@
+#include "slam/pipeline/system.h"
+
+#include <cstring>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "slam/check.h"
+#include "slam/geometry/alignment.h"
+#include "tests/slam/pipeline/box_room.h"
+
+namespace orb360 {
+namespace {
+
+const EquirectangularCamera kCamera(640, 320);
+
+// A walk through a hall on a curve, the camera swaying: 25 frames a second, about 1.3 m/s.
+Rigid3 TruePose(double frame) {
+  const double t = frame / 25.0;
+  const Eigen::Vector3d position(6.0 - 1.3 * t, 1.2 * std::sin(0.5 * t), 0.05 * std::sin(6.0 * t));
+  const Eigen::Quaterniond yaw = ExpSo3(Eigen::Vector3d(0.0, 0.0, -0.4 * std::sin(0.5 * t)));
+  return {yaw * ExpSo3({0.03 * std::sin(5.0 * t), 0.04 * std::sin(3.0 * t), 0.0}), position};
+}
+
+BoxRoom Hall(uint64_t seed = 1) { return BoxRoom({8.0, 4.0, 2.0}, seed); }
+
+Options SmallOptions() {
+  Options options;
+  options.orb.num_features = 1000;
+  return options;
+}
+
+Frame MakeFrame(int index, const cv::Mat& image) { return {index, index / 25.0, image}; }
+
+// Feeds `frames` and returns everything; a frame number that is not whole is still its own frame.
+Reconstruction Track(const BoxRoom& room, const std::vector<double>& frames) {
+  System system(kCamera, SmallOptions(), {});
+  for (size_t i = 0; i < frames.size(); ++i) {
+    system.Process(MakeFrame(static_cast<int>(i), room.Render(kCamera, TruePose(frames[i]))));
+  }
+  return system.Finish();
+}
+
+std::vector<double> Count(int count) {
+  std::vector<double> frames;
+  for (int i = 0; i < count; ++i) frames.push_back(i);
+  return frames;
+}
+
+// Root mean square and length of the path, after the best similarity.
+struct PathError {
+  double rmse = 0;
+  double length = 0;
+  double worst_rotation = 0;  // rad
+};
+PathError Compare(const std::vector<FramePose>& frames, const std::vector<double>& truth) {
+  std::vector<Eigen::Vector3d> found;
+  std::vector<Eigen::Vector3d> expected;
+  PathError error;
+  for (const FramePose& frame : frames) {
+    found.push_back(frame.world_from_camera.translation);
+    expected.push_back(TruePose(truth[frame.index]).translation);
+    if (expected.size() > 1) {
+      error.length += (expected.back() - expected[expected.size() - 2]).norm();
+    }
+  }
+  const Similarity3 fit = AlignSimilarity(found, expected).value();
+  double sum = 0;
+  for (size_t i = 0; i < found.size(); ++i) {
+    sum += (fit * found[i] - expected[i]).squaredNorm();
+    const Eigen::Quaterniond rotation = fit.rotation * frames[i].world_from_camera.rotation;
+    error.worst_rotation = std::max(
+        error.worst_rotation, rotation.angularDistance(TruePose(truth[frames[i].index]).rotation));
+  }
+  error.rmse = std::sqrt(sum / static_cast<double>(found.size()));
+  return error;
+}
+
+bool SameBytes(const Rigid3& a, const Rigid3& b) {
+  return std::memcmp(a.rotation.coeffs().data(), b.rotation.coeffs().data(), 4 * sizeof(double)) ==
+             0 &&
+         std::memcmp(a.translation.data(), b.translation.data(), 3 * sizeof(double)) == 0;
+}
+
+void ExpectSame(const Reconstruction& a, const Reconstruction& b) {
+  ASSERT_EQ(a.frames.size(), b.frames.size());
+  for (size_t i = 0; i < a.frames.size(); ++i) {
+    ASSERT_EQ(a.frames[i].index, b.frames[i].index);
+    ASSERT_TRUE(SameBytes(a.frames[i].world_from_camera, b.frames[i].world_from_camera)) << i;
+  }
+  ASSERT_EQ(a.keyframes.size(), b.keyframes.size());
+  for (size_t i = 0; i < a.keyframes.size(); ++i) {
+    ASSERT_EQ(a.keyframes[i].index, b.keyframes[i].index);
+    ASSERT_TRUE(SameBytes(a.keyframes[i].world_from_camera, b.keyframes[i].world_from_camera));
+  }
+  ASSERT_EQ(a.landmarks.size(), b.landmarks.size());
+  for (size_t i = 0; i < a.landmarks.size(); ++i) {
+    ASSERT_EQ(std::memcmp(a.landmarks[i].position.data(), b.landmarks[i].position.data(),
+                          3 * sizeof(double)),
+              0);
+    ASSERT_EQ(a.landmarks[i].color, b.landmarks[i].color);
+  }
+}
+
+TEST(SystemSlow, TracksAWholeWalkWithinHalfAPercent) {
+  const std::vector<double> frames = Count(150);
+  const Reconstruction result = Track(Hall(), frames);
+  ASSERT_EQ(result.frames.size(), 150u);  // those before the initialization too
+  EXPECT_EQ(result.lost, 0);
+  EXPECT_EQ(result.maps.size(), 1u);
+  const PathError error = Compare(result.frames, frames);
+  EXPECT_LT(error.rmse, 0.005 * error.length);
+  EXPECT_LT(error.worst_rotation, 0.02);
+}
+
+TEST(SystemSlow, GivesTheSameBytesForAnyNumberOfThreadsAndEveryTime) {
+  const BoxRoom room = Hall();
+  const std::vector<double> frames = Count(60);
+  omp_set_num_threads(2);
+  const Reconstruction two = Track(room, frames);
+  omp_set_num_threads(1);
+  const Reconstruction one = Track(room, frames);
+  omp_set_num_threads(3);
+  const Reconstruction three = Track(room, frames);
+  omp_set_num_threads(2);
+  ASSERT_GT(two.frames.size(), 50u);
+  ExpectSame(two, one);
+  ExpectSame(two, three);
+  ExpectSame(two, Track(room, frames));
+}
+
+TEST(SystemSlow, TracksAtSixFramesASecond) {
+  std::vector<double> frames;
+  for (int i = 0; i < 40; ++i) frames.push_back(4.0 * i);
+  const Reconstruction result = Track(Hall(), frames);
+  EXPECT_GE(result.frames.size(), 38u);
+  const PathError error = Compare(result.frames, frames);
+  EXPECT_LT(error.rmse, 0.005 * error.length);
+}
+
+TEST(SystemSlow, WaitsForMotionAndThenTracksTheBeginningBackwards) {
+  std::vector<double> frames(15, 0.0);  // the camera stands still at first
+  for (int i = 0; i < 60; ++i) frames.push_back(i);
+  const Reconstruction result = Track(Hall(), frames);
+  ASSERT_TRUE(result.initialized_at.has_value());
+  EXPECT_GT(*result.initialized_at, 15);
+  EXPECT_EQ(result.frames.size(), frames.size());
+  const PathError error = Compare(result.frames, frames);
+  EXPECT_LT(error.rmse, 0.01 * error.length);
+}
+
+TEST(SystemSlow, FindsItselfAgainAfterAShortBlackout) {
+  const BoxRoom room = Hall();
+  System system(kCamera, SmallOptions(), {});
+  std::vector<double> frames;
+  for (int i = 0; i < 90; ++i) {
+    frames.push_back(i);
+    const cv::Mat image = room.Render(kCamera, TruePose(i));
+    const bool black = i >= 50 && i < 60;
+    system.Process(MakeFrame(i, black ? cv::Mat(cv::Mat::zeros(image.size(), CV_8UC3)) : image));
+  }
+  const Reconstruction result = system.Finish();
+  EXPECT_EQ(result.lost, 1);
+  EXPECT_EQ(result.maps.size(), 1u);
+  EXPECT_GE(result.frames.size(), 79u);
+  const PathError error = Compare(result.frames, frames);
+  EXPECT_LT(error.rmse, 0.01 * error.length);
+}
+
+TEST(SystemSlow, BeginsANewMapElsewhereAndKeepsTheOldOne) {
+  const BoxRoom first = Hall(1);
+  const BoxRoom second = Hall(99);
+  System system(kCamera, SmallOptions(), {});
+  for (int i = 0; i < 130; ++i) {
+    const BoxRoom& room = i < 60 ? first : second;
+    system.Process(MakeFrame(i, room.Render(kCamera, TruePose(i))));
+  }
+  const Reconstruction result = system.Finish();
+  ASSERT_EQ(result.maps.size(), 2u);
+  EXPECT_EQ(result.lost, 1);
+  EXPECT_EQ(result.maps[0].tracked, 60);
+  EXPECT_GE(result.maps[1].tracked, 60);
+  EXPECT_GT(result.maps[0].landmarks, 100);
+  EXPECT_GT(result.maps[1].landmarks, 100);
+}
+
+TEST(System, GivesNothingButDoesNotFailOnAWorldWithoutTexture) {
+  System system(kCamera, SmallOptions(), {});
+  for (int i = 0; i < 5; ++i) {
+    const FrameReport report =
+        system.Process(MakeFrame(i, cv::Mat(320, 640, CV_8UC3, cv::Scalar::all(128))));
+    EXPECT_EQ(report.state, TrackingState::kInitializing);
+    EXPECT_FALSE(report.world_from_camera.has_value());
+  }
+  const Reconstruction result = system.Finish();
+  EXPECT_TRUE(result.frames.empty());
+  EXPECT_FALSE(result.initialized_at.has_value());
+}
+
+TEST(System, RefusesAnImageOfAnotherSize) {
+  System system(kCamera, SmallOptions(), {});
+  EXPECT_THROW(system.Process(MakeFrame(0, cv::Mat(100, 200, CV_8UC3))), ContractError);
+}
+
+}  // namespace
+}  // namespace orb360
