@@ -6,7 +6,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "apps/town/drive/camera_path.h"
+#include "apps/town/drive/camera_motion.h"
 #include "apps/town/render/renderer.h"
 
 namespace orb360::town {
@@ -18,7 +18,10 @@ struct World {
   Sky sky{light, 1};
   RayScene scene{town};
   Shader shader{town, light, sky};
-  std::vector<Rigid3> poses = DriveTour(town.plan, {.seed = 1, .frames = 600});
+  FrameScene frame{scene, {}};
+  Lap lap{town.plan, town.plan.tour, {}};
+
+  Rigid3 Pose(int i) const { return CameraPose(lap, {}, 5.0 * i); }
 };
 
 const World& TheWorld() {
@@ -30,11 +33,10 @@ const EquirectangularCamera kCamera(1024, 512);
 
 void BM_RenderColour(benchmark::State& state) {
   const World& world = TheWorld();
-  size_t frame = 0;
+  int frame = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        RenderColour(world.scene, world.shader, kCamera, world.poses[frame % 600]));
-    frame += 97;
+    benchmark::DoNotOptimize(RenderColour(world.frame, world.shader, kCamera, world.Pose(frame)));
+    ++frame;
   }
   state.counters["samples/s"] = benchmark::Counter(
       4.0 * kCamera.width() * kCamera.height() * static_cast<double>(state.iterations()),
@@ -42,23 +44,23 @@ void BM_RenderColour(benchmark::State& state) {
 }
 BENCHMARK(BM_RenderColour)->Unit(benchmark::kMillisecond)->UseRealTime();
 
-void BM_RenderRange(benchmark::State& state) {
+void BM_RenderGeometry(benchmark::State& state) {
   const World& world = TheWorld();
-  size_t frame = 0;
+  int frame = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(RenderRange(world.scene, kCamera, world.poses[frame % 600]));
-    frame += 97;
+    benchmark::DoNotOptimize(RenderGeometry(world.frame, kCamera, world.Pose(frame)));
+    ++frame;
   }
 }
-BENCHMARK(BM_RenderRange)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(BM_RenderGeometry)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 /// Packets of four pixels in a row, four samples each, then the shadow rays of those that hit.
 void BM_BareEmbree(benchmark::State& state) {
   const World& world = TheWorld();
   const EquirectangularCamera samples(2 * kCamera.width(), 2 * kCamera.height());
-  size_t frame = 0;
+  int frame = 0;
   for (auto _ : state) {
-    const Rigid3& pose = world.poses[frame % 600];
+    const Rigid3 pose = world.Pose(frame);
     const Vector3f origin = pose.translation.cast<float>();
     std::vector<Vector3f> horizontal;
     for (int u = 0; u < samples.width(); ++u)
@@ -100,7 +102,7 @@ void BM_BareEmbree(benchmark::State& state) {
         benchmark::DoNotOptimize(shadows.tfar[0]);
       }
     }
-    frame += 97;
+    ++frame;
   }
   state.counters["samples/s"] = benchmark::Counter(
       4.0 * kCamera.width() * kCamera.height() * static_cast<double>(state.iterations()),

@@ -15,42 +15,63 @@ RTCIntersectContext MakeContext(Coherence coherence) {
   return context;
 }
 
+/// Occlusion of the lanes that are still open.
+void OccludedByInstances(RTCScene scene, const int* valid, RTCRay16* rays) {
+  alignas(64) std::array<int, kPacket> open;
+  bool any_open = false;
+  for (int lane = 0; lane < kPacket; ++lane) {
+    const bool is_open = valid[lane] != 0 && rays->tfar[lane] >= 0;
+    open[static_cast<size_t>(lane)] = is_open ? -1 : 0;
+    any_open |= is_open;
+  }
+  if (!any_open) return;
+  RTCIntersectContext context = MakeContext(Coherence::kSpread);
+  rtcOccluded16(open.data(), scene, &context, rays);
+}
+
 }  // namespace
 
 RayScene::RayScene(const Town& town) : town_(&town), device_(rtcNewDevice("threads=1")) {
   ORB360_CHECK(device_.get() != nullptr, rtcGetDeviceError(nullptr));
+  ORB360_CHECK(town.instances.size() < 60000, town.instances.size());  // masks have 16 bits
   const auto parts_of = [&town](const Mesh& mesh) {
     return Parts{{{&town.materials, &mesh, 0}, {&town.materials, &mesh, mesh.opaque_count}}};
   };
-  const auto new_scene = [this] {
-    Scene scene(rtcNewScene(device_.get()));
-    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
-    return scene;
-  };
-  fixed_scene_ = new_scene();
+  fixed_scene_ = NewScene(RTC_BUILD_QUALITY_HIGH);
   fixed_parts_ = std::make_unique<Parts>(parts_of(town.fixed));
   AttachMesh(fixed_scene_.get(), *fixed_parts_);
   rtcCommitScene(fixed_scene_.get());
-  instance_scene_ = new_scene();
-  model_parts_.reserve(town.models.size());
   for (const Mesh& model : town.models) {
     model_parts_.push_back(parts_of(model));
-    model_scenes_.push_back(new_scene());
+    model_scenes_.push_back(NewScene(RTC_BUILD_QUALITY_HIGH));
     AttachMesh(model_scenes_.back().get(), model_parts_.back());
     rtcCommitScene(model_scenes_.back().get());
   }
-  for (size_t i = 0; i < town.instances.size(); ++i) {
-    const Instance& instance = town.instances[i];
+  instance_scene_ = MakeInstanceScene(town.instances, 0, RTC_BUILD_QUALITY_HIGH);
+  ORB360_CHECK(rtcGetDeviceError(device_.get()) == RTC_ERROR_NONE);
+}
+
+Scene RayScene::NewScene(RTCBuildQuality quality) const {
+  Scene scene(rtcNewScene(device_.get()));
+  rtcSetSceneBuildQuality(scene.get(), quality);
+  return scene;
+}
+
+Scene RayScene::MakeInstanceScene(std::span<const Instance> instances, size_t first_id,
+                                  RTCBuildQuality quality) const {
+  Scene scene = NewScene(quality);
+  for (size_t i = 0; i < instances.size(); ++i) {
     RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(geometry, model_scenes_[instance.model].get());
-    const Eigen::Matrix<float, 3, 4> transform = instance.world_from_model.matrix().topRows<3>();
+    rtcSetGeometryInstancedScene(geometry, model_scenes_[instances[i].model].get());
+    const Eigen::Matrix<float, 3, 4> transform =
+        instances[i].world_from_model.matrix().topRows<3>();
     rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, transform.data());
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(instance_scene_.get(), geometry, static_cast<unsigned>(i));
+    rtcAttachGeometryByID(scene.get(), geometry, static_cast<unsigned>(first_id + i));
     rtcReleaseGeometry(geometry);
   }
-  rtcCommitScene(instance_scene_.get());
-  ORB360_CHECK(rtcGetDeviceError(device_.get()) == RTC_ERROR_NONE);
+  rtcCommitScene(scene.get());
+  return scene;
 }
 
 void RayScene::AttachMesh(RTCScene scene, const Parts& parts) const {
@@ -107,16 +128,7 @@ void RayScene::Intersect(const int* valid, RTCRayHit16* rays) const {
 void RayScene::Occluded(const int* valid, RTCRay16* rays, Coherence coherence) const {
   RTCIntersectContext context = MakeContext(coherence);
   rtcOccluded16(valid, fixed_scene_.get(), &context, rays);
-  alignas(64) std::array<int, kPacket> open;
-  bool any_open = false;
-  for (int lane = 0; lane < kPacket; ++lane) {
-    const bool is_open = valid[lane] != 0 && rays->tfar[lane] >= 0;
-    open[static_cast<size_t>(lane)] = is_open ? -1 : 0;
-    any_open |= is_open;
-  }
-  if (!any_open) return;
-  RTCIntersectContext spread = MakeContext(Coherence::kSpread);
-  rtcOccluded16(open.data(), instance_scene_.get(), &spread, rays);
+  OccludedByInstances(instance_scene_.get(), valid, rays);
 }
 
 void RayScene::OccludedByModel(uint32_t model, const int* valid, RTCRay16* rays) const {
@@ -124,16 +136,46 @@ void RayScene::OccludedByModel(uint32_t model, const int* valid, RTCRay16* rays)
   rtcOccluded16(valid, model_scenes_[model].get(), &context, rays);
 }
 
-SurfaceHit RayScene::Resolve(const RTCHit16& hit, int lane) const {
-  const unsigned instance_id = hit.instID[0][lane];
+FrameScene::FrameScene(const RayScene& town, std::vector<Instance> moving)
+    : town_(&town), moving_(std::move(moving)) {
+  if (moving_.empty()) return;
+  moving_scene_ =
+      town.MakeInstanceScene(moving_, town.town_->instances.size(), RTC_BUILD_QUALITY_LOW);
+}
+
+void FrameScene::Intersect(const int* valid, RTCRayHit16* rays) const {
+  town_->Intersect(valid, rays);
+  if (moving_.empty()) return;
+  RTCIntersectContext context = MakeContext(Coherence::kSpread);
+  rtcIntersect16(valid, moving_scene_.get(), &context, rays);
+}
+
+void FrameScene::Occluded(const int* valid, RTCRay16* rays) const {
+  town_->Occluded(valid, rays);
+  if (!moving_.empty()) OccludedByInstances(moving_scene_.get(), valid, rays);
+}
+
+SurfaceHit FrameScene::Resolve(const RTCHit16& hit, int lane) const {
+  const size_t id = hit.instID[0][lane];
   const Instance* instance = nullptr;
-  const Parts* parts = fixed_parts_.get();
-  if (instance_id != RTC_INVALID_GEOMETRY_ID) {
-    instance = &town_->instances[instance_id];
-    parts = &model_parts_[instance->model];
+  const RayScene::Parts* parts = town_->fixed_parts_.get();
+  if (hit.instID[0][lane] != RTC_INVALID_GEOMETRY_ID) {
+    const std::vector<Instance>& fixed = town_->town_->instances;
+    instance = id < fixed.size() ? &fixed[id] : &moving_[id - fixed.size()];
+    parts = &town_->model_parts_[instance->model];
   }
-  const Part& part = (*parts)[hit.geomID[lane]];
+  const RayScene::Part& part = (*parts)[hit.geomID[lane]];
   return {part.mesh, instance, &part.mesh->triangles[part.first + hit.primID[lane]]};
+}
+
+uint16_t FrameScene::ObjectId(const RTCHit16& hit, int lane) const {
+  if (hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) return kNothing;
+  if (hit.instID[0][lane] == RTC_INVALID_GEOMETRY_ID) return kFixed;
+  return static_cast<uint16_t>(kFixed + 1 + hit.instID[0][lane]);
+}
+
+uint16_t FrameScene::first_moving_id() const {
+  return static_cast<uint16_t>(kFixed + 1 + town_->town_->instances.size());
 }
 
 }  // namespace orb360::town

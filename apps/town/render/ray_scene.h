@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -79,10 +81,10 @@ class RayScene {
   void Occluded(const int* valid, RTCRay16* rays, Coherence coherence = Coherence::kTogether) const;
   /// As Occluded, for spread rays in a model's own frame and with the model alone.
   void OccludedByModel(uint32_t model, const int* valid, RTCRay16* rays) const;
-  /// The surface in one lane of a packet which hit (geomID is not invalid).
-  SurfaceHit Resolve(const RTCHit16& hit, int lane) const;
 
  private:
+  friend class FrameScene;
+
   /// The triangles of a mesh from `first` on that are one geometry.
   struct Part {
     const Materials* materials;
@@ -92,16 +94,45 @@ class RayScene {
   /// A mesh's opaque part and its part with cut-outs, by Embree's geomID.
   using Parts = std::array<Part, 2>;
 
+  Scene NewScene(RTCBuildQuality quality) const;
   void AttachMesh(RTCScene scene, const Parts& parts) const;
+  /// A committed scene of instances whose ids count from `first_id`.
+  Scene MakeInstanceScene(std::span<const Instance> instances, size_t first_id,
+                          RTCBuildQuality quality) const;
   static void RejectCutouts(const RTCFilterFunctionNArguments* arguments);
 
   const Town* town_;
   Device device_;
   std::unique_ptr<Parts> fixed_parts_;  // Embree holds the addresses
-  std::vector<Parts> model_parts_;
+  std::deque<Parts> model_parts_;  // likewise
   std::vector<Scene> model_scenes_;
   Scene fixed_scene_;
   Scene instance_scene_;
+};
+
+/// The town together with what moves through it at one moment. The RayScene must outlive it.
+class FrameScene {
+ public:
+  FrameScene(const RayScene& town, std::vector<Instance> moving);
+
+  /// As RayScene's.
+  void Intersect(const int* valid, RTCRayHit16* rays) const;
+  void Occluded(const int* valid, RTCRay16* rays) const;
+
+  /// The surface in one lane of a packet which hit (geomID is not invalid).
+  SurfaceHit Resolve(const RTCHit16& hit, int lane) const;
+
+  /// Numbers for masks: nothing, the fixed mesh, then the town's instances, then what moves.
+  static constexpr uint16_t kNothing = 0;
+  static constexpr uint16_t kFixed = 1;
+  uint16_t ObjectId(const RTCHit16& hit, int lane) const;
+  /// The first number of a moving object.
+  uint16_t first_moving_id() const;
+
+ private:
+  const RayScene* town_;
+  std::vector<Instance> moving_;
+  Scene moving_scene_;  // empty where nothing moves
 };
 
 }  // namespace orb360::town

@@ -84,7 +84,7 @@ bool SameSurface(const RTCHit16& hit, int i, int j, const SurfaceHit& a, const S
 /// ray to the sun.
 class PacketRenderer {
  public:
-  PacketRenderer(const RayScene& scene, const Shader& shader, const RayDirections& directions,
+  PacketRenderer(const FrameScene& scene, const Shader& shader, const RayDirections& directions,
                  const Vector3f& origin, float sample_angle)
       : scene_(&scene),
         shader_(&shader),
@@ -207,7 +207,7 @@ class PacketRenderer {
 
   static constexpr size_t kNoPatch = kPacket;
 
-  const RayScene* scene_;
+  const FrameScene* scene_;
   const Shader* shader_;
   const RayDirections* directions_;
   Vector3f origin_;
@@ -224,7 +224,7 @@ class PacketRenderer {
 
 }  // namespace
 
-cv::Mat3b RenderColour(const RayScene& scene, const Shader& shader,
+cv::Mat3b RenderColour(const FrameScene& scene, const Shader& shader,
                        const EquirectangularCamera& camera, const Rigid3& world_from_camera) {
   const RayDirections directions(camera, world_from_camera, {kPattern.begin(), kPattern.end()});
   const Vector3f origin = world_from_camera.translation.cast<float>();
@@ -249,11 +249,12 @@ cv::Mat3b RenderColour(const RayScene& scene, const Shader& shader,
   return image;
 }
 
-cv::Mat1f RenderRange(const RayScene& scene, const EquirectangularCamera& camera,
-                      const Rigid3& world_from_camera) {
+GeometryImage RenderGeometry(const FrameScene& scene, const EquirectangularCamera& camera,
+                             const Rigid3& world_from_camera) {
   const RayDirections directions(camera, world_from_camera, {{0.5, 0.5}});
   const Vector3f origin = world_from_camera.translation.cast<float>();
-  cv::Mat1f range(camera.height(), camera.width());
+  GeometryImage image{cv::Mat1f(camera.height(), camera.width()),
+                      cv::Mat1w(camera.height(), camera.width())};
 #pragma omp parallel for schedule(dynamic, 4)
   for (int row = 0; row < camera.height(); ++row) {
     RTCRayHit16 rays;
@@ -268,12 +269,13 @@ cv::Mat1f RenderRange(const RayScene& scene, const EquirectangularCamera& camera
       }
       scene.Intersect(valid.data(), &rays);
       for (int lane = 0; lane < kPacket && column + lane < camera.width(); ++lane) {
-        range(row, column + lane) =
+        image.object(row, column + lane) = scene.ObjectId(rays.hit, lane);
+        image.range(row, column + lane) =
             rays.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID ? 0 : rays.ray.tfar[lane];
       }
     }
   }
-  return range;
+  return image;
 }
 
 }  // namespace orb360::town

@@ -11,11 +11,15 @@ namespace orb360::town {
 
 /// The panorama from a pose, 8-bit BGR, with four samples a pixel and a ray to a point of the
 /// sun's disc for each. The same bytes for any number of threads (OpenMP's current maximum).
-cv::Mat3b RenderColour(const RayScene& scene, const Shader& shader,
+cv::Mat3b RenderColour(const FrameScene& scene, const Shader& shader,
                        const EquirectangularCamera& camera, const Rigid3& world_from_camera);
 
-/// The distance in metres along the ray through each pixel's centre, 0 where it meets nothing.
-cv::Mat1f RenderRange(const RayScene& scene, const EquirectangularCamera& camera,
-                      const Rigid3& world_from_camera);
+/// What the rays through the pixels' centres meet.
+struct GeometryImage {
+  cv::Mat1f range;   ///< metres along the ray, 0 where it meets nothing
+  cv::Mat1w object;  ///< FrameScene::ObjectId
+};
+GeometryImage RenderGeometry(const FrameScene& scene, const EquirectangularCamera& camera,
+                             const Rigid3& world_from_camera);
 
 }  // namespace orb360::town

@@ -7,6 +7,7 @@
 
 #include "apps/town/world/furniture.h"
 #include "apps/town/world/ground.h"
+#include "apps/town/world/pedestrian.h"
 #include "apps/town/world/tree.h"
 #include "apps/town/world/vehicle.h"
 
@@ -33,6 +34,14 @@ Models MakeModels(const Random& random, Town* town) {
     models.signs.push_back(add(MakeRoadSign(m, random.Fork(30 + i))));
   for (int i = 0; i < kVehicleKinds; ++i)
     models.vehicles.push_back(add(MakeVehicle(static_cast<VehicleKind>(i), m)));
+  town->vehicles = models.vehicles;
+  constexpr uint64_t kPeople = 8;
+  for (uint64_t i = 0; i < kPeople; ++i) {
+    for (uint32_t phase = 0; phase < kWalkPhases; ++phase) {
+      const uint32_t model = add(MakePedestrian(phase, m, random.Fork(60 + i)));
+      if (phase == 0) town->pedestrians.push_back(model);
+    }
+  }
   models.traffic_light = add(MakeTrafficLight(m));
   models.bench = add(MakeBench(m));
   models.bin = add(MakeBin(m));

@@ -10,13 +10,12 @@
 
 namespace orb360::town {
 
-Town BuildTown(uint64_t seed) {
+Town BuildTown(uint64_t seed, PlanOptions plan) {
   const Random random(seed);
   Town town;
   town.materials = PaintMaterials(random.Fork(1).Next());
-  PlanOptions options;
-  options.seed = random.Fork(2).Next();
-  town.plan = PlanStreets(options);
+  plan.seed = random.Fork(2).Next();
+  town.plan = PlanStreets(plan);
   MeshBuilder builder(town.materials);
   AddGround(town.plan, builder);
   AddRoadMarkings(town.plan, builder);

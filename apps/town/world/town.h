@@ -25,9 +25,11 @@ struct Town {
   Mesh fixed;                ///< ground and buildings
   std::vector<Mesh> models;  ///< trees, lamp posts, cars, ... shared by instances
   std::vector<Instance> instances;
+  std::vector<uint32_t> vehicles;     ///< the models by VehicleKind
+  std::vector<uint32_t> pedestrians;  ///< the first of kWalkPhases models of each person
 };
 
-/// The town of a seed.
-Town BuildTown(uint64_t seed);
+/// The town of a seed; the plan's own seed is drawn from it.
+Town BuildTown(uint64_t seed, PlanOptions plan = {});
 
 }  // namespace orb360::town

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+
+#include "apps/town/drive/lap.h"
+#include "slam/geometry/rigid3.h"
+
+namespace orb360::town {
+
+struct CameraMotionOptions {
+  uint64_t seed = 0;
+  double height = 2;   ///< metres above the road
+  double shaking = 1;  ///< factor on vibration, and on the body's pitch and roll in response to
+                       ///< braking and bends
+};
+
+/// The pose world_from_camera (camera -X forward, +Y right, +Z up) at a time, of a camera on the
+/// roof of a car that drives a lap.
+Rigid3 CameraPose(const Lap& lap, const CameraMotionOptions& options, double time);
+
+}  // namespace orb360::town

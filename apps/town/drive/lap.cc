@@ -1,0 +1,220 @@
+#include "apps/town/drive/lap.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/town/image/random.h"
+#include "slam/check.h"
+
+namespace orb360::town {
+namespace {
+
+constexpr double kStep = 0.25;                // metres between the points of the driven line
+constexpr double kLateralAcceleration = 2.2;  // metres per second squared, in bends
+constexpr double kBraking = 1.6;              // metres per second squared
+constexpr double kAccelerating = 1.3;
+
+/// A stretch of one street between two junctions, as driven.
+struct Leg {
+  size_t street;
+  double from;
+  double to;
+};
+
+/// The street that joins two junctions.
+Leg FindLeg(const StreetPlan& plan, size_t from, size_t to) {
+  for (const Junction::Arm& a : plan.junctions[from].arms) {
+    for (const Junction::Arm& b : plan.junctions[to].arms) {
+      if (a.street == b.street) return {a.street, a.station, b.station};
+    }
+  }
+  ORB360_CHECK(false, "no street joins the junctions", from, to);
+  return {};
+}
+
+Vector2d LanePoint(const StreetPlan& plan, const Leg& leg, double station) {
+  const StreetPoint p = plan.streets[leg.street].At(station);
+  const double direction = leg.to > leg.from ? 1 : -1;
+  const Vector2d right(direction * p.tangent.y(), -direction * p.tangent.x());
+  return p.position + plan.streets[leg.street].LaneOffset(p.half_width) * right;
+}
+
+Vector2d LaneDirection(const StreetPlan& plan, const Leg& leg, double station) {
+  return (leg.to > leg.from ? 1 : -1) * plan.streets[leg.street].At(station).tangent;
+}
+
+/// Points every kStep metres along a polyline, closed into a ring.
+std::vector<Vector2d> Resample(const std::vector<Vector2d>& ring) {
+  std::vector<Vector2d> result;
+  double carried = 0;  // metres since the last point
+  for (size_t i = 0; i < ring.size(); ++i) {
+    const Vector2d& a = ring[i];
+    const Vector2d& b = ring[(i + 1) % ring.size()];
+    const double length = (b - a).norm();
+    if (length < 1e-9) continue;
+    double s = kStep - carried;
+    for (; s <= length; s += kStep) result.emplace_back(a + s / length * (b - a));
+    carried = length - (s - kStep);
+  }
+  return result;
+}
+
+/// The driven line as a ring: lanes joined at the junctions by curves.
+std::vector<Vector2d> DrivenLine(const StreetPlan& plan, std::span<const size_t> tour,
+                                 std::vector<size_t>* junction_points) {
+  constexpr double kApproach = 9.5;  // metres from the junction at which a turn begins and ends
+  std::vector<Leg> legs;
+  for (size_t i = 0; i < tour.size(); ++i)
+    legs.push_back(FindLeg(plan, tour[i], tour[(i + 1) % tour.size()]));
+  std::vector<Vector2d> ring;
+  for (size_t i = 0; i < legs.size(); ++i) {
+    const Leg& leg = legs[i];
+    const Leg& next = legs[(i + 1) % legs.size()];
+    const double direction = leg.to > leg.from ? 1 : -1;
+    const double next_direction = next.to > next.from ? 1 : -1;
+    const bool straight_on = leg.street == next.street;
+    const double trim = straight_on ? 0 : kApproach;
+    const bool came_straight = legs[(i + legs.size() - 1) % legs.size()].street == leg.street;
+    const double begin = leg.from + direction * (came_straight ? 0 : kApproach);
+    const double end = leg.to - direction * trim;
+    for (double s = begin; direction * (end - s) > 0; s += direction * 0.5)
+      ring.push_back(LanePoint(plan, leg, s));
+    junction_points->push_back(ring.size());
+    if (straight_on) continue;
+    const double exit = next.from + next_direction * kApproach;
+    const Vector2d p0 = LanePoint(plan, leg, end);
+    const Vector2d p3 = LanePoint(plan, next, exit);
+    const double reach = 0.45 * (p3 - p0).norm();
+    const Vector2d p1 = p0 + reach * LaneDirection(plan, leg, end);
+    const Vector2d p2 = p3 - reach * LaneDirection(plan, next, exit);
+    for (int k = 0; k < 40; ++k) {
+      const double t = k / 40.0;
+      const double q = 1 - t;
+      ring.emplace_back(q * q * q * p0 + 3 * q * q * t * p1 + 3 * q * t * t * p2 + t * t * t * p3);
+    }
+  }
+  return ring;
+}
+
+/// Circular moving average over 2 * radius + 1 values.
+template <typename T>
+std::vector<T> SmoothRing(const std::vector<T>& values, int radius) {
+  const int n = static_cast<int>(values.size());
+  std::vector<T> result;
+  for (int i = 0; i < n; ++i) {
+    T sum = values[static_cast<size_t>((i - radius + n) % n)];
+    for (int k = -radius + 1; k <= radius; ++k) sum += values[static_cast<size_t>((i + k + n) % n)];
+    result.push_back(sum / (2 * radius + 1));
+  }
+  return result;
+}
+
+/// What drivers wish for, changing every 30 m or so, within what the bends allow.
+std::vector<double> WishedSpeeds(const std::vector<Vector2d>& points, const LapOptions& options,
+                                 Random& random) {
+  const size_t n = points.size();
+  std::vector<double> wish(n);
+  double target = options.maximum_speed;
+  for (size_t i = 0; i < n; ++i) {
+    if (i % static_cast<size_t>(30 / kStep) == 0)
+      target = random.Uniform(options.minimum_speed, options.maximum_speed);
+    wish[i] = target;
+  }
+  wish = SmoothRing(wish, static_cast<int>(6 / kStep));
+  constexpr size_t kReach = 8;  // points to either side over which the curvature is taken
+  for (size_t i = 0; i < n; ++i) {
+    const Vector2d ab = points[i] - points[(i + n - kReach) % n];
+    const Vector2d bc = points[(i + kReach) % n] - points[i];
+    const double turn = std::abs(std::atan2(ab.x() * bc.y() - ab.y() * bc.x(), ab.dot(bc)));
+    const double curvature = turn / (0.5 * (ab.norm() + bc.norm()));
+    wish[i] = std::min(wish[i], std::sqrt(kLateralAcceleration / std::max(curvature, 1e-4)));
+  }
+  return wish;
+}
+
+}  // namespace
+
+Lap::Lap(const StreetPlan& plan, std::span<const size_t> tour, const LapOptions& options)
+    : plan_(&plan) {
+  Random random(options.seed);
+  std::vector<size_t> junction_points;
+  const std::vector<Vector2d> line = DrivenLine(plan, tour, &junction_points);
+  points_ = SmoothRing(Resample(line), 7);
+  const size_t n = points_.size();
+  speeds_ = WishedSpeeds(points_, options, random);
+  dwell_.assign(n, 0);
+  for (const size_t junction : junction_points) {
+    if (!random.Chance(0.3)) continue;
+    const Vector2d& p = line[junction % line.size()];
+    const auto nearest =
+        std::min_element(points_.begin(), points_.end(), [&](const Vector2d& a, const Vector2d& b) {
+          return (a - p).squaredNorm() < (b - p).squaredNorm();
+        });
+    constexpr double kBefore = 5;  // metres from where the turn begins
+    const size_t stop = (static_cast<size_t>(nearest - points_.begin()) + n -
+                         static_cast<size_t>(kBefore / kStep)) %
+                        n;
+    speeds_[stop] = 0;
+    dwell_[stop] = random.Uniform(0.8, 2.5);
+  }
+  // What lies ahead bounds the speed by braking, what lies behind by accelerating; twice round so
+  // that it holds across the seam.
+  for (size_t k = 2 * n; k-- > 0;) {
+    const double ahead = speeds_[(k + 1) % n];
+    speeds_[k % n] = std::min(speeds_[k % n], std::sqrt(ahead * ahead + 2 * kBraking * kStep));
+  }
+  for (size_t k = 0; k < 2 * n; ++k) {
+    const double behind = speeds_[k % n];
+    speeds_[(k + 1) % n] =
+        std::min(speeds_[(k + 1) % n], std::sqrt(behind * behind + 2 * kAccelerating * kStep));
+  }
+  for (size_t i = 0; i < n; ++i) {
+    arrivals_.push_back(duration_);
+    duration_ += dwell_[i] + 2 * kStep / (speeds_[i] + speeds_[(i + 1) % n]);
+  }
+}
+
+double Lap::length() const { return kStep * static_cast<double>(points_.size()); }
+
+Lap::State Lap::At(double time) const {
+  time -= duration_ * std::floor(time / duration_);
+  const auto next = std::upper_bound(arrivals_.begin(), arrivals_.end(), time);
+  const auto i = static_cast<size_t>(next - arrivals_.begin()) - 1;
+  const double elapsed = time - arrivals_[i] - dwell_[i];
+  const double station = kStep * static_cast<double>(i);
+  if (elapsed <= 0) return {station, speeds_[i]};
+  const double v0 = speeds_[i];
+  const double v1 = speeds_[(i + 1) % speeds_.size()];
+  const double acceleration = (v1 * v1 - v0 * v0) / (2 * kStep);
+  const double advance =
+      std::clamp(v0 * elapsed + 0.5 * acceleration * elapsed * elapsed, 0.0, kStep);
+  return {std::fmod(station + advance, length()), std::max(0.0, v0 + acceleration * elapsed)};
+}
+
+Vector2d Lap::Point(double station) const {
+  const double wrapped = station - length() * std::floor(station / length());
+  const double x = wrapped / kStep;
+  const auto whole = static_cast<size_t>(x);
+  const double t = x - static_cast<double>(whole);
+  const size_t n = points_.size();
+  return (1 - t) * points_[whole % n] + t * points_[(whole + 1) % n];
+}
+
+RoadPose Lap::PoseAt(double station) const {
+  constexpr double kHalfWheelbase = 1.4;  // metres
+  constexpr double kHalfTrack = 0.8;
+  RoadPose pose;
+  pose.position = Point(station);
+  const Vector2d front = Point(station + kHalfWheelbase);
+  const Vector2d rear = Point(station - kHalfWheelbase);
+  pose.forward = (front - rear).normalized();
+  const Vector2d left(-pose.forward.y(), pose.forward.x());
+  pose.height = plan_->Height(pose.position);
+  pose.slope = std::atan2(plan_->Height(front) - plan_->Height(rear), (front - rear).norm());
+  pose.bank = std::atan2(plan_->Height(pose.position + kHalfTrack * left) -
+                             plan_->Height(pose.position - kHalfTrack * left),
+                         2 * kHalfTrack);
+  return pose;
+}
+
+}  // namespace orb360::town

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+
+#include "apps/town/sequence/drive.h"
+
+namespace orb360::town {
+
+struct FolderOptions {
+  int frames = 600;
+  int depth_every = 1;  ///< ranges of every n-th frame
+  bool masks = false;   ///< with the ranges: objects/ (16-bit ids) and moving/ (8-bit, 255 moving)
+};
+
+/// Renders a drive into a sequence folder: rgb/000000.jpg, depth/000000.png, groundtruth.txt,
+/// sequence.yaml, and a contact sheet.jpg. Files appear under their names only when complete, and
+/// frames that are already there are kept, so an interrupted rendering is resumed by repeating it;
+/// a folder that holds another sequence is refused. `progress` is called after each frame with the
+/// number of frames done and the number of those rendered now. Throws UserError.
+void RenderIntoFolder(const Drive& drive, const std::filesystem::path& folder,
+                      const FolderOptions& options,
+                      const std::function<void(int done, int rendered)>& progress);
+
+}  // namespace orb360::town

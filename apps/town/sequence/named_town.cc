@@ -1,0 +1,54 @@
+#include "apps/town/sequence/named_town.h"
+
+#include <array>
+#include <charconv>
+
+#include "slam/check.h"
+
+namespace orb360::town {
+namespace {
+
+constexpr size_t kMaximumDigits = 18;  // 10^18 < 2^63
+
+/// Lengths and light as in the paper's table of sequences.
+struct Named {
+  std::string_view name;
+  uint64_t number;
+  std::string_view light;
+  double traffic;
+  int frames;
+  int columns;
+  int rows;
+  double spacing;
+};
+constexpr std::array<Named, 5> kTowns = {{{"Town1", 1, "noon", 0.3, 1000, 3, 3, 72},
+                                          {"Town2", 2, "sunset", 0.5, 2000, 4, 3, 80},
+                                          {"Town3", 3, "morning", 0.2, 2850, 4, 4, 85},
+                                          {"Town4", 4, "noon", 0.8, 3000, 5, 3, 82},
+                                          {"Town5", 5, "sunset", 0.1, 1000, 3, 3, 66}}};
+
+}  // namespace
+
+TownSpec FindTown(std::string_view name) {
+  TownSpec spec;
+  spec.name = name;
+  for (const Named& town : kTowns) {
+    if (town.name != name) continue;
+    spec.seed = (1ULL << 63) + town.number;
+    spec.light = town.light;
+    spec.traffic = town.traffic;
+    spec.frames = town.frames;
+    spec.plan.columns = town.columns;
+    spec.plan.rows = town.rows;
+    spec.plan.spacing = town.spacing;
+    return spec;
+  }
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), spec.seed);
+  if (error != std::errc() || end != name.data() + name.size() || name.size() > kMaximumDigits) {
+    throw UserError("unknown town '" + std::string(name) +
+                    "': use Town1 ... Town5, or a seed of at most 18 digits");
+  }
+  return spec;
+}
+
+}  // namespace orb360::town

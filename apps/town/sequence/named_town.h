@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "apps/town/world/street_plan.h"
+
+namespace orb360::town {
+
+/// What is to be rendered, all but the size of the pictures.
+struct TownSpec {
+  std::string name;  ///< as the user gave it
+  uint64_t seed = 0;
+  std::string light = "noon";
+  double traffic = 0;  ///< density, 0 to 1
+  int frames = 600;
+  PlanOptions plan;  ///< its seed is drawn from `seed`
+};
+
+/// The evaluation towns Town1 ... Town5 by name, or the training town of a seed (a whole number of
+/// at most 18 digits). The seeds of evaluation towns lie above 2^63 and so can never be a training
+/// town's. Throws UserError for anything else.
+TownSpec FindTown(std::string_view name);
+
+}  // namespace orb360::town
