@@ -1,0 +1,206 @@
+#include "apps/town/render/renderer.h"
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "tests/apps/town/plain_materials.h"
+
+namespace orb360::town {
+namespace {
+
+const EquirectangularCamera kCamera(512, 256);
+
+/// A pose without any special alignment.
+Rigid3 Pose() {
+  Rigid3 pose;
+  pose.rotation = ExpSo3({0.1, -0.2, 2.5});
+  pose.translation = {0.3, -0.4, 1.7};
+  return pose;
+}
+
+/// Compares every rendered range with `distance(origin, direction)`, negative where unknown.
+void ExpectRanges(
+    const Town& town,
+    const std::function<double(const Eigen::Vector3d&, const Eigen::Vector3d&)>& distance,
+    int minimum_checked) {
+  const RayScene scene(town);
+  const GeometryImage image = RenderGeometry(FrameScene(scene, {}), kCamera, Pose());
+  int checked = 0;
+  for (int row = 0; row < kCamera.height(); ++row) {
+    for (int column = 0; column < kCamera.width(); ++column) {
+      const Eigen::Vector3d direction =
+          Pose().rotation * kCamera.Bearing({column + 0.5, row + 0.5});
+      const double truth = distance(Pose().translation, direction);
+      if (truth < 0) continue;
+      ASSERT_NEAR(image.range(row, column), truth, 1e-3) << column << ' ' << row;
+      ++checked;
+    }
+  }
+  EXPECT_GE(checked, minimum_checked);
+}
+
+Town PlainTown() {
+  Town town;
+  town.materials = PlainMaterials();
+  return town;
+}
+
+void Finish(MeshBuilder& builder, Town* town) {
+  town->fixed = builder.mesh();
+  town->fixed.PartitionCutouts(town->materials);
+}
+
+TEST(RenderGeometry, RangeToAPlaneIsExactToAMillimetre) {
+  Town town = PlainTown();
+  MeshBuilder builder(town.materials);
+  builder.AddGroundPolygon(0, {{-500, -500, 0}, {500, -500, 0}, {500, 500, 0}, {-500, 500, 0}});
+  Finish(builder, &town);
+  const auto distance = [](const Eigen::Vector3d& origin, const Eigen::Vector3d& d) {
+    if (d.z() >= 0) return 0.0;
+    const double t = -origin.z() / d.z();
+    return t < 250 ? t : -1;  // what a 16-bit range image can hold
+  };
+  ExpectRanges(town, distance, 100000);
+}
+
+TEST(RenderGeometry, RangeToABoxIsExactToAMillimetre) {
+  Town town = PlainTown();
+  MeshBuilder builder(town.materials);
+  const Panel front{{4, -3, -2}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}};  // the camera is inside
+  builder.AddBox(0, front, 0, 6, 0, 5, -9, 0);
+  builder.AddRectangle(0, front, 0, 6, 0, 5, -9);
+  Finish(builder, &town);
+  const auto distance = [](const Eigen::Vector3d& origin, const Eigen::Vector3d& d) {
+    double nearest = 1e30;
+    const Eigen::Vector3d low(-5, -3, -2);
+    const Eigen::Vector3d high(4, 3, 3);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (d[axis] != 0)
+        nearest = std::min(nearest, ((d[axis] > 0 ? high : low)[axis] - origin[axis]) / d[axis]);
+    }
+    return nearest;
+  };
+  ExpectRanges(town, distance, 512 * 256);
+}
+
+TEST(RenderGeometry, RangeToASphereIsExactToAMillimetre) {
+  // An instance, so that transforms are tested as well: a unit sphere of fine facets, moved.
+  Town town = PlainTown();
+  MeshBuilder builder(town.materials);
+  constexpr int kRings = 600;
+  constexpr double kPi = std::numbers::pi;
+  const auto at = [](int ring, int side) {
+    const double latitude = kPi * (static_cast<double>(ring) / kRings - 0.5);
+    const double longitude = kPi * side / kRings;
+    return Eigen::Vector3d(std::cos(latitude) * std::cos(longitude),
+                           std::cos(latitude) * std::sin(longitude), std::sin(latitude))
+        .cast<float>()
+        .eval();
+  };
+  for (int ring = 0; ring <= kRings; ++ring) {
+    for (int side = 0; side <= 2 * kRings; ++side) {
+      const Vector3f p = at(ring, side);
+      builder.AddVertex(p, p, 0, 0);
+    }
+  }
+  for (uint32_t ring = 0; ring < kRings; ++ring) {
+    for (uint32_t side = 0; side < 2 * kRings; ++side) {
+      const uint32_t a = ring * (2 * kRings + 1) + side;
+      builder.AddTriangle(0, a, a + 1, a + 2 * kRings + 2);
+      builder.AddTriangle(0, a, a + 2 * kRings + 2, a + 2 * kRings + 1);
+    }
+  }
+  town.models.push_back(builder.mesh());
+  town.models.back().PartitionCutouts(town.materials);
+  Instance instance;
+  const Eigen::Vector3d centre(2.5, 1.25, 0.75);
+  instance.world_from_model = Eigen::Translation3f(centre.cast<float>()) *
+                              Eigen::AngleAxisf(0.7F, Vector3f(1, 2, 3).normalized());
+  town.instances.push_back(instance);
+  const auto distance = [&](const Eigen::Vector3d& origin, const Eigen::Vector3d& d) {
+    const double along = (centre - origin).dot(d);
+    const double squared_off = (centre - origin).squaredNorm() - along * along;
+    if (squared_off > 1.001) return 0.0;
+    if (squared_off > 0.97) return -1.0;  // grazing: the facets' own error counts
+    return along < 0 ? 0.0 : along - std::sqrt(1 - squared_off);
+  };
+  ExpectRanges(town, distance, 100000);
+}
+
+TEST(RenderGeometry, CutoutsAreThereOnlyWhereTheTextureCovers) {
+  Town town = PlainTown();
+  MeshBuilder builder(town.materials);
+  const Panel wall{{5, 4, -3}, {0, -1, 0}, {0, 0, 1}, {-1, 0, 0}};
+  builder.AddPicture(2, wall, 0, 8, 0, 8);  // covers the half y > 0
+  Finish(builder, &town);
+  const auto distance = [](const Eigen::Vector3d& origin, const Eigen::Vector3d& d) {
+    if (d.x() <= 0) return 0.0;
+    const Eigen::Vector3d p = origin + (5 - origin.x()) / d.x() * d;
+    if (std::abs(p.y()) < 0.01 || std::abs(p.y() - 4) < 0.01 || std::abs(p.z() + 3) < 0.01 ||
+        std::abs(p.z() - 5) < 0.01)
+      return -1.0;
+    return p.y() > 0 && p.y() < 4 && p.z() > -3 && p.z() < 5 ? (p - origin).norm() : 0.0;
+  };
+  ExpectRanges(town, distance, 130000);
+}
+
+TEST(RenderGeometry, MovingObjectsHaveTheLastNumbers) {
+  Town town = PlainTown();
+  MeshBuilder ground(town.materials);
+  ground.AddGroundPolygon(0, {{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}});
+  Finish(ground, &town);
+  MeshBuilder cube(town.materials);
+  const Panel front{{0.5, -0.5, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
+  cube.AddBox(0, front, 0, 1, 0, 1, -1, 0);
+  town.models.push_back(cube.mesh());
+  town.models.back().PartitionCutouts(town.materials);
+  const auto at = [](float x) {
+    Instance instance;
+    instance.world_from_model.translation() = Vector3f(x, 0, 0.8F);
+    return instance;
+  };
+  town.instances.push_back(at(-6));
+  const RayScene scene(town);
+  const FrameScene frame(scene, {at(6)});
+  const GeometryImage image = RenderGeometry(frame, kCamera, Pose());
+  const auto id_at = [&](const Eigen::Vector3d& world) {
+    const Eigen::Vector2d pixel = kCamera.Project(Pose().Inverse() * world);
+    return image.object(static_cast<int>(pixel.y()), static_cast<int>(pixel.x()));
+  };
+  EXPECT_EQ(id_at({-5.5, 0, 1.3}), FrameScene::kFixed + 1);
+  EXPECT_EQ(id_at({5.5, 0, 1.6}), frame.first_moving_id());
+  EXPECT_EQ(id_at({0, 6, 0}), FrameScene::kFixed);
+  EXPECT_EQ(id_at({0, 6, 9}), FrameScene::kNothing);
+}
+
+TEST(RenderColour, AGreyGroundInTheSunIsBrighterThanInTheShadow) {
+  Town town = PlainTown();
+  MeshBuilder builder(town.materials);
+  builder.AddGroundPolygon(0, {{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}});
+  const Light light = MakeLight("noon", 1);
+  // A roof whose shadow falls on the point below the camera's left.
+  const Vector3f shaded = Vector3f(0.3F, 6, 0);
+  const Vector3f roof = shaded + 8 / light.to_sun.z() * light.to_sun;
+  builder.AddGroundPolygon(0, {roof + Vector3f(-1, -1, 0), roof + Vector3f(1, -1, 0),
+                               roof + Vector3f(1, 1, 0), roof + Vector3f(-1, 1, 0)});
+  Finish(builder, &town);
+  const RayScene scene(town);
+  const Sky sky(light, 1);
+  const cv::Mat3b image =
+      RenderColour(FrameScene(scene, {}), Shader(town, light, sky), kCamera, Pose());
+  const auto green_at = [&](const Eigen::Vector3d& world) {
+    const Eigen::Vector2d pixel = kCamera.Project(Pose().Inverse() * world);
+    return image(static_cast<int>(pixel.y()), static_cast<int>(pixel.x()))[1];
+  };
+  EXPECT_GT(green_at({0.3, -6, 0}), 1.3 * green_at(shaded.cast<double>()));
+}
+
+TEST(MakeLight, RefusesAnUnknownName) {
+  EXPECT_THROW(MakeLight("midnight", 1), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace orb360::town
