@@ -1,33 +1,49 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <opencv2/core.hpp>
 
+#include "slam/features/sphere_band.h"
 #include "slam/features/sphere_pyramid.h"
 
 namespace orb360 {
 
-/// A local maximum of the FAST score on one level.
+/// A local maximum of the FAST score in one band of one level.
 struct Corner {
-  int x;  // pixel indices on the level
+  int band;
+  int x;  // pixel indices: column of the band, row of the level
   int y;
   uint8_t score;
-  float dx;  // sub-pixel position of the maximum relative to the pixel's centre, in [-0.5, 0.5]
-  float dy;
+  double u;  // sub-pixel position of the maximum on the level, continuous (first centre at 0.5)
+  double v;
 };
 
-/// Corners of each level, about counts[level] of them, shared out over the sphere by solid angle:
-/// bands of latitude get their share, and within a band 32 cells side by side contribute their
-/// strongest. What a band lacks, others with corners to spare take over. Corners with mask 0 are
-/// left out (`mask` CV_8U of any size that covers the sphere, or empty). Ordered by row, then
-/// column.
+struct Candidate {
+  Corner corner;
+  bool within_share;  // among the strongest of its cell and its band
+};
+
+/// The corners of one band from which SelectCorners chooses.
+struct BandCorners {
+  double share;  // of the sphere's solid angle
+  std::vector<Candidate> candidates;
+};
+
+/// Finds the corners of one band. `count` is how many the whole level is to have. Corners with mask
+/// 0 are left out (`mask` CV_8U of any size that covers the sphere, or empty).
+BandCorners FindInBand(const PyramidLevel& level, const SphereBand& band, int index, int count,
+                       uint8_t min_score, const cv::Mat& mask);
+
+/// About `count` corners of a level, from all its bands. Zones of latitude get their share of the
+/// solid angle. Within one the strongest win, but no band and no cell (a 32nd of a band) gets more
+/// than four times its own share as long as others have corners; and what a zone lacks, others
+/// take over. Ordered by row, then column.
 ///
 /// Equal scores at the cut are all kept, so that the choice does not depend on the longitude and
 /// the number may exceed the count slightly.
-std::vector<std::vector<Corner>> SelectCorners(const std::vector<PyramidLevel>& levels,
-                                               const std::vector<int>& counts, uint8_t min_score,
-                                               const cv::Mat& mask);
+std::vector<Corner> SelectCorners(std::span<const BandCorners> bands, int count);
 
 }  // namespace orb360

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <opencv2/imgproc.hpp>
-
 #include "slam/check.h"
 #include "slam/features/corner_selection.h"
 #include "slam/features/patch_descriptor.h"
@@ -12,32 +10,6 @@
 
 namespace orb360 {
 namespace {
-
-// Blurs all levels: descriptors compare single pixels. In strips, for the threads to share.
-void Blur(const std::vector<PyramidLevel>& levels, std::vector<cv::Mat>* blurred) {
-  constexpr int kStripRows = 128;
-  struct Strip {
-    size_t level;
-    cv::Range rows;
-  };
-  std::vector<Strip> strips;
-  blurred->resize(levels.size());
-  for (size_t l = 0; l < levels.size(); ++l) {
-    const cv::Mat& padded = levels[l].padded;
-    (*blurred)[l].create(padded.size(), CV_8U);
-    for (int y = 0; y < padded.rows; y += kStripRows) {
-      strips.push_back({l, cv::Range(y, std::min(y + kStripRows, padded.rows))});
-    }
-  }
-#pragma omp parallel for schedule(dynamic)
-  for (size_t i = 0; i < strips.size(); ++i) {
-    const Strip& strip = strips[i];
-    // Rows beyond the strip are read from the level itself.
-    cv::Mat out = (*blurred)[strip.level].rowRange(strip.rows);
-    cv::GaussianBlur(levels[strip.level].padded.rowRange(strip.rows), out, cv::Size(7, 7), 2.0, 2.0,
-                     cv::BORDER_REPLICATE);
-  }
-}
 
 // Features per level in proportion to its resolution (pixels per radian), as many small ones as
 // the image can place well.
@@ -68,11 +40,32 @@ Features OrbExtractor::Extract(const cv::Mat& gray, const cv::Mat& mask) {
   BuildSpherePyramid(gray, options_.num_levels, &levels_);
   const std::vector<PyramidLevel>& levels = levels_;
   const std::vector<int> counts = ShareOut(options_.num_features, levels);
-  const EquirectangularCamera& camera = levels[0].camera;
-
-  const std::vector<std::vector<Corner>> corners =
-      SelectCorners(levels, counts, static_cast<uint8_t>(options_.min_score), mask);
-  Blur(levels, &blurred_);
+  const uint8_t min_score = static_cast<uint8_t>(options_.min_score);
+  const int num_bands = static_cast<int>(levels.size()) * kSphereBands;
+  bands_.resize(num_bands);
+  blurred_.resize(num_bands);
+  blurred_levels_.resize(levels.size());
+  for (size_t l = 0; l < levels.size(); ++l) {
+    blurred_levels_[l].create(levels[l].padded.size(), CV_8U);
+  }
+  std::vector<BandCorners> found(num_bands);
+  std::vector<std::vector<Corner>> corners(levels.size());
+#pragma omp parallel
+  {
+#pragma omp for schedule(dynamic)
+    for (int i = 0; i < num_bands; ++i) {
+      const int l = i / kSphereBands;
+      const int index = i % kSphereBands;
+      CutBand(levels[l], index, &bands_[i]);
+      found[i] = FindInBand(levels[l], bands_[i], index, counts[l], min_score, mask);
+      BlurBand(index, bands_[i], &blurred_levels_[l], &blurred_[i]);
+    }
+#pragma omp for schedule(dynamic)
+    for (size_t l = 0; l < levels.size(); ++l) {
+      corners[l] = SelectCorners(
+          std::span<const BandCorners>(found).subspan(l * kSphereBands, kSphereBands), counts[l]);
+    }
+  }
 
   struct Source {
     uint8_t level;
@@ -82,6 +75,7 @@ Features OrbExtractor::Extract(const cv::Mat& gray, const cv::Mat& mask) {
   for (size_t l = 0; l < levels.size(); ++l) {
     for (const Corner& corner : corners[l]) sources.push_back({static_cast<uint8_t>(l), &corner});
   }
+  const EquirectangularCamera& camera = levels[0].camera;
   Features features;
   features.keypoints.resize(sources.size());
   features.bearings.resize(sources.size());
@@ -90,13 +84,12 @@ Features OrbExtractor::Extract(const cv::Mat& gray, const cv::Mat& mask) {
   for (size_t i = 0; i < sources.size(); ++i) {
     const Corner& corner = *sources[i].corner;
     const PyramidLevel& level = levels[sources[i].level];
-    const cv::Mat& image = blurred_[sources[i].level];
-    const OrientedDescriptor description = DescribePatch(
-        image.ptr(corner.y + PyramidLevel::kMarginY) + corner.x + PyramidLevel::kMarginX,
-        static_cast<ptrdiff_t>(image.step), TangentSampling(level.camera, corner.x, corner.y));
-    const Eigen::Vector2d pixel(
-        camera.WrapU((corner.x + 0.5 + corner.dx) * level.scale),
-        (corner.y + 0.5 + corner.dy) * camera.height() / level.camera.height());
+    const SphereBand& band = blurred_[sources[i].level * kSphereBands + corner.band];
+    const OrientedDescriptor description =
+        DescribePatch(band.Pixel(corner.x, corner.y), band.stride(),
+                      TangentSampling(level.camera, band.width, corner.x, corner.y));
+    const Eigen::Vector2d pixel(camera.WrapU(corner.u * level.scale),
+                                corner.v * camera.height() / level.camera.height());
     features.keypoints[i] = {
         pixel.cast<float>(), description.angle,
         static_cast<float>(camera.AngleOfPixels(options_.pixel_sigma * level.scale)),

@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "slam/features/features.h"
+#include "slam/features/sphere_band.h"
 #include "slam/features/sphere_pyramid.h"
 
 namespace orb360 {
@@ -19,9 +20,9 @@ struct OrbOptions {
 };
 
 /// ORB on the sphere: FAST corners on a pyramid that wraps at the seam, shared out by solid angle,
-/// with orientation and descriptor sampled in the tangent plane (design: docs/features.md).
+/// with orientation and descriptor sampled in the tangent plane.
 ///
-/// Rolling the image by k/32 of its width (if that is divisible by 32) gives exactly the same
+/// Rolling the image by k/32 of its width (which must be divisible by 32) gives exactly the same
 /// features, shifted. One object serves one thread, keeping nothing between images but memory; it
 /// uses OpenMP threads itself, whose number does not change the result.
 class OrbExtractor {
@@ -35,7 +36,10 @@ class OrbExtractor {
  private:
   OrbOptions options_;
   std::vector<PyramidLevel> levels_;
-  std::vector<cv::Mat> blurred_;  // by level, padded as it is
+  // By level, then band.
+  std::vector<SphereBand> bands_;
+  std::vector<SphereBand> blurred_;
+  std::vector<cv::Mat> blurred_levels_;
 };
 
 }  // namespace orb360

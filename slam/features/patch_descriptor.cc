@@ -51,7 +51,7 @@ HWY_INLINE hn::Vec<DI> Offsets(D d, const TangentSampling& at, int stride, V a, 
     const V shear = hn::Set(d, -at.k * tangent);
     const V sag = hn::Set(d, 0.5f * at.k * tangent);
     const V east =
-        hn::Mul(hn::Mul(a, hn::Set(d, 1.0f / at.cosine)), hn::MulAdd(shear, b, hn::Set(d, 1.0f)));
+        hn::Mul(hn::Mul(a, hn::Set(d, at.east_scale)), hn::MulAdd(shear, b, hn::Set(d, 1.0f)));
     const V south = hn::Mul(hn::MulAdd(hn::Mul(sag, a), a, b), hn::Set(d, -at.fy * at.k));
     return hn::Add(hn::Mul(hn::NearestInt(south), hn::Set(di, stride)), hn::NearestInt(east));
   }

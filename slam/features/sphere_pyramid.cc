@@ -13,12 +13,20 @@ namespace orb360 {
 namespace {
 
 constexpr int kLevelsPerOctave = 4;
-// One row of a level that is resampled from level 0; reads one pixel into its margin.
+constexpr int kMinWidth = 64;
+
+// How a level is resampled from a finer one; reads one pixel into its margin.
 struct Resampling {
   const PyramidLevel* source;
   PyramidLevel* target;
   ResampleTaps columns;
   ResampleTaps rows;
+
+  Resampling(const PyramidLevel& from, PyramidLevel* to)
+      : source(&from),
+        target(to),
+        columns(from.camera.width(), to->camera.width()),
+        rows(from.camera.height(), to->camera.height()) {}
 
   void ComputeRow(int y, std::vector<uint16_t>* scratch) const {
     const int source_width = source->camera.width();
@@ -30,7 +38,15 @@ struct Resampling {
   }
 };
 
+// The next octave: exactly half where that is possible, and nearly so otherwise.
 void Halve(const PyramidLevel& source, PyramidLevel* target) {
+  if (2 * target->camera.width() != source.camera.width() ||
+      2 * target->camera.height() != source.camera.height()) {
+    const Resampling resampling(source, target);
+    std::vector<uint16_t> scratch;
+    for (int y = 0; y < target->camera.height(); ++y) resampling.ComputeRow(y, &scratch);
+    return;
+  }
   const cv::Mat from = source.image();
   cv::Mat to = target->image();
   for (int y = 0; y < to.rows; ++y) {
@@ -46,20 +62,16 @@ PyramidLevel MakeLevel(int width, int height, double scale) {
 std::vector<PyramidLevel> MakeLevels(int full_width, int full_height, int num_levels) {
   std::vector<PyramidLevel> levels = {MakeLevel(full_width, full_height, 1.0)};
   for (int l = 1; l < num_levels; ++l) {
-    int width = 0;
-    int height = 0;
-    if (l < kLevelsPerOctave) {
-      // Twice the column count, so that the level an octave above still divides by it.
-      constexpr int kMultiple = 2 * kSphereColumns;
-      const double ideal = full_width * std::exp2(-l / static_cast<double>(kLevelsPerOctave));
-      width = std::max(1, static_cast<int>(std::lround(ideal / kMultiple))) * kMultiple;
-      height = 2 * static_cast<int>(std::lround(0.5 * full_height * width / full_width));
-    } else {
-      const EquirectangularCamera& source = levels[l - kLevelsPerOctave].camera;
-      width = source.width() / 2;
-      height = source.height() / 2;
-    }
-    if (width >= levels.back().camera.width() || width < PyramidLevel::kMarginX ||
+    // In the first octave a multiple of twice the columns, so that the next divides by them too.
+    const bool first_octave = l < kLevelsPerOctave;
+    const int multiple = first_octave ? 2 * kSphereColumns : kSphereColumns;
+    const EquirectangularCamera& source = levels[first_octave ? 0 : l - kLevelsPerOctave].camera;
+    const double shrink = first_octave ? std::exp2(-l / double{kLevelsPerOctave}) : 0.5;
+    const int width = static_cast<int>(std::lround(source.width() * shrink / multiple)) * multiple;
+    const double proportional = static_cast<double>(source.height()) * width / source.width();
+    const int height = first_octave ? 2 * static_cast<int>(std::lround(0.5 * proportional))
+                                    : static_cast<int>(std::lround(proportional));
+    if (width >= levels.back().camera.width() || width < kMinWidth ||
         height < PyramidLevel::kMarginY) {
       break;
     }
@@ -98,7 +110,7 @@ void FillSphereMargin(PyramidLevel* level) {
 }
 
 void BuildSpherePyramid(const cv::Mat& gray, int num_levels, std::vector<PyramidLevel>* result) {
-  ORB360_CHECK(gray.type() == CV_8U && gray.cols >= PyramidLevel::kMarginX &&
+  ORB360_CHECK(gray.type() == CV_8U && gray.cols >= kMinWidth &&
                    gray.rows >= PyramidLevel::kMarginY && num_levels > 0,
                gray.type(), gray.cols, gray.rows, num_levels);
   std::vector<PyramidLevel>& levels = *result;
@@ -111,9 +123,7 @@ void BuildSpherePyramid(const cv::Mat& gray, int num_levels, std::vector<Pyramid
   const int num_made = static_cast<int>(levels.size());
   std::vector<Resampling> resamplings;
   for (int l = 1; l < std::min(kLevelsPerOctave, num_made); ++l) {
-    resamplings.push_back({&levels[0], &levels[l],
-                           ResampleTaps(gray.cols, levels[l].camera.width()),
-                           ResampleTaps(gray.rows, levels[l].camera.height())});
+    resamplings.emplace_back(levels[0], &levels[l]);
   }
 #pragma omp parallel
   {

@@ -15,9 +15,9 @@ inline constexpr int kSphereColumns = 32;
 
 /// One level of the pyramid: an equirectangular image with a margin that continues the sphere.
 struct PyramidLevel {
-  /// Margins in pixels. Horizontally the reach of a descriptor stretched to the latitude where
-  /// exact sampling takes over (see tangent_sampling.h) and of the blur; vertically its radius.
-  static constexpr int kMarginX = 64;
+  /// Margins in pixels. Horizontally the reach of a descriptor (tangent_sampling.h), of the blur,
+  /// and the three bytes beyond that gathering reads; vertically its radius and the blur.
+  static constexpr int kMarginX = 32;
   static constexpr int kMarginY = 24;
 
   EquirectangularCamera camera;
@@ -34,9 +34,9 @@ struct PyramidLevel {
 };
 
 /// Scales grow by 2^(1/4) a level: levels 1 to 3 are resampled from the input, and level l + 4 is
-/// level l at exactly half size. `gray` is CV_8U and covers the whole sphere. Levels that would
-/// be narrower than 64 pixels are left out. `levels` may be those of an image of the same size: its
-/// memory is used again. Runs on OpenMP threads; the result does not depend on their number.
+/// level l at half size. `gray` is CV_8U and covers the whole sphere. Levels that would be narrower
+/// than 64 pixels are left out. `levels` is empty, or from an earlier call with the same number and
+/// size: its memory is used again. Runs on OpenMP threads; the result does not depend on how many.
 void BuildSpherePyramid(const cv::Mat& gray, int num_levels, std::vector<PyramidLevel>* levels);
 
 /// Fills the margins of a level from its image.

@@ -1,0 +1,98 @@
+#include "slam/features/sphere_band.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <vector>
+
+#include "slam/features/blur.h"
+#include "slam/features/row_resample.h"
+
+namespace orb360 {
+namespace {
+
+constexpr int kMarginX = PyramidLevel::kMarginX;
+constexpr int kMarginY = PyramidLevel::kMarginY;
+constexpr int kReach = 3;  // of the blur
+
+// The bands between 45 degrees south and north are not compressed.
+constexpr int kFirstWhole = kSphereBands / 4;
+constexpr int kLastWhole = kSphereBands - 1 - kFirstWhole;
+
+bool IsWhole(int index) { return index >= kFirstWhole && index <= kLastWhole; }
+
+// Of the band's middle: the mean proportion of its pixels on the sphere.
+double CosineOfBand(int index) { return std::sin(std::numbers::pi * (index + 0.5) / kSphereBands); }
+
+// Rows [first, last) of the level, compressed to band->width, with margins left and right.
+void Compress(const PyramidLevel& level, SphereBand* band) {
+  const int level_width = level.camera.width();
+  // Halved as long as the rest is at most another factor of two: then two taps suffice.
+  int halvings = 0;
+  int halved_width = level_width;
+  for (; halved_width % 2 == 0 && halved_width / 2 >= band->width; ++halvings) halved_width /= 2;
+  const ResampleTaps taps(halved_width, band->width);
+  std::vector<uint8_t> row(level_width + 2);
+  std::vector<uint16_t> widened(halved_width + 2);
+  for (int r = 0; r < band->padded.rows; ++r) {
+    std::memcpy(row.data() + 1, level.padded.ptr(band->first_row + r + kMarginY) + kMarginX,
+                level_width);
+    for (int i = 1; i <= halvings; ++i) {  // a row with itself: means of two pixels
+      HalveRows(row.data() + 1, row.data() + 1, level_width >> i, row.data() + 1);
+    }
+    row[0] = row[halved_width];
+    row[halved_width + 1] = row[1];
+    BlendRows(row.data(), row.data(), 0, halved_width + 2, widened.data());
+    uint8_t* out = band->padded.ptr(r) + kMarginX;
+    ResampleRow(widened.data() + 1, taps, out);
+    std::memcpy(out - kMarginX, out + band->width - kMarginX, kMarginX);
+    std::memcpy(out + band->width, out, kMarginX);
+  }
+}
+
+// Rows [first, last), all columns but the outermost that the blur would read beyond.
+void BlurRows(const cv::Mat& from, int first, int last, cv::Mat* to) {
+  BlurImage(from.ptr(first) + kReach, static_cast<ptrdiff_t>(from.step), from.cols - 2 * kReach,
+            last - first, to->ptr(first) + kReach, static_cast<ptrdiff_t>(to->step));
+}
+
+}  // namespace
+
+void CutBand(const PyramidLevel& level, int index, SphereBand* band) {
+  const int width = level.camera.width();
+  const int height = level.camera.height();
+  band->y_begin = index * height / kSphereBands;
+  band->y_end = (index + 1) * height / kSphereBands;
+  if (IsWhole(index)) {
+    band->width = width;
+    band->first_row = -kMarginY;
+    band->padded = level.padded;
+    return;
+  }
+  const double cells = width * CosineOfBand(index) / kSphereColumns;
+  band->width = kSphereColumns * std::max(1, static_cast<int>(std::lround(cells)));
+  band->first_row = band->y_begin - kMarginY;
+  band->padded.create(band->y_end - band->y_begin + 2 * kMarginY, band->width + 2 * kMarginX,
+                      CV_8U);
+  Compress(level, band);
+}
+
+void BlurBand(int index, const SphereBand& band, cv::Mat* whole, SphereBand* blurred) {
+  blurred->y_begin = band.y_begin;
+  blurred->y_end = band.y_end;
+  blurred->width = band.width;
+  blurred->first_row = band.first_row;
+  if (!IsWhole(index)) {
+    blurred->padded.create(band.padded.size(), CV_8U);
+    BlurRows(band.padded, kReach, band.padded.rows - kReach, &blurred->padded);
+    return;
+  }
+  blurred->padded = *whole;
+  // The outermost of these bands also do the rows that patches reach beyond them.
+  const int first = band.y_begin + (index == kFirstWhole ? kReach : kMarginY);
+  const int last = band.y_end + kMarginY + (index == kLastWhole ? kMarginY - kReach : 0);
+  BlurRows(band.padded, first, last, whole);
+}
+
+}  // namespace orb360

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <opencv2/core.hpp>
+
+#include "slam/features/sphere_pyramid.h"
+
+namespace orb360 {
+
+/// Bands of latitude of equal height on every level: 11.25 degrees, so that a 32nd of one is about
+/// square at the equator.
+inline constexpr int kSphereBands = 16;
+
+/// A band of one level, compressed horizontally to about the proportions it has on the sphere: near
+/// the poles an equirectangular image is stretched by 1 / cos(latitude), and both what is a corner
+/// and what a blur hides would depend on the direction.
+///
+/// Its width is a multiple of kSphereColumns, so that a roll by whole cells of the level is one of
+/// the band. Around it is the margin of a level (sphere_pyramid.h): rows beyond, and columns that
+/// wrap. Below 45 degrees the compression would be slight, and the band is a view of the level.
+struct SphereBand {
+  int y_begin;  // rows of the level: [y_begin, y_end)
+  int y_end;
+  int width;
+  int first_row;   // the level's row that is row 0 of `padded`
+  cv::Mat padded;  // CV_8U, width + 2 PyramidLevel::kMarginX columns
+
+  ptrdiff_t stride() const { return static_cast<ptrdiff_t>(padded.step); }
+  /// Pixel at column x of the band and row y of the level.
+  const uint8_t* Pixel(int x, int y) const {
+    return padded.ptr(y - first_row) + PyramidLevel::kMarginX + x;
+  }
+};
+
+/// Band `index`, from the top, of a level. `band` may be the same band of an earlier image: its
+/// memory is used again.
+void CutBand(const PyramidLevel& level, int index, SphereBand* band);
+
+/// Blurs band `index` for the comparison of single pixels (blur.h); of the margin all but the
+/// outermost 3 pixels. `whole`: memory of the size of the level's `padded`, the same for all bands
+/// of a level; those that are views of their level are views of it when blurred.
+void BlurBand(int index, const SphereBand& band, cv::Mat* whole, SphereBand* blurred);
+
+}  // namespace orb360
