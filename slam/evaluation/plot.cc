@@ -80,7 +80,8 @@ std::string DrawAxes(const Axes& axes, const std::string& title, const std::stri
     const double low = axes.data.min()[axis];
     const double high = axes.data.max()[axis];
     const double step = TickStep(high - low, static_cast<int>(axes.size[axis] / 80.0));
-    for (double tick = std::ceil(low / step) * step; tick <= high; tick += step) {
+    for (long i = std::lround(std::ceil(low / step)); step * static_cast<double>(i) <= high; ++i) {
+      const double tick = step * static_cast<double>(i);
       Eigen::Vector2d from = axes.data.min();
       Eigen::Vector2d to = axes.data.max();
       from[axis] = to[axis] = tick;

@@ -13,10 +13,8 @@
 namespace orb360 {
 namespace {
 
-using std::string_view_literals::operator""sv;
-
-constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n"sv;
-constexpr std::string_view kJpegSignature = "\xff\xd8\xff"sv;
+constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
+constexpr std::string_view kJpegSignature = "\xff\xd8\xff";
 
 unsigned Byte(std::string_view data, size_t at) { return static_cast<unsigned char>(data[at]); }
 
@@ -58,10 +56,10 @@ JpegLayout WalkJpeg(std::string_view data) {
 /// False for a PNG or JPEG file that lacks its end. Its decoders would complain on standard error
 /// and give a half-grey picture.
 bool IsComplete(std::string_view data) {
-  if (data.starts_with(kPngSignature)) return data.rfind("IEND"sv) != std::string_view::npos;
+  if (data.starts_with(kPngSignature)) return data.rfind("IEND") != std::string_view::npos;
   if (data.starts_with(kJpegSignature)) {
     const std::optional<size_t> scan = WalkJpeg(data).scan;
-    return scan && data.find("\xff\xd9"sv, *scan) != std::string_view::npos;
+    return scan && data.find("\xff\xd9", *scan) != std::string_view::npos;
   }
   return true;
 }
