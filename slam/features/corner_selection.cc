@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <utility>
 
@@ -27,49 +26,15 @@ constexpr std::array<Zone, 6> kZones = {{{0, 4}, {4, 6}, {6, 8}, {8, 10}, {10, 1
 // % with three, 74 % with four, and no more than 75 % without a limit.
 constexpr double kMaxShares = 4.0;
 
-// A local maximum as found, with its own and its neighbours' scores.
-struct Maximum {
-  int x;
-  int y;
-  uint8_t score, left, right, above, below;
-};
-
 // Strongest first; among equals the order within the cell, which no roll by whole cells changes.
 bool IsStronger(const Maximum& a, const Maximum& b) {
   if (a.score != b.score) return a.score > b.score;
   return a.y != b.y ? a.y < b.y : a.x < b.x;
 }
 
-// Offset in [-0.5, 0.5] of the maximum of the parabola through three scores, middle the largest.
-double ParabolaPeak(int before, int middle, int after) {
-  const int curvature = 2 * middle - before - after;
-  return curvature == 0 ? 0.0 : std::clamp(0.5 * (after - before) / curvature, -0.5, 0.5);
-}
-
-// The strongest `count`, those within their share first; equals at the cut are kept. Moves the
-// rest to `spare`.
-std::vector<Candidate> TakeStrongest(std::vector<Candidate> candidates, int count,
-                                     std::vector<Candidate>* spare) {
-  const auto preference = [](const Candidate& c) {
-    return (c.within_share ? 256 : 0) + c.corner.score;
-  };
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [&](const auto& a, const auto& b) { return preference(a) > preference(b); });
-  size_t kept = std::min<size_t>(count, candidates.size());
-  while (kept > 0 && kept < candidates.size() &&
-         preference(candidates[kept]) == preference(candidates[kept - 1])) {
-    ++kept;
-  }
-  spare->insert(spare->end(), candidates.begin() + kept, candidates.end());
-  candidates.resize(kept);
-  return candidates;
-}
-
-using Cells = std::array<std::vector<Maximum>, kSphereColumns>;
-
-// All local maxima of a band, by cell.
-Cells FindMaxima(const PyramidLevel& level, const SphereBand& band, uint8_t min_score,
-                 const cv::Mat& mask) {
+// All local maxima of a band, in its order.
+std::vector<Maximum> Scan(const PyramidLevel& level, const SphereBand& band, uint8_t min_score,
+                          const cv::Mat& mask) {
   const int width = band.width;
   // Three rows of scores with one column beyond either side, for the 3x3 maximum, turned as the
   // window moves down.
@@ -82,7 +47,7 @@ Cells FindMaxima(const PyramidLevel& level, const SphereBand& band, uint8_t min_
     row[-1] = row[width - 1];
     row[width] = row[0];
   };
-  Cells cells;
+  std::vector<Maximum> maxima;
   std::vector<int> columns;
   compute(band.y_begin - 1);
   compute(band.y_begin);
@@ -99,37 +64,42 @@ Cells FindMaxima(const PyramidLevel& level, const SphereBand& band, uint8_t min_
       if (mask_row != nullptr && mask_row[(int64_t{2} * x + 1) * mask.cols / (2 * width)] == 0) {
         continue;
       }
-      cells[x * kSphereColumns / width].push_back(
-          {x, y, middle[x], middle[x - 1], middle[x + 1], above[x], below[x]});
+      maxima.push_back({x, y, middle[x], middle[x - 1], middle[x + 1], above[x], below[x],
+                        static_cast<uint8_t>(x * kSphereColumns / width), false});
     }
   }
-  return cells;
+  return maxima;
 }
 
-// Sub-pixel position on the level. Counted from the edge of the cell, a dyadic number, so that
-// rounding is the same in all cells.
-Corner PlaceOnLevel(const Maximum& m, int cell, int index, int band_width, int level_width) {
-  const double scale = static_cast<double>(level_width) / band_width;
-  const double from_edge = m.x + 0.5 - static_cast<double>(cell) * band_width / kSphereColumns;
-  const double edge = static_cast<double>(cell) * level_width / kSphereColumns;
-  return {index,
-          m.x,
-          m.y,
-          m.score,
-          edge + (from_edge + ParabolaPeak(m.left, m.score, m.right)) * scale,
-          m.y + 0.5 + ParabolaPeak(m.above, m.score, m.below)};
+// The strongest `max_per_cell` of each cell, the first `share` of them marked.
+std::vector<Maximum> LimitCells(const std::vector<Maximum>& maxima, size_t max_per_cell,
+                                size_t share) {
+  std::array<size_t, kSphereColumns + 1> begin = {};
+  for (const Maximum& m : maxima) ++begin[m.cell + 1];
+  for (int c = 0; c < kSphereColumns; ++c) begin[c + 1] += begin[c];
+  std::array<size_t, kSphereColumns + 1> next = begin;
+  std::vector<Maximum> sorted(maxima.size());
+  for (const Maximum& m : maxima) sorted[next[m.cell]++] = m;
+  std::vector<Maximum> kept;
+  for (int c = 0; c < kSphereColumns; ++c) {
+    const std::span<Maximum> cell(sorted.data() + begin[c], begin[c + 1] - begin[c]);
+    const size_t count = std::min(cell.size(), max_per_cell);
+    std::partial_sort(cell.begin(), cell.begin() + count, cell.end(), IsStronger);
+    for (size_t i = 0; i < count; ++i) {
+      cell[i].within_share = i < share;
+      kept.push_back(cell[i]);
+    }
+  }
+  return kept;
 }
 
 // Takes the mark from all that are weaker than the `share` strongest with it.
-void LimitBand(int share, std::vector<Candidate>* candidates) {
-  std::vector<uint8_t> scores;
-  for (const Candidate& c : *candidates) {
-    if (c.within_share) scores.push_back(c.corner.score);
-  }
-  if (static_cast<int>(scores.size()) <= share) return;
-  const auto weakest = scores.begin() + std::max(0, share - 1);
-  std::nth_element(scores.begin(), weakest, scores.end(), std::greater<>());
-  for (Candidate& c : *candidates) c.within_share &= c.corner.score >= *weakest;
+void LimitBand(int share, std::vector<Maximum>* maxima) {
+  std::array<int, 256> histogram = {};
+  for (const Maximum& m : *maxima) histogram[m.score] += m.within_share;
+  int weakest = 255;
+  for (int sum = histogram[weakest]; sum < share && weakest > 0;) sum += histogram[--weakest];
+  for (Maximum& m : *maxima) m.within_share &= m.score >= weakest;
 }
 
 // Half the difference of the sines of the latitudes at two rows: the share of the sphere's solid
@@ -139,53 +109,83 @@ double ShareOfSphere(int height, int y_begin, int y_end) {
   return 0.5 * (sine(y_begin) - sine(y_end));
 }
 
-}  // namespace
+struct Candidate {
+  int band;
+  Maximum maximum;
+};
 
-BandCorners FindInBand(const PyramidLevel& level, const SphereBand& band, int index, int count,
-                       uint8_t min_score, const cv::Mat& mask) {
-  const double share = ShareOfSphere(level.camera.height(), band.y_begin, band.y_end);
-  const int per_cell = static_cast<int>(std::ceil(kMaxShares * share * count / kSphereColumns));
-  // More than a few times its share no cell will ever be asked for.
-  const size_t max_per_cell = 2 * (per_cell + 1);
-  BandCorners found{share, {}};
-  Cells cells = FindMaxima(level, band, min_score, mask);
-  for (int c = 0; c < kSphereColumns; ++c) {
-    std::vector<Maximum>& cell = cells[c];
-    const size_t kept = std::min(cell.size(), max_per_cell);
-    std::partial_sort(cell.begin(), cell.begin() + kept, cell.end(), IsStronger);
-    for (size_t i = 0; i < kept; ++i) {
-      found.candidates.push_back({PlaceOnLevel(cell[i], c, index, band.width, level.camera.width()),
-                                  static_cast<int>(i) < per_cell});
-    }
-  }
-  LimitBand(static_cast<int>(std::ceil(kMaxShares * share * count)), &found.candidates);
-  return found;
+// Moves about the strongest `count`, those within their share first, from `candidates` to `taken`;
+// equals at the cut are all taken. The order of both stays.
+void TakeStrongest(int count, std::vector<Candidate>* candidates, std::vector<Candidate>* taken) {
+  if (count <= 0) return;
+  const auto preference = [](const Candidate& c) {
+    return (c.maximum.within_share ? 256 : 0) + c.maximum.score;
+  };
+  std::array<int, 512> histogram = {};
+  for (const Candidate& c : *candidates) ++histogram[preference(c)];
+  int cut = 511;
+  for (int sum = histogram[cut]; sum < count && cut > 0;) sum += histogram[--cut];
+  std::erase_if(*candidates, [&](const Candidate& c) {
+    if (preference(c) < cut) return false;
+    taken->push_back(c);
+    return true;
+  });
 }
 
-std::vector<Corner> SelectCorners(std::span<const BandCorners> bands, int count) {
-  std::vector<Candidate> chosen;
+// Offset in [-0.5, 0.5] of the maximum of the parabola through three scores, middle the largest.
+double ParabolaPeak(int before, int middle, int after) {
+  const int curvature = 2 * middle - before - after;
+  return curvature == 0 ? 0.0 : std::clamp(0.5 * (after - before) / curvature, -0.5, 0.5);
+}
+
+// Sub-pixel position on the level. Counted from the edge of the cell, a dyadic number, so that
+// rounding is the same in all cells.
+Corner PlaceOnLevel(const Maximum& m, int band, int band_width, int level_width) {
+  const double scale = static_cast<double>(level_width) / band_width;
+  const double from_edge = m.x + 0.5 - static_cast<double>(m.cell) * band_width / kSphereColumns;
+  const double edge = static_cast<double>(m.cell) * level_width / kSphereColumns;
+  return {band,
+          m.x,
+          m.y,
+          m.score,
+          edge + (from_edge + ParabolaPeak(m.left, m.score, m.right)) * scale,
+          m.y + 0.5 + ParabolaPeak(m.above, m.score, m.below)};
+}
+
+}  // namespace
+
+BandMaxima FindMaxima(const PyramidLevel& level, const SphereBand& band, int count,
+                      uint8_t min_score, const cv::Mat& mask) {
+  const double share = ShareOfSphere(level.camera.height(), band.y_begin, band.y_end);
+  const int per_band = static_cast<int>(std::ceil(kMaxShares * share * count));
+  const int per_cell = (per_band + kSphereColumns - 1) / kSphereColumns;
+  // More than a few times its share no cell will ever be asked for.
+  std::vector<Maximum> maxima =
+      LimitCells(Scan(level, band, min_score, mask), 2 * (per_cell + 1), per_cell);
+  LimitBand(per_band, &maxima);
+  return {band.width, share, std::move(maxima)};
+}
+
+std::vector<Corner> SelectCorners(std::span<const BandMaxima> bands, int level_width, int count) {
+  std::vector<Candidate> taken;
   std::vector<Candidate> spare;
-  const auto take = [&](std::vector<Candidate> candidates, int number) {
-    std::vector<Candidate> rest;
-    const std::vector<Candidate> taken = TakeStrongest(std::move(candidates), number, &rest);
-    chosen.insert(chosen.end(), taken.begin(), taken.end());
-    spare.insert(spare.end(), rest.begin(), rest.end());
-  };
+  std::vector<Candidate> candidates;
   for (const Zone& zone : kZones) {
-    std::vector<Candidate> candidates;
+    candidates.clear();
     double share = 0;
     for (int band = zone.begin; band < zone.end; ++band) {
-      candidates.insert(candidates.end(), bands[band].candidates.begin(),
-                        bands[band].candidates.end());
+      for (const Maximum& m : bands[band].maxima) candidates.push_back({band, m});
       share += bands[band].share;
     }
-    take(std::move(candidates), static_cast<int>(std::lround(share * count)));
+    TakeStrongest(static_cast<int>(std::lround(share * count)), &candidates, &taken);
+    spare.insert(spare.end(), candidates.begin(), candidates.end());
   }
-  const int lacking = count - static_cast<int>(chosen.size());
-  if (lacking > 0) take(std::exchange(spare, {}), lacking);
+  TakeStrongest(count - static_cast<int>(taken.size()), &spare, &taken);
   std::vector<Corner> corners;
-  corners.reserve(chosen.size());
-  for (const Candidate& candidate : chosen) corners.push_back(candidate.corner);
+  corners.reserve(taken.size());
+  for (const Candidate& c : taken) {
+    corners.push_back(PlaceOnLevel(c.maximum, c.band, bands[c.band].width, level_width));
+  }
   std::sort(corners.begin(), corners.end(),
             [](const Corner& a, const Corner& b) { return a.y != b.y ? a.y < b.y : a.u < b.u; });
   return corners;

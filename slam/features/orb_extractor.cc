@@ -48,7 +48,7 @@ Features OrbExtractor::Extract(const cv::Mat& gray, const cv::Mat& mask) {
   for (size_t l = 0; l < levels.size(); ++l) {
     blurred_levels_[l].create(levels[l].padded.size(), CV_8U);
   }
-  std::vector<BandCorners> found(num_bands);
+  std::vector<BandMaxima> maxima(num_bands);
   std::vector<std::vector<Corner>> corners(levels.size());
 #pragma omp parallel
   {
@@ -57,13 +57,14 @@ Features OrbExtractor::Extract(const cv::Mat& gray, const cv::Mat& mask) {
       const int l = i / kSphereBands;
       const int index = i % kSphereBands;
       CutBand(levels[l], index, &bands_[i]);
-      found[i] = FindInBand(levels[l], bands_[i], index, counts[l], min_score, mask);
+      maxima[i] = FindMaxima(levels[l], bands_[i], counts[l], min_score, mask);
       BlurBand(index, bands_[i], &blurred_levels_[l], &blurred_[i]);
     }
 #pragma omp for schedule(dynamic)
     for (size_t l = 0; l < levels.size(); ++l) {
-      corners[l] = SelectCorners(
-          std::span<const BandCorners>(found).subspan(l * kSphereBands, kSphereBands), counts[l]);
+      const std::span<const BandMaxima> all(maxima);
+      corners[l] = SelectCorners(all.subspan(l * kSphereBands, kSphereBands),
+                                 levels[l].camera.width(), counts[l]);
     }
   }
 
