@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   orb360::town::RenderArguments arguments;
   CLI::App* render = app.add_subcommand("render", "Render a sequence into a folder");
-  render->add_option("--town", arguments.town, "Town1 ... Town5, or a seed")->required();
+  render->add_option("--town", arguments.town, "Town1 ... Town5, Loop, or a seed")->required();
   render
       ->add_option("--out", arguments.out,
                    "Folder to write; an interrupted rendering there is resumed")

@@ -1,6 +1,7 @@
 #include "apps/town/drive/traffic.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "apps/town/image/random.h"
@@ -14,8 +15,10 @@ Traffic::Traffic(const Town& town, const Lap& own_lap, const Lap& oncoming_lap,
                  const TrafficOptions& options)
     : town_(&town) {
   if (options.density <= 0) return;
-  AddCars(own_lap, true, options.density, Hash(options.seed ^ 1));
-  AddCars(oncoming_lap, false, options.density, Hash(options.seed ^ 2));
+  cars_.push_back({&own_lap, 0, 0, {}});  // the camera's, while the others are drawn
+  AddCars(own_lap, options, Hash(options.seed ^ 1));
+  AddCars(oncoming_lap, options, Hash(options.seed ^ 2));
+  cars_.erase(cars_.begin());
   Random random(Hash(options.seed ^ 3));
   for (size_t i = 0; i < town.plan.streets.size(); ++i) {
     const Street& street = town.plan.streets[i];
@@ -37,20 +40,41 @@ Traffic::Traffic(const Town& town, const Lap& own_lap, const Lap& oncoming_lap,
   }
 }
 
-void Traffic::AddCars(const Lap& lap, bool is_own, double density, uint64_t seed) {
+void Traffic::AddCars(const Lap& lap, const TrafficOptions& options, uint64_t seed) {
   Random random(seed);
   // Shorter headways would let the next car run into one that waits at a junction.
   constexpr double kHeadway = 6.5;  // seconds
   const int slots = static_cast<int>(lap.duration() / kHeadway);
-  for (int slot = is_own ? 1 : 0; slot < slots; ++slot) {  // slot 0 of the own lap is the camera's
-    const double jitter = random.Uniform(0, 0.6);
-    const bool is_taken = random.Chance(density);
+  for (int slot = 0; slot < slots; ++slot) {
+    const double offset = lap.duration() / slots * slot + random.Uniform(0, 0.6);
+    const bool is_taken = random.Chance(options.density);
     const int kind = random.Chance(0.15) ? 3 : random.Int(3);
-    const Rgba tint = DrawPaint(random);
-    if (is_taken)
-      cars_.push_back({&lap, lap.duration() / slots * slot + jitter,
-                       town_->vehicles[static_cast<size_t>(kind)], tint});
+    const Car car{&lap, offset, town_->vehicles[static_cast<size_t>(kind)], DrawPaint(random)};
+    if (!is_taken) continue;
+    if (std::none_of(cars_.begin(), cars_.end(),
+                     [&](const Car& other) { return Collide(car, other, options); }))
+      cars_.push_back(car);
   }
+}
+
+bool Traffic::Collide(const Car& a, const Car& b, const TrafficOptions& options) const {
+  // A car is three discs in a row, with some air around them.
+  constexpr double kRadius = 1.15;                          // metres
+  constexpr std::array<double, 3> kDiscs = {-1.7, 0, 1.7};  // metres along the car
+  constexpr double kStep = 0.2;                             // seconds
+  constexpr double kFarApart = 2 * (kRadius + kDiscs.back());
+  for (double time = options.from; time <= options.until; time += kStep) {
+    const RoadPose p = a.lap->PoseAt(a.lap->At(time + a.offset).station);
+    const RoadPose q = b.lap->PoseAt(b.lap->At(time + b.offset).station);
+    if ((p.position - q.position).norm() > kFarApart) continue;
+    for (const double x : kDiscs) {
+      for (const double y : kDiscs) {
+        if ((p.position + x * p.forward - q.position - y * q.forward).norm() < 2 * kRadius)
+          return true;
+      }
+    }
+  }
+  return false;
 }
 
 Instance Traffic::Place(const Car& car, double time) const {

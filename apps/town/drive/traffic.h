@@ -11,10 +11,13 @@ namespace orb360::town {
 struct TrafficOptions {
   uint64_t seed = 0;
   double density = 0;  ///< 0 none to 1 dense
+  double from = 0;     ///< seconds; the time in which no two cars may meet
+  double until = 0;
 };
 
 /// What moves in a town: cars before and behind the camera's car and oncoming ones, all on laps of
-/// the tour, and pedestrians on the pavements. A pure function of time.
+/// the tour, and pedestrians on the pavements. A pure function of time. Cars that would run into
+/// one another where the tour meets itself are left out.
 class Traffic {
  public:
   /// `own_lap` is the lap the camera's car drives at time offset 0. All references are kept.
@@ -41,7 +44,8 @@ class Traffic {
     Rgba tint;
   };
 
-  void AddCars(const Lap& lap, bool is_own, double density, uint64_t seed);
+  void AddCars(const Lap& lap, const TrafficOptions& options, uint64_t seed);
+  bool Collide(const Car& a, const Car& b, const TrafficOptions& options) const;
   Instance Place(const Car& car, double time) const;
   Instance Place(const Pedestrian& pedestrian, double time) const;
 

@@ -104,7 +104,7 @@ class RayScene {
   const Town* town_;
   Device device_;
   std::unique_ptr<Parts> fixed_parts_;  // Embree holds the addresses
-  std::deque<Parts> model_parts_;  // likewise
+  std::deque<Parts> model_parts_;       // likewise
   std::vector<Scene> model_scenes_;
   Scene fixed_scene_;
   Scene instance_scene_;

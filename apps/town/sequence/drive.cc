@@ -35,7 +35,6 @@ Drive::Drive(const TownSpec& spec, const EquirectangularCamera& camera, double f
   BakeOpenness(scene_, &town_);
   motion_.seed = SeedOf(spec, kShaking);
   motion_.height = Random(SeedOf(spec, kCameraHeight)).Uniform(1.8, 2.2);
-  start_ = Random(SeedOf(spec, kStart)).Uniform(0, lap_.duration());
 }
 
 Rigid3 Drive::WorldFromCamera(int frame) const { return CameraPose(lap_, motion_, TimeOf(frame)); }

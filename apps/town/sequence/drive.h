@@ -42,9 +42,9 @@ class Drive {
   Shader shader_;
   Lap lap_;
   Lap oncoming_lap_;
+  double start_;  ///< seconds on the lap's clock at frame 0
   Traffic traffic_;
   CameraMotionOptions motion_;
-  double start_;  ///< seconds on the lap's clock at frame 0
 };
 
 }  // namespace orb360::town

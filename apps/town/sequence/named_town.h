@@ -18,9 +18,9 @@ struct TownSpec {
   PlanOptions plan;  ///< its seed is drawn from `seed`
 };
 
-/// The evaluation towns Town1 ... Town5 by name, or the training town of a seed (a whole number of
-/// at most 18 digits). The seeds of evaluation towns lie above 2^63 and so can never be a training
-/// town's. Throws UserError for anything else.
+/// The evaluation towns Town1 ... Town5 and Loop (once round a block) by name, or the training town
+/// of a seed (a whole number of at most 18 digits). The seeds of evaluation towns lie above 2^63
+/// and so can never be a training town's. Throws UserError for anything else.
 TownSpec FindTown(std::string_view name);
 
 }  // namespace orb360::town

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "apps/town/image/random.h"
+#include "apps/town/world/tour.h"
 
 namespace orb360::town {
 namespace {
@@ -149,7 +150,7 @@ StreetPlan PlanStreets(const PlanOptions& options) {
     std::vector<Vector2d> knots;
     std::vector<size_t> knot_of_node;
     const auto at = [&](size_t i) { return plan.junctions[nodes[i]].position; };
-    const double extent = random.Uniform(45, 70);
+    const double extent = random.Uniform(45, 60);
     knots.push_back(at(0) - extent * (at(1) - at(0)).normalized());
     for (size_t i = 0; i < nodes.size(); ++i) {
       knot_of_node.push_back(knots.size());
@@ -183,11 +184,7 @@ StreetPlan PlanStreets(const PlanOptions& options) {
     for (int row = 0; row < rows; ++row) nodes.push_back(node(column, row));
     add_street(nodes);
   }
-  for (int column = 0; column < columns; ++column) plan.tour.push_back(node(column, 0));
-  for (int row = 1; row < rows; ++row) plan.tour.push_back(node(columns - 1, row));
-  for (int column = columns - 2; column >= 0; --column) plan.tour.push_back(node(column, rows - 1));
-  for (int row = rows - 2; row > 0; --row) plan.tour.push_back(node(0, row));
-  if (random.Chance(0.5)) std::reverse(plan.tour.begin(), plan.tour.end());
+  plan.tour = PlanTour({columns, rows, options.tour_blocks}, random.Fork(1));
   return plan;
 }
 

@@ -68,10 +68,11 @@ struct PlanOptions {
   uint64_t seed = 0;
   int columns = 3;  ///< streets running north-south and east-west before distortion
   int rows = 3;
-  double spacing = 72;  ///< mean distance between parallel streets, metres
+  double spacing = 60;  ///< mean distance between parallel streets, metres
+  int tour_blocks = 3;  ///< blocks that the tour circles
 };
 
-/// Bent streets over a distorted lattice, with a tour round its outer junctions.
+/// Bent streets over a distorted lattice, with a tour over its junctions (see PlanTour).
 StreetPlan PlanStreets(const PlanOptions& options);
 
 }  // namespace orb360::town

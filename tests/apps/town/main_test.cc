@@ -25,8 +25,9 @@ Outcome RunTown(const std::string& arguments) {
 TEST(TownCommand, AnswersBadInputWithOneLine) {
   const Outcome town = RunTown("render --town Atlantis --out /nowhere/at/all");
   EXPECT_EQ(town.status, 1);
-  EXPECT_EQ(town.output,
-            "town: unknown town 'Atlantis': use Town1 ... Town5, or a seed of at most 18 digits\n");
+  EXPECT_EQ(
+      town.output,
+      "town: unknown town 'Atlantis': use Town1 ... Town5, Loop, or a seed of at most 18 digits\n");
   const Outcome light = RunTown("render --town 1 --light dusk --out /nowhere/at/all");
   EXPECT_EQ(light.status, 1);
   EXPECT_EQ(light.output, "town: unknown light 'dusk': use noon, morning, sunset or overcast\n");

@@ -20,7 +20,7 @@ namespace {
 
 TownSpec SmallTown() {
   TownSpec spec = FindTown("11");
-  spec.plan = {.columns = 2, .rows = 2, .spacing = 55};
+  spec.plan = {.columns = 2, .rows = 2, .spacing = 55, .tour_blocks = 1};
   spec.traffic = 1;
   return spec;
 }

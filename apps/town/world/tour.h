@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "apps/town/image/random.h"
+
+namespace orb360::town {
+
+struct TourOptions {
+  int columns = 3;  ///< of the lattice of junctions, numbered row by row
+  int rows = 3;
+  int blocks = 2;  ///< how many blocks are circled, each once; at least 1
+};
+
+/// A closed walk over the junctions of a lattice, without turning round at any of them: circles
+/// around blocks, the next one entered at a junction of the walk so far. Blocks that share a side
+/// are circled both in the same sense, so that the walk comes back along the shared side in the
+/// opposite direction.
+std::vector<size_t> PlanTour(const TourOptions& options, Random random);
+
+}  // namespace orb360::town
