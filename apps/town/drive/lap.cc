@@ -10,9 +10,10 @@ namespace orb360::town {
 namespace {
 
 constexpr double kStep = 0.25;                // metres between the points of the driven line
-constexpr double kLateralAcceleration = 2.2;  // metres per second squared, in bends
-constexpr double kBraking = 1.6;              // metres per second squared
-constexpr double kAccelerating = 1.3;
+constexpr double kLateralAcceleration = 3.5;  // metres per second squared, in bends
+constexpr double kBraking = 2.4;              // metres per second squared
+constexpr double kStopShare = 0.15;           // of the junctions, where the driver waits
+constexpr double kAccelerating = 2.0;
 
 /// A stretch of one street between two junctions, as driven.
 struct Leg {
@@ -62,7 +63,7 @@ std::vector<Vector2d> Resample(const std::vector<Vector2d>& ring) {
 /// The driven line as a ring: lanes joined at the junctions by curves.
 std::vector<Vector2d> DrivenLine(const StreetPlan& plan, std::span<const size_t> tour,
                                  std::vector<size_t>* junction_points) {
-  constexpr double kApproach = 9.5;  // metres from the junction at which a turn begins and ends
+  constexpr double kApproach = 11;  // metres from the junction at which a turn begins and ends
   std::vector<Leg> legs;
   for (size_t i = 0; i < tour.size(); ++i)
     legs.push_back(FindLeg(plan, tour[i], tour[(i + 1) % tour.size()]));
@@ -144,7 +145,7 @@ Lap::Lap(const StreetPlan& plan, std::span<const size_t> tour, const LapOptions&
   speeds_ = WishedSpeeds(points_, options, random);
   dwell_.assign(n, 0);
   for (const size_t junction : junction_points) {
-    if (!random.Chance(0.3)) continue;
+    if (!random.Chance(kStopShare)) continue;
     const Vector2d& p = line[junction % line.size()];
     const auto nearest =
         std::min_element(points_.begin(), points_.end(), [&](const Vector2d& a, const Vector2d& b) {

@@ -10,7 +10,7 @@ namespace orb360::town {
 
 struct LapOptions {
   uint64_t seed = 0;
-  double minimum_speed = 5;  ///< metres per second, what drivers wish for on straight stretches
+  double minimum_speed = 6.5;  ///< metres per second, what drivers wish for on straight stretches
   double maximum_speed = 12;
 };
 

@@ -48,7 +48,7 @@ Texture PaintAsphalt(uint32_t seed) {
 }
 
 Texture PaintPavingSlabs(uint32_t seed) {
-  return Texture::Paint(1024, [seed](float x, float y) {
+  return Texture::Paint(512, [seed](float x, float y) {
     constexpr int kRows = 8;
     const int row = static_cast<int>(y * kRows);
     const float shifted = x * kRows + (row % 2 == 0 ? 0.0F : 0.5F);
@@ -73,7 +73,7 @@ Texture PaintPavingSlabs(uint32_t seed) {
 }
 
 Texture PaintSetts(uint32_t seed) {
-  return Texture::Paint(1024, [seed](float x, float y) {
+  return Texture::Paint(512, [seed](float x, float y) {
     constexpr int kRows = 32;
     const int row = static_cast<int>(y * kRows);
     const float v = y * kRows - static_cast<float>(row);
@@ -105,7 +105,7 @@ Texture PaintConcrete(uint32_t seed) {
 }
 
 Texture PaintGrass(uint32_t seed) {
-  return Texture::Paint(1024, [seed](float x, float y) {
+  return Texture::Paint(512, [seed](float x, float y) {
     const float blades = TiledFbm(x, y, 160, 2, seed, 0.9F);
     const float clumps = TiledFbm(x, y, 12, 5, seed + 1, 0.65F);
     const float dry = SmoothStep(0.1F, 0.9F, TiledFbm(x, y, 3, 5, seed + 2));

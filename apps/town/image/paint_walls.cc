@@ -7,7 +7,7 @@
 namespace orb360::town {
 
 Texture PaintBrick(uint32_t seed, const Rgba& brick, const Rgba& mortar) {
-  return Texture::Paint(1024, [=](float x, float y) {
+  return Texture::Paint(512, [=](float x, float y) {
     constexpr int kColumns = 16;
     constexpr int kRows = 52;
     const int row = static_cast<int>(y * kRows);
@@ -45,7 +45,7 @@ Texture PaintPlaster(uint32_t seed) {
 }
 
 Texture PaintAshlar(uint32_t seed) {
-  return Texture::Paint(1024, [seed](float x, float y) {
+  return Texture::Paint(512, [seed](float x, float y) {
     constexpr int kColumns = 5;
     constexpr int kRows = 10;
     const int row = static_cast<int>(y * kRows);

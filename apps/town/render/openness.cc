@@ -69,10 +69,10 @@ std::vector<Vector3f> LookoutPoints(const Mesh& mesh) {
 template <typename Occluded>
 void BakeMesh(const Occluded& occluded, Mesh* mesh) {
   const std::vector<Vector3f> points = LookoutPoints(*mesh);
-  // Neighbouring faces repeat their corners: look once for each place, to the decimetre.
+  // Neighbouring faces repeat their corners: look once for each place, to a quarter of a metre.
   using Key = std::array<int, 6>;
   const auto key = [&](uint32_t i) -> Key {
-    const Eigen::Vector3i place = (points[i] * 10).array().round().cast<int>();
+    const Eigen::Vector3i place = (points[i] * 4).array().round().cast<int>();
     const auto& n = mesh->vertices[i].normal;
     return {place.x(), place.y(), place.z(), n.x(), n.y(), n.z()};
   };

@@ -19,6 +19,8 @@ std::vector<size_t> Reversed(const std::vector<size_t>& tour) {
 
 }  // namespace
 
+LapOptions LapOf(const TownSpec& spec) { return {.seed = SeedOf(spec, kLap)}; }
+
 Drive::Drive(const TownSpec& spec, const EquirectangularCamera& camera, double fps)
     : spec_(spec),
       camera_(camera),
@@ -28,7 +30,7 @@ Drive::Drive(const TownSpec& spec, const EquirectangularCamera& camera, double f
       sky_(light_, spec.seed),
       scene_(town_),
       shader_(town_, light_, sky_),
-      lap_(town_.plan, town_.plan.tour, {.seed = SeedOf(spec, kLap)}),
+      lap_(town_.plan, town_.plan.tour, LapOf(spec)),
       oncoming_lap_(town_.plan, Reversed(town_.plan.tour), {.seed = SeedOf(spec, kOncomingLap)}),
       traffic_(town_, lap_, oncoming_lap_,
                {.seed = SeedOf(spec, kTraffic), .density = spec.traffic}) {

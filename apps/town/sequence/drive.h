@@ -10,6 +10,9 @@
 
 namespace orb360::town {
 
+/// How the camera's car drives its lap of a town.
+LapOptions LapOf(const TownSpec& spec);
+
 /// A drive through a town that can be rendered at any frame, in any order.
 class Drive {
  public:

@@ -23,12 +23,12 @@ struct Named {
   int tour_blocks;
 };
 /// The tours are a little shorter than the sequences, so that each path closes its loop.
-constexpr std::array<Named, 6> kTowns = {{{"Town1", 1, "noon", 0.3, 1000, 3, 3, 44, 2},
-                                          {"Town2", 2, "sunset", 0.5, 2000, 4, 3, 56, 3},
-                                          {"Town3", 3, "morning", 0.2, 2850, 4, 4, 60, 4},
-                                          {"Town4", 4, "noon", 0.8, 3000, 5, 3, 52, 5},
-                                          {"Town5", 5, "sunset", 0.1, 1000, 3, 3, 42, 2},
-                                          {"Loop", 6, "noon", 0.0, 600, 3, 2, 42, 1}}};
+constexpr std::array<Named, 6> kTowns = {{{"Town1", 1, "noon", 0.3, 1000, 3, 3, 35, 2},
+                                          {"Town2", 2, "sunset", 0.5, 2000, 4, 3, 54, 3},
+                                          {"Town3", 3, "morning", 0.2, 2850, 4, 4, 56, 4},
+                                          {"Town4", 4, "noon", 0.8, 3000, 5, 3, 50, 5},
+                                          {"Town5", 5, "sunset", 0.1, 1000, 3, 3, 34, 2},
+                                          {"Loop", 6, "noon", 0.0, 600, 3, 2, 36, 1}}};
 
 }  // namespace
 

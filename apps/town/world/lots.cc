@@ -54,9 +54,48 @@ bool ClearOfRoads(const StreetPlan& plan, const Rectangle& r, double margin) {
 
 }  // namespace
 
+/// The lot on a rectangle: its base at the highest point of the terrain below.
+Lot OnTerrain(const StreetPlan& plan, const Rectangle& r) {
+  double highest = -1e30;
+  double lowest = 1e30;
+  for (const Vector2d& p : {r.At(0, 0), r.At(r.width, 0), r.At(0, r.depth), r.At(r.width, r.depth),
+                            r.At(0.5 * r.width, 0)}) {
+    highest = std::max(highest, plan.Height(p));
+    lowest = std::min(lowest, plan.Height(p));
+  }
+  return {Eigen::Vector3d(r.corner.x(), r.corner.y(), highest + kKerbHeight).cast<float>(),
+          Eigen::Vector3d(r.right.x(), r.right.y(), 0).cast<float>(), static_cast<float>(r.width),
+          static_cast<float>(r.depth), static_cast<float>(highest - lowest)};
+}
+
+/// The rectangle across the end of a street, facing it.
+Rectangle AcrossTheEnd(const Street& street, bool at_start, Random& random) {
+  const StreetPoint& end = at_start ? street.points.front() : street.points.back();
+  Rectangle r;
+  r.back = at_start ? Vector2d(-end.tangent) : end.tangent;
+  r.right = {r.back.y(), -r.back.x()};
+  r.width = random.Uniform(16, 24);
+  r.depth = random.Uniform(9, 13);
+  r.corner =
+      end.position + (end.half_width + street.pavement + 0.5) * r.back - 0.5 * r.width * r.right;
+  return r;
+}
+
 std::vector<Lot> LayOutLots(const StreetPlan& plan, Random& random) {
   std::vector<Rectangle> taken;
   std::vector<Lot> lots;
+  const auto is_free = [&](const Rectangle& lot) {
+    return std::none_of(taken.begin(), taken.end(),
+                        [&](const Rectangle& other) { return Overlap(lot, other, 0.4); });
+  };
+  for (const Street& street : plan.streets) {
+    for (const bool at_start : {true, false}) {
+      const Rectangle lot = AcrossTheEnd(street, at_start, random);
+      if (!ClearOfRoads(plan, lot, street.pavement - 0.6) || !is_free(lot)) continue;
+      taken.push_back(lot);
+      lots.push_back(OnTerrain(plan, lot));
+    }
+  }
   for (const Street& street : plan.streets) {
     for (const double side : {1.0, -1.0}) {  // left, right of increasing station
       double s = 1;
@@ -80,27 +119,14 @@ std::vector<Lot> LayOutLots(const StreetPlan& plan, Random& random) {
         lot.back = {-lot.right.y(), lot.right.x()};
         lot.width = (b - a).norm();
         lot.depth = depth;
-        const bool fits = lot.width > 5 && ClearOfRoads(plan, lot, street.pavement - 0.6) &&
-                          std::none_of(taken.begin(), taken.end(), [&](const Rectangle& other) {
-                            return Overlap(lot, other, 0.4);
-                          });
+        const bool fits =
+            lot.width > 5 && ClearOfRoads(plan, lot, street.pavement - 0.6) && is_free(lot);
         if (!fits) {
           s += 1.5;
           continue;
         }
         taken.push_back(lot);
-        double highest = -1e30;
-        double lowest = 1e30;
-        for (const Vector2d& p : {lot.At(0, 0), lot.At(lot.width, 0), lot.At(0, lot.depth),
-                                  lot.At(lot.width, lot.depth), lot.At(0.5 * lot.width, 0)}) {
-          highest = std::max(highest, plan.Height(p));
-          lowest = std::min(lowest, plan.Height(p));
-        }
-        const double base = highest + kKerbHeight;
-        lots.push_back({Eigen::Vector3d(lot.corner.x(), lot.corner.y(), base).cast<float>(),
-                        Eigen::Vector3d(lot.right.x(), lot.right.y(), 0).cast<float>(),
-                        static_cast<float>(lot.width), static_cast<float>(lot.depth),
-                        static_cast<float>(highest - lowest)});
+        lots.push_back(OnTerrain(plan, lot));
         s = end + (random.Chance(0.12) ? random.Uniform(2, 6) : 0.02);
       }
     }

@@ -10,12 +10,16 @@
 
 namespace orb360::town {
 
+StreetPlan PlanTown(uint64_t seed, PlanOptions plan) {
+  plan.seed = Random(seed).Fork(2).Next();
+  return PlanStreets(plan);
+}
+
 Town BuildTown(uint64_t seed, PlanOptions plan) {
   const Random random(seed);
   Town town;
   town.materials = PaintMaterials(random.Fork(1).Next());
-  plan.seed = random.Fork(2).Next();
-  town.plan = PlanStreets(plan);
+  town.plan = PlanTown(seed, plan);
   MeshBuilder builder(town.materials);
   AddGround(town.plan, builder);
   AddRoadMarkings(town.plan, builder);

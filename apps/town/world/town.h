@@ -29,6 +29,9 @@ struct Town {
   std::vector<uint32_t> pedestrians;  ///< the first of kWalkPhases models of each person
 };
 
+/// The streets of the town of a seed; the plan's own seed is drawn from it.
+StreetPlan PlanTown(uint64_t seed, PlanOptions plan = {});
+
 /// The town of a seed; the plan's own seed is drawn from it.
 Town BuildTown(uint64_t seed, PlanOptions plan = {});
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "apps/town/sequence/drive.h"
 #include "slam/check.h"
 
 namespace orb360::town {
@@ -24,6 +25,20 @@ TEST(FindTown, EvaluationTownsHaveThePapersLengthsAndLight) {
   EXPECT_EQ(FindTown("Town3").frames, 2850);
   EXPECT_EQ(FindTown("Town3").light, "morning");
   EXPECT_EQ(FindTown("Town5").light, "sunset");
+}
+
+TEST(FindTown, ToursCloseALoopWithinTheSequence) {
+  // A tour of several blocks is back at a junction when the first block is circled, well before
+  // the lap is over.
+  for (const char* name : {"Town1", "Town2", "Town3", "Town4", "Town5", "Loop"}) {
+    const TownSpec spec = FindTown(name);
+    const StreetPlan plan = PlanTown(spec.seed, spec.plan);
+    const Lap lap(plan, plan.tour, LapOf(spec));
+    const double lap_frames = 20 * lap.duration();
+    const double share = spec.plan.tour_blocks == 1 ? 0.95 : 1.1;
+    EXPECT_LT(lap_frames, share * spec.frames) << name << ": " << lap.length() << " m";
+    EXPECT_GT(lap_frames, 0.4 * spec.frames) << name << ": " << lap.length() << " m";
+  }
 }
 
 TEST(FindTown, RefusesOtherNames) {

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "apps/town/image/random.h"
+#include "apps/town/world/mesh.h"
+
+namespace orb360::town {
+
+/// What a building's facades share.
+struct FacadeStyle {
+  MaterialId wall = 0;
+  Rgba wall_tint{1, 1, 1, 1};
+  MaterialId ground_wall = 0;
+  Rgba ground_tint{1, 1, 1, 1};
+  Rgba trim_tint{1, 1, 1, 1};
+  Rgba frame_tint{1, 1, 1, 1};
+  Rgba shutter_tint{1, 1, 1, 1};
+  int floors = 3;
+  float ground_height = 3.8F;  // metres
+  float floor_height = 3.0F;
+  float bay = 2.8F;  // metres between window axes, roughly
+  float window_width = 1.2F;
+  float window_height = 1.6F;
+  float sill = 0.85F;    // metres above the floor
+  float reveal = 0.16F;  // metres from the wall's face to the frame
+  bool surrounds = false;
+  bool shutters = false;
+  bool balconies = false;
+  bool bands = false;
+  bool quoins = false;
+  bool shops = false;
+  bool pitched_roof = true;
+};
+
+/// A style for a building `width` metres wide.
+FacadeStyle DrawFacadeStyle(Random& random, const Materials& materials, float width);
+
+/// Height of the eaves above the ground, metres.
+inline float EavesHeight(const FacadeStyle& style) {
+  return style.ground_height + style.floor_height * static_cast<float>(style.floors - 1);
+}
+
+/// A wall from `drop` below the panel's origin up to the eaves. A `front` has doors or shops and
+/// the ornaments; without windows the wall is blank.
+void AddFacade(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width, float drop,
+               bool front, bool has_windows, Random& random);
+
+/// The back of a building, which is only seen through gaps: pictures of windows on a flat wall.
+void AddBack(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width, float drop,
+             Random& random);
+
+}  // namespace orb360::town
