@@ -138,7 +138,7 @@ void AddShopFront(MeshBuilder& b, const FacadeStyle& style, const Panel& p, floa
   const auto glaze = [&](float a, float c) {
     if (c - a < 0.4F) return;
     b.set_tint(paint);
-    b.AddRectangle(m.trim, p, a, c, 0.02F, z0, -kReveal + 0.05F);
+    b.AddBox(m.trim, p, a, c, 0.02F, z0, -kReveal - kPaneDepth, -kReveal + 0.05F);
     FacadeStyle frame = style;
     frame.frame_tint = paint;
     const int panes = std::max(1, static_cast<int>((c - a) / 1.9F));
