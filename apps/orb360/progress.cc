@@ -55,7 +55,7 @@ void Progress::Update(int index, const FrameReport& report) {
   if (report.state != state_ || report.map != map_) ReportEvent(index, report);
   const Clock::time_point now = Clock::now();
   if (is_terminal_) {
-    if (now - last_shown_ < kBarInterval) return;
+    if (now - last_shown_ < kBarInterval && num_frames_ != frame_count_) return;
     std::string line = Bar() + Status(report);
     line.resize(TerminalWidth() - 1, ' ');
     std::cout << '\r' << line << std::flush;

@@ -72,6 +72,17 @@ TEST(PlotTrajectory, EverythingLiesInsideThePictureWhateverTheErrors) {
   }
 }
 
+TEST(PlotTrajectory, PathsLieInsideTheirFrames) {
+  const std::string svg = Plot(200, 0.05);
+  for (const Eigen::Vector2d& point : PolylinePoints(svg, 0)) {
+    EXPECT_TRUE(point.x() > 70 && point.x() < 650 && point.y() > 60 && point.y() < 580) << point;
+  }
+  for (const Eigen::Vector2d& point : PolylinePoints(svg, 1)) {
+    EXPECT_TRUE(point.x() >= 740 && point.x() <= 1370 && point.y() > 60 && point.y() <= 580)
+        << point;
+  }
+}
+
 TEST(PlotTrajectory, LongTrajectoriesAreThinned) {
   EXPECT_LT(Plot(100000, 0.05).size(), 2'000'000u);
   EXPECT_GT(PolylinePoints(Plot(100000, 0.05), 0).size(), 2000u);

@@ -104,6 +104,8 @@ TEST(TrajectoryError, AlternatingHeightIsTheAbsoluteErrorInClosedForm) {
   EXPECT_NEAR(errors.ate_se3.rmse, d, 1e-9);
   EXPECT_NEAR(errors.ate_se3.mean, d, 1e-9);
   EXPECT_NEAR(errors.ate_se3.max, d, 1e-9);
+  // From frame to frame the height is wrong by 2 d, the rest by next to nothing.
+  EXPECT_NEAR(errors.rpe_frame.translation, 2.0 * d, 1e-4);
   const double scale = r * r / (r * r + d * d);
   EXPECT_NEAR(errors.truth_from_estimate.scale, scale, 1e-9);
   EXPECT_NEAR(errors.ate_sim3.rmse, std::sqrt(r * r * d * d / (r * r + d * d)), 1e-9);

@@ -15,7 +15,7 @@ namespace {
 TEST(DepthImage, KeepsRangesToTwoMillimetresAndDropsWhatItCannotHold) {
   const TempFolder folder;
   const cv::Mat range =
-      (cv::Mat_<float>(2, 4) << 0.0f, 1.0f, 12.3456f, 255.99f, 256.0f, -3.0f, NAN, INFINITY);
+      (cv::Mat_<float>(2, 4) << 0.0f, 1.0f, 12.346f, 255.99f, 300.0f, -3.0f, NAN, INFINITY);
   WriteDepthImage(folder / "d.png", range);
   const cv::Mat raw = cv::imread((folder / "d.png").string(), cv::IMREAD_UNCHANGED);
   ASSERT_EQ(raw.type(), CV_16UC1);

@@ -204,14 +204,14 @@ TEST(SequenceOfFolder, GreySixteenBitAndAlphaBecomeEightBitBgr) {
   const TempFolder folder;
   cv::imwrite((folder / "0.png").string(), cv::Mat(kSize, CV_8UC1, cv::Scalar(77)));
   cv::imwrite((folder / "1.png").string(),
-              cv::Mat(kSize, CV_16UC3, cv::Scalar(257 * 10, 257 * 20, 257 * 30)));
+              cv::Mat(kSize, CV_16UC3, cv::Scalar(257 * 10, 257 * 200, 257 * 255)));
   cv::imwrite((folder / "2.png").string(), cv::Mat(kSize, CV_16UC1, cv::Scalar(257 * 99)));
   cv::imwrite((folder / "3.png").string(), cv::Mat(kSize, CV_8UC4, cv::Scalar(1, 2, 3, 128)));
   const std::vector<Frame> frames = ReadAll(folder.path());
   ASSERT_THAT(frames, SizeIs(4));
   for (const Frame& frame : frames) ASSERT_EQ(frame.image.type(), CV_8UC3);
   EXPECT_EQ(frames[0].image.at<cv::Vec3b>(5, 5), cv::Vec3b(77, 77, 77));
-  EXPECT_EQ(frames[1].image.at<cv::Vec3b>(5, 5), cv::Vec3b(10, 20, 30));
+  EXPECT_EQ(frames[1].image.at<cv::Vec3b>(5, 5), cv::Vec3b(10, 200, 255));
   EXPECT_EQ(frames[2].image.at<cv::Vec3b>(5, 5), cv::Vec3b(99, 99, 99));
   EXPECT_EQ(frames[3].image.at<cv::Vec3b>(5, 5), cv::Vec3b(1, 2, 3));
 }
@@ -245,11 +245,11 @@ TEST(SequenceOfFolder, AWarningComesWithTheFrameAfterIt) {
   EXPECT_THAT(sequence->TakeWarnings(), SizeIs(1));
 }
 
-TEST(SequenceRefuses, AFolderOfMixedSizesNamingTheFirstAndBothSizes) {
+TEST(SequenceRefuses, AFolderOfMixedSizesOnOpeningNamingTheFirstAndBothSizes) {
   const TempFolder folder;
   WriteImages(folder, 5);
   cv::imwrite((folder / "img3.png").string(), Numbered(3, {64, 32}));
-  EXPECT_THAT(RefusalOf(folder.path()),
+  EXPECT_THAT(MessageOf<UserError>([&] { OpenSequence(folder.path().string(), {}); }),
               AllOf(HasSubstr("img3.png"), HasSubstr("64x32"), HasSubstr("128x64")));
 }
 
@@ -310,6 +310,8 @@ TEST(SequenceOfDataset, ReadsCameraHeightAndRateAndNothingElse) {
 
   WriteText(folder / "sequence.yaml", "camera: {model: equirectangular}\n\nfps: fast\n");
   EXPECT_THAT(RefusalOf(folder.path()), HasSubstr("sequence.yaml:3: fps must be"));
+  WriteText(folder / "sequence.yaml", "camera: {model: equirectangular}\nfps: 0\n");
+  EXPECT_THAT(RefusalOf(folder.path()), HasSubstr("sequence.yaml:2: fps must be"));
   WriteText(folder / "sequence.yaml", "camera: {model: pinhole}\nfps: 20\n");
   EXPECT_THAT(RefusalOf(folder.path()), HasSubstr("camera.model"));
 }
