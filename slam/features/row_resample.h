@@ -26,8 +26,7 @@ void BlendRows(const uint8_t* upper, const uint8_t* lower, int weight, int count
 /// -1, and one element beyond the last index. Rounds to nearest.
 void ResampleRow(const uint16_t* blended, const ResampleTaps& taps, uint8_t* out);
 
-/// Means of 2x2 pixels, rounded: `count` of them from two rows of twice as many. The three rows may
-/// be the same one.
+/// Means of 2x2 pixels, rounded: `count` of them from two rows of twice as many.
 void HalveRows(const uint8_t* upper, const uint8_t* lower, int count, uint8_t* out);
 
 }  // namespace orb360

@@ -25,27 +25,38 @@ bool IsWhole(int index) { return index >= kFirstWhole && index <= kLastWhole; }
 // Of the band's middle: the mean proportion of its pixels on the sphere.
 double CosineOfBand(int index) { return std::sin(std::numbers::pi * (index + 0.5) / kSphereBands); }
 
-// Rows [first, last) of the level, compressed to band->width, with margins left and right.
+// Widths from the level's to the band's, each at least half of the one before, so that two taps
+// suffice for a step; all multiples of the number of cells, so that a roll by whole cells stays one.
+std::vector<ResampleTaps> Steps(int level_width, int band_width) {
+  std::vector<ResampleTaps> steps;
+  for (int width = level_width; width > band_width;) {
+    const int half = (width / kSphereColumns + 1) / 2 * kSphereColumns;
+    const int next = std::max(half, band_width);
+    steps.emplace_back(width, next);
+    width = next;
+  }
+  return steps;
+}
+
+// All rows of the band, compressed to its width, with margins left and right.
 void Compress(const PyramidLevel& level, SphereBand* band) {
   const int level_width = level.camera.width();
-  // Halved as long as the rest is at most another factor of two: then two taps suffice.
-  int halvings = 0;
-  int halved_width = level_width;
-  for (; halved_width % 2 == 0 && halved_width / 2 >= band->width; ++halvings) halved_width /= 2;
-  const ResampleTaps taps(halved_width, band->width);
+  const std::vector<ResampleTaps> steps = Steps(level_width, band->width);
   std::vector<uint8_t> row(level_width + 2);
-  std::vector<uint16_t> widened(halved_width + 2);
+  std::vector<uint16_t> widened(level_width + 2);
   for (int r = 0; r < band->padded.rows; ++r) {
     std::memcpy(row.data() + 1, level.padded.ptr(band->first_row + r + kMarginY) + kMarginX,
                 level_width);
-    for (int i = 1; i <= halvings; ++i) {  // a row with itself: means of two pixels
-      HalveRows(row.data() + 1, row.data() + 1, level_width >> i, row.data() + 1);
+    int width = level_width;
+    for (const ResampleTaps& taps : steps) {
+      row[0] = row[width];
+      row[width + 1] = row[1];
+      BlendRows(row.data(), row.data(), 0, width + 2, widened.data());
+      ResampleRow(widened.data() + 1, taps, row.data() + 1);
+      width = static_cast<int>(taps.index.size());
     }
-    row[0] = row[halved_width];
-    row[halved_width + 1] = row[1];
-    BlendRows(row.data(), row.data(), 0, halved_width + 2, widened.data());
     uint8_t* out = band->padded.ptr(r) + kMarginX;
-    ResampleRow(widened.data() + 1, taps, out);
+    std::memcpy(out, row.data() + 1, band->width);
     std::memcpy(out - kMarginX, out + band->width - kMarginX, kMarginX);
     std::memcpy(out + band->width, out, kMarginX);
   }

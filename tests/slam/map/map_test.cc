@@ -1,0 +1,119 @@
+#include "slam/map/map.h"
+
+#include <gtest/gtest.h>
+
+#include "slam/check.h"
+#include "tests/slam/pipeline/synthetic_scene.h"
+
+namespace orb360 {
+namespace {
+
+Map SmallMap() {
+  SyntheticScene scene(40);
+  return scene.MakeMap(Walk(4, {-0.5, 0.1, 0.0}), 30);
+}
+
+TEST(Map, KeepsKeyframesAndLandmarksInAgreement) {
+  Map map = SmallMap();
+  map.CheckConsistency();
+  map.RemoveObservation(3, 2);
+  EXPECT_EQ(map.keyframe(2).landmarks[3], kNoId);
+  EXPECT_EQ(map.landmark(3).observations.size(), 3u);
+  map.RemoveLandmark(5);
+  EXPECT_EQ(map.keyframe(0).landmarks[5], kNoId);
+  map.RemoveKeyframe(1, 0);
+  EXPECT_EQ(map.landmark(7).observations.size(), 3u);
+  map.CheckConsistency();
+  EXPECT_EQ(map.num_keyframes(), 3);
+  EXPECT_EQ(map.num_landmarks(), 29);
+}
+
+TEST(Map, NoticesABrokenAgreement) {
+  Map map = SmallMap();
+  map.keyframe(1).landmarks[4] = kNoId;
+  EXPECT_THROW(map.CheckConsistency(), ContractError);
+}
+
+TEST(Map, MergingMovesObservationsOnceAndLeavesATrace) {
+  Map map = SmallMap();
+  const LandmarkId twin = map.AddLandmark({1, 2, 3}, {});
+  map.AddObservation(twin, 0, 35);  // keyframe 0 sees landmark 2 already
+  map.RemoveObservation(2, 3);
+  map.AddObservation(twin, 3, 36);
+  map.landmark(twin).visible = 7;
+  map.MergeLandmark(twin, 2);
+  map.CheckConsistency();
+  EXPECT_FALSE(map.HasLandmark(twin));
+  EXPECT_EQ(map.Resolve(twin), 2);
+  EXPECT_EQ(map.landmark(2).observations.size(), 4u);
+  EXPECT_EQ(map.keyframe(3).landmarks[36], 2);
+  EXPECT_EQ(map.keyframe(0).landmarks[35], kNoId);
+  EXPECT_EQ(map.landmark(2).visible, 8);
+  map.MergeLandmark(2, 9);
+  EXPECT_EQ(map.Resolve(twin), 9);
+  map.RemoveLandmark(9);
+  EXPECT_EQ(map.Resolve(twin), kNoId);
+}
+
+TEST(Map, ARemovedKeyframesPoseFollowsItsSuccessor) {
+  Map map = SmallMap();
+  const Rigid3 removed = map.keyframe(2).world_from_camera;
+  map.RemoveKeyframe(2, 1);
+  EXPECT_LT((map.PoseOf(2).translation - removed.translation).norm(), 1e-12);
+  EXPECT_EQ(map.LivingKeyframe(2), 1);
+  const Rigid3 shift{ExpSo3({0, 0, 0.5}), {1, 2, 3}};
+  map.keyframe(1).world_from_camera = shift * map.keyframe(1).world_from_camera;
+  EXPECT_LT((map.PoseOf(2).translation - shift * removed.translation).norm(), 1e-12);
+  map.RemoveKeyframe(1, 0);  // a chain
+  EXPECT_EQ(map.LivingKeyframe(2), 0);
+  EXPECT_LT((map.PoseOf(2).translation - shift * removed.translation).norm(), 1e-12);
+}
+
+TEST(Map, CovisibleKeyframesAreCountedAndOrdered) {
+  Map map = SmallMap();
+  for (int i = 0; i < 20; ++i) map.RemoveObservation(i, 1);
+  for (int i = 0; i < 5; ++i) map.RemoveObservation(i, 3);
+  const std::vector<Map::Covisible> found = map.FindCovisible(map.keyframe(0).landmarks, 1, 0);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].keyframe, 2);
+  EXPECT_EQ(found[0].shared, 30);
+  EXPECT_EQ(found[1].keyframe, 3);
+  EXPECT_EQ(found[1].shared, 25);
+  EXPECT_EQ(found[2].keyframe, 1);
+  EXPECT_EQ(found[2].shared, 10);
+  EXPECT_EQ(map.FindCovisible(map.keyframe(0).landmarks, 26, 0).size(), 1u);
+}
+
+TEST(Map, AChangeOfGaugeChangesNoImage) {
+  Map map = SmallMap();
+  const Map before = map;
+  map.RemoveKeyframe(3, 2);
+  const Similarity3 gauge{2.5, ExpSo3({0.3, -0.2, 1.0}), {4, 5, 6}};
+  map.Transform(gauge);
+  for (KeyframeId k = 0; k < 4; ++k) {
+    EXPECT_LT((map.PoseOf(k).translation - gauge * before.PoseOf(k).translation).norm(), 1e-12);
+    for (LandmarkId l = 0; l < 30; ++l) {
+      const Eigen::Vector3d was = before.PoseOf(k).Inverse() * before.landmark(l).position;
+      const Eigen::Vector3d is = map.PoseOf(k).Inverse() * map.landmark(l).position;
+      EXPECT_LT((is - 2.5 * was).norm(), 1e-9);
+    }
+  }
+  EXPECT_NEAR(map.MedianRange(0), 2.5 * before.MedianRange(0), 1e-9);
+}
+
+TEST(Map, LevelsAndRangesAreInverse) {
+  for (int level = 0; level < 8; ++level) {
+    EXPECT_EQ(PredictLevel(RangeAtLevelZero(3.7, level), 3.7), level);
+  }
+}
+
+TEST(Map, ContractsAreChecked) {
+  Map map = SmallMap();
+  EXPECT_THROW(map.AddObservation(4, 0, 35), ContractError);   // sees it already
+  EXPECT_THROW(map.AddObservation(31, 0, 35), ContractError);  // no such landmark
+  EXPECT_THROW(map.RemoveKeyframe(1, 1), ContractError);
+  EXPECT_THROW(map.keyframe(9), ContractError);
+}
+
+}  // namespace
+}  // namespace orb360

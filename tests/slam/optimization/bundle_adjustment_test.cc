@@ -1,0 +1,125 @@
+#include "slam/optimization/bundle_adjustment.h"
+
+#include <gtest/gtest.h>
+
+#include "slam/optimization/local_bundle_adjustment.h"
+#include "tests/slam/pipeline/synthetic_scene.h"
+
+namespace orb360 {
+namespace {
+
+// Poses and points that explain all observations exactly; two fixed poses hold the gauge.
+BundleProblem ExactProblem(RandomGeometry* random) {
+  BundleProblem problem;
+  for (int i = 0; i < 10; ++i) {
+    problem.world_from_camera.push_back({random->Rotation(0.4), {0.4 * i, 0.1 * i, 0.02 * i * i}});
+    problem.pose_fixed.push_back(i < 2);
+  }
+  for (int p = 0; p < 400; ++p) {
+    problem.points.push_back(random->Point(3.0, 12.0));
+    for (int i = 0; i < 10; ++i) {
+      const Eigen::Vector3d local = problem.world_from_camera[i].Inverse() * problem.points[p];
+      problem.observations.push_back({i, p, local.normalized(), 0.001});
+    }
+  }
+  return problem;
+}
+
+TEST(BundleAdjustment, RestoresADisturbedMap) {
+  RandomGeometry random(4);
+  const BundleProblem truth = ExactProblem(&random);
+  BundleProblem problem = truth;
+  for (int i = 2; i < 10; ++i) {
+    problem.world_from_camera[i] =
+        problem.world_from_camera[i] * Rigid3{random.Rotation(0.02), random.Point(0.0, 0.05)};
+  }
+  for (Eigen::Vector3d& point : problem.points) point += random.Point(0.0, 0.1);
+  const BundleReport report =
+      SolveBundle({.max_iterations = 50, .function_tolerance = 1e-16}, &problem);
+  ASSERT_TRUE(report.usable);
+  EXPECT_LT(report.final_cost, 1e-9 * report.initial_cost);
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_LT(
+        (problem.world_from_camera[i].translation - truth.world_from_camera[i].translation).norm(),
+        1e-6);
+    EXPECT_LT(
+        problem.world_from_camera[i].rotation.angularDistance(truth.world_from_camera[i].rotation),
+        1e-6);
+  }
+  for (size_t p = 0; p < truth.points.size(); ++p) {
+    EXPECT_LT((problem.points[p] - truth.points[p]).norm(), 1e-6);
+  }
+}
+
+TEST(BundleAdjustment, GivesTheSameBitsTwice) {
+  RandomGeometry random(5);
+  BundleProblem problem = ExactProblem(&random);
+  for (Eigen::Vector3d& point : problem.points) point += random.Point(0.0, 0.1);
+  BundleProblem again = problem;
+  SolveBundle({}, &problem);
+  SolveBundle({}, &again);
+  for (size_t p = 0; p < problem.points.size(); ++p) {
+    ASSERT_EQ(problem.points[p], again.points[p]);
+  }
+}
+
+TEST(BundleAdjustment, APointBehindItsBearingIsNoInlier) {
+  BundleProblem problem;
+  problem.world_from_camera = {Rigid3()};
+  problem.pose_fixed = {1};
+  problem.points = {{-3, 0, 0}};
+  EXPECT_LT(SquaredResidual(problem, {0, 0, {-1, 0, 0}, 0.01}), 1e-20);
+  EXPECT_TRUE(std::isinf(SquaredResidual(problem, {0, 0, {1, 0, 0}, 0.01})));
+}
+
+TEST(LocalBundleAdjustment, MovesTheNeighbourhoodAndNothingElse) {
+  SyntheticScene scene(300);
+  const std::vector<Rigid3> poses = Walk(8, {-0.3, 0.1, 0.0});
+  Map map = scene.MakeMap(poses, 300);
+  LocalBundleOptions options;
+  options.max_keyframes = 3;
+  map.keyframe(7).world_from_camera.translation += Eigen::Vector3d(0.05, -0.05, 0.03);
+  const Map before = map;
+  AdjustLocally(7, options, &map);
+  map.CheckConsistency();
+  EXPECT_LT((map.keyframe(7).world_from_camera.translation - poses[7].translation).norm(), 0.01);
+  int moved = 0;
+  for (KeyframeId id = 0; id < 8; ++id) {
+    moved += map.keyframe(id).world_from_camera.translation !=
+             before.keyframe(id).world_from_camera.translation;
+  }
+  EXPECT_EQ(moved, 3);
+}
+
+TEST(LocalBundleAdjustment, RemovesObservationsThatAreWrong) {
+  SyntheticScene scene(200);
+  const std::vector<Rigid3> poses = Walk(5, {-0.3, 0.1, 0.0});
+  Map map = scene.MakeMap(poses, 180);
+  // Keyframe 2 takes feature 190 for landmark 20.
+  map.RemoveObservation(20, 2);
+  map.AddObservation(20, 2, 190);
+  AdjustLocally(4, {}, &map);
+  map.CheckConsistency();
+  EXPECT_EQ(map.keyframe(2).landmarks[190], kNoId);
+  ASSERT_TRUE(map.HasLandmark(20));
+  EXPECT_EQ(map.landmark(20).observations.size(), 4u);
+}
+
+TEST(LocalBundleAdjustment, GlobalAdjustmentBringsTheWholeMapToRest) {
+  SyntheticScene scene(200);
+  const std::vector<Rigid3> poses = Walk(5, {-0.3, 0.1, 0.0});
+  Map map = scene.MakeMap(poses, 200);
+  for (KeyframeId id = 1; id < 5; ++id) {
+    map.keyframe(id).world_from_camera.translation += Eigen::Vector3d(0.02, 0.01 * id, -0.02);
+  }
+  AdjustGlobally({.max_iterations = 30}, &map);
+  // The scale is free: compared by the ratio of two distances.
+  const auto distance = [&](const auto& at, int a, int b) { return (at(a) - at(b)).norm(); };
+  const auto found = [&](int id) { return map.keyframe(id).world_from_camera.translation; };
+  const auto truth = [&](int id) { return poses[id].translation; };
+  EXPECT_NEAR(distance(found, 0, 2) / distance(found, 0, 4),
+              distance(truth, 0, 2) / distance(truth, 0, 4), 0.01);
+}
+
+}  // namespace
+}  // namespace orb360
