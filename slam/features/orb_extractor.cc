@@ -11,15 +11,15 @@
 namespace orb360 {
 namespace {
 
-// Features per level in proportion to its resolution (pixels per radian), as many small ones as
-// the image can place well.
+// Features per level in proportion to its number of pixels: fine ones are placed more exactly and
+// found again more often.
 std::vector<int> ShareOut(int num_features, const std::vector<PyramidLevel>& levels) {
   double total = 0;
-  for (const PyramidLevel& level : levels) total += 1.0 / level.scale;
+  for (const PyramidLevel& level : levels) total += 1.0 / (level.scale * level.scale);
   std::vector<int> counts;
   double assigned = 0;
   for (const PyramidLevel& level : levels) {
-    const double next = assigned + num_features / level.scale / total;
+    const double next = assigned + num_features / (level.scale * level.scale) / total;
     counts.push_back(static_cast<int>(std::lround(next) - std::lround(assigned)));
     assigned = next;
   }
