@@ -93,10 +93,13 @@ TEST_P(SequenceOfVideo, GivesEveryFrameWithItsIndexAndTime) {
   EXPECT_THAT(sequence->TakeWarnings(), IsEmpty());
 }
 
+// H.264 has frames that refer to later ones; of the last ones the reader does not tell the time.
 INSTANTIATE_TEST_SUITE_P(Containers, SequenceOfVideo,
                          testing::Values(std::pair("avi", "MJPG"), std::pair("mp4", "mp4v"),
-                                         std::pair("mkv", "mp4v")),
-                         [](const auto& container) { return container.param.first; });
+                                         std::pair("mkv", "mp4v"), std::pair("mp4", "avc1")),
+                         [](const auto& container) {
+                           return std::string(container.param.first) + "_" + container.param.second;
+                         });
 
 class SequenceOfTruncatedVideo : public SequenceOfVideo {};
 
