@@ -86,10 +86,7 @@ FrameReport System::Process(const Frame& frame) {
     report.num_inliers = last_.num_inliers;
   }
   report.map = static_cast<int>(finished_maps_.size());
-  if (!job_) {
-    num_keyframes_ = map_.num_keyframes();
-    num_landmarks_ = map_.num_landmarks();
-  }
+  if (!job_) CountMap();
   report.num_keyframes = num_keyframes_;
   report.num_landmarks = num_landmarks_;
   return report;
@@ -333,6 +330,7 @@ void System::StartMapping() {
 
 void System::AdoptMapping() {
   map_ = job_->map.get();
+  CountMap();
   const KeyframeId id = map_.keyframe_end() - 1;
   // What was tracked meanwhile moves along with the keyframe.
   const Rigid3 correction =
@@ -343,6 +341,11 @@ void System::AdoptMapping() {
   for (LandmarkId& landmark : last_.landmarks) landmark = map_.Resolve(landmark);
   CountSightings(&map_);
   local_ = MakeLocalMap(map_, id, options_.keyframe.local_keyframes);
+}
+
+void System::CountMap() {
+  num_keyframes_ = map_.num_keyframes();
+  num_landmarks_ = map_.num_landmarks();
 }
 
 void System::CountSightings(Map* map) {

@@ -81,6 +81,7 @@ class System {
   bool NeedsKeyframe() const;
   void StartMapping();
   void AdoptMapping();
+  void CountMap();
   void CountSightings(Map* map);
   void UpdateLocalMap();
   int FreeThreads() const;

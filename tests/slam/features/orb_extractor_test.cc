@@ -71,9 +71,9 @@ TEST(OrbExtractor, RollingByA32ndOfATurnGivesExactlyTheSameFeaturesShifted) {
   }
 }
 
-TEST(OrbExtractorSlow, AnyOtherRollFindsAlmostNineOfTenWithinATenthOfADegree) {
+TEST(OrbExtractorSlow, AnyOtherRollFindsNineOfTenWithinATenthOfADegree) {
   // At 2048 pixels, where a tenth of a degree is half a pixel of level 0 and a sixth of one of the
-  // coarsest level. Nine of ten is the aim; coarse levels miss it by a hundredth of the features.
+  // coarsest level.
   const EquirectangularCamera camera(2048, 1024);
   const cv::Mat image = SphereTexture(5, 2.0 * camera.AngleOfPixels(1.0))
                             .Render(camera, Eigen::Quaterniond::Identity(), 2.0);
@@ -94,7 +94,7 @@ TEST(OrbExtractorSlow, AnyOtherRollFindsAlmostNineOfTenWithinATenthOfADegree) {
     }
     std::cout << "within a tenth of a degree: " << found / static_cast<double>(features.size())
               << '\n';
-    EXPECT_GT(found, 0.88 * features.size()) << shift;
+    EXPECT_GT(found, 0.9 * features.size()) << shift;
   }
 }
 

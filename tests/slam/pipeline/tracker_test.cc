@@ -39,7 +39,9 @@ TEST_F(TrackerTest, FindsThePoseAndItsLandmarksFromARoughPrediction) {
   ExpectNear(result->world_from_camera, truth_);
   EXPECT_GT(result->num_inliers, 320);
   for (int f = 0; f < features->size(); ++f) {
-    if (result->landmarks[f] != kNoId) EXPECT_EQ(result->landmarks[f], f);
+    if (result->landmarks[f] != kNoId) {
+      EXPECT_EQ(result->landmarks[f], f);
+    }
   }
 }
 
