@@ -7,20 +7,22 @@
 
 namespace orb360 {
 
-/// Bearings as columns, for scans over all of them. Columns are longer than size() by up to a
-/// vector, filled with zero bearings, which lie on no arc.
+/// Bearings as columns, for scans over all of them. Neighbours on the sphere stand together, so
+/// that most vectors hold nothing near a given arc and are passed over. Columns are longer than
+/// size() by up to a vector, filled with zero bearings, which lie on no arc.
 class BearingColumns {
  public:
   BearingColumns(std::span<const Eigen::Vector3d> bearings, std::span<const double> sigmas);
 
-  int size() const { return size_; }
+  int size() const { return static_cast<int>(index_.size()); }
+  int index(int position) const { return index_[position]; }  // in what the columns were made from
   const float* x() const { return x_.data(); }
   const float* y() const { return y_.data(); }
   const float* z() const { return z_.data(); }
   const float* variance() const { return variance_.data(); }  // of the angle, rad^2
 
  private:
-  int size_;
+  std::vector<int> index_;
   std::vector<float> x_, y_, z_, variance_;
 };
 
@@ -36,7 +38,7 @@ struct EpipolarArc {
   double max_epipole_cosine = 1;  // matches nearer to the epipole or its antipode are left out
 };
 
-/// Replaces `indices` by those of the bearings on the arc, ascending.
+/// Replaces `indices` by those of the bearings on the arc, in the order of the columns.
 void FindOnArc(const BearingColumns& bearings, const EpipolarArc& arc, std::vector<int>* indices);
 
 }  // namespace orb360

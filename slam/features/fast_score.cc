@@ -17,18 +17,21 @@ HWY_INLINE auto NotLess(V a, V b) {
   return hn::Eq(hn::Max(a, b), a);
 }
 
-// Largest over the 16 arcs of the smallest of 9 neighbouring values, by doubling: minima of 2, 4
-// and 8 neighbours, then the ninth. 80 min/max instructions for a whole vector of pixels.
-template <class V>
-HWY_INLINE V BestArc(const V (&d)[16]) {
-  V m[16];
-  V n[16];
-  for (int i = 0; i < 16; ++i) m[i] = hn::Min(d[i], d[(i + 1) & 15]);
-  for (int i = 0; i < 16; ++i) n[i] = hn::Min(m[i], m[(i + 2) & 15]);
-  V best = hn::Min(hn::Min(n[0], n[4]), d[8]);
-  for (int i = 1; i < 16; ++i) {
-    best = hn::Max(best, hn::Min(hn::Min(n[i], n[(i + 4) & 15]), d[(i + 8) & 15]));
-  }
+// Over all arcs of 9 neighbours on the circle, the largest of their smallest values. The arcs from
+// k and k + 1 share 8 neighbours: the better of both is min(shared, max(first, last)), for every
+// second k, and the minima of 2, 4 and 8 neighbours come by doubling. 47 instructions.
+template <class V, class Smaller, class Larger>
+HWY_INLINE V BestArc(const V (&c)[16], Smaller smaller, Larger larger) {
+  V two[8];
+  V four[8];
+  for (int i = 0; i < 8; ++i) two[i] = smaller(c[2 * i + 1], c[(2 * i + 2) & 15]);
+  for (int i = 0; i < 8; ++i) four[i] = smaller(two[i], two[(i + 1) & 7]);
+  const auto pair_of_arcs = [&](int i) HWY_ATTR {
+    const V eight = smaller(four[i], four[(i + 2) & 7]);
+    return smaller(eight, larger(c[2 * i], c[(2 * i + 9) & 15]));
+  };
+  V best = pair_of_arcs(0);
+  for (int i = 1; i < 8; ++i) best = larger(best, pair_of_arcs(i));
   return best;
 }
 
@@ -36,31 +39,25 @@ template <class D>
 HWY_INLINE void ScoreBlock(D d, const uint8_t* center, const ptrdiff_t (&circle)[16],
                            uint8_t min_score, uint8_t* score) {
   using V = hn::Vec<D>;
+  const auto min = [](V a, V b) HWY_ATTR { return hn::Min(a, b); };
+  const auto max = [](V a, V b) HWY_ATTR { return hn::Max(a, b); };
   const V p = hn::LoadU(d, center);
-  V brighter[16];
-  V darker[16];
-  // Every arc of 9 covers two neighbours of the four compass points: most blocks end here.
-  for (int i = 0; i < 16; i += 4) {
-    const V c = hn::LoadU(d, center + circle[i]);
-    brighter[i] = hn::SaturatedSub(c, p);
-    darker[i] = hn::SaturatedSub(p, c);
-  }
-  const auto adjacent = [](const V(&x)[16]) {
-    return hn::Min(hn::Max(x[0], x[8]), hn::Max(x[4], x[12]));
-  };
-  const V possible = hn::Max(adjacent(brighter), adjacent(darker));
   const V threshold = hn::Set(d, min_score);
+  V c[16];
+  // Every arc of 9 covers two neighbours of the four compass points: many blocks end here.
+  for (int i = 0; i < 16; i += 4) c[i] = hn::LoadU(d, center + circle[i]);
+  const V brighter = hn::Min(hn::Max(c[0], c[8]), hn::Max(c[4], c[12]));
+  const V darker = hn::Max(hn::Min(c[0], c[8]), hn::Min(c[4], c[12]));
+  const V possible = hn::Max(hn::SaturatedSub(brighter, p), hn::SaturatedSub(p, darker));
   if (hn::AllFalse(d, NotLess(possible, threshold))) {
     hn::StoreU(hn::Zero(d), d, score);
     return;
   }
   for (int i = 0; i < 16; ++i) {
-    if (i % 4 == 0) continue;
-    const V c = hn::LoadU(d, center + circle[i]);
-    brighter[i] = hn::SaturatedSub(c, p);
-    darker[i] = hn::SaturatedSub(p, c);
+    if (i % 4 != 0) c[i] = hn::LoadU(d, center + circle[i]);
   }
-  const V best = hn::Max(BestArc(brighter), BestArc(darker));
+  const V best =
+      hn::Max(hn::SaturatedSub(BestArc(c, min, max), p), hn::SaturatedSub(p, BestArc(c, max, min)));
   hn::StoreU(hn::IfThenElseZero(NotLess(best, threshold), best), d, score);
 }
 

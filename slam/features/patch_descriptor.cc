@@ -42,22 +42,39 @@ HWY_INLINE V Atan2(D d, V y, V x) {
   return hn::IfThenElse(hn::Lt(x, hn::Zero(d)), left, right);
 }
 
+// atan(t) / t of a small t, from its square.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V AtanSeries(D d, V square) {
+  return hn::MulAdd(hn::MulAdd(square, hn::Set(d, 0.2f), hn::Set(d, -1.0f / 3.0f)), square,
+                    hn::Set(d, 1.0f));
+}
+
 // Byte offsets from the centre of the pixels at tangent coordinates (a, b).
 template <class D, class V = hn::Vec<D>, class DI = hn::RebindToSigned<D>>
 HWY_INLINE hn::Vec<DI> Offsets(D d, const TangentSampling& at, int stride, V a, V b) {
   const DI di;
-  if (!at.exact) {
-    const float tangent = at.sine / at.cosine;
-    const V shear = hn::Set(d, -at.k * tangent);
-    const V sag = hn::Set(d, 0.5f * at.k * tangent);
-    const V east =
-        hn::Mul(hn::Mul(a, hn::Set(d, at.east_scale)), hn::MulAdd(shear, b, hn::Set(d, 1.0f)));
-    const V south = hn::Mul(hn::MulAdd(hn::Mul(sag, a), a, b), hn::Set(d, -at.fy * at.k));
-    return hn::Add(hn::Mul(hn::NearestInt(south), hn::Set(di, stride)), hn::NearestInt(east));
-  }
-  // Exactly, in a frame whose meridian is the patch's own: nothing depends on the longitude.
   const V east = hn::Mul(a, hn::Set(d, at.k));
   const V south = hn::Mul(b, hn::Set(d, at.k));
+  const V one = hn::Set(d, 1.0f);
+  if (!at.exact) {
+    const float secant = 1.0f / at.cosine;
+    // 1 / forward = sec / (1 + w).
+    const V w = hn::Mul(hn::Set(d, at.sine * secant), south);
+    V inverse = hn::Sub(one, w);
+    for (int i = 0; i < 3; ++i) inverse = hn::NegMulAdd(inverse, w, one);
+    const V q = hn::Mul(hn::Mul(east, hn::Set(d, secant)), inverse);
+    const V q2 = hn::Mul(q, q);
+    const V longitude = hn::Mul(q, AtanSeries(d, q2));
+    // forward (sqrt(1 + q^2) - 1).
+    const V e = hn::Mul(hn::Mul(q, east), hn::NegMulAdd(hn::Set(d, 0.125f), q2, hn::Set(d, 0.5f)));
+    const V ce = hn::Mul(hn::Set(d, at.cosine), e);
+    const V shrink = hn::NegMulAdd(ce, hn::Sub(one, ce), one);
+    const V p = hn::Mul(hn::MulAdd(hn::Set(d, at.sine), e, south), shrink);
+    const V down = hn::Mul(p, AtanSeries(d, hn::Mul(p, p)));
+    return hn::Add(hn::Mul(hn::NearestInt(hn::Mul(hn::Set(d, -at.fy), down)), hn::Set(di, stride)),
+                   hn::NearestInt(hn::Mul(hn::Set(d, at.fx), longitude)));
+  }
+  // Exactly, in a frame whose meridian is the patch's own: nothing depends on the longitude.
   const V forward = hn::MulAdd(hn::Set(d, at.sine), south, hn::Set(d, at.cosine));
   const V up = hn::NegMulAdd(hn::Set(d, at.cosine), south, hn::Set(d, at.sine));
   const V longitude = Atan2(d, east, forward);

@@ -11,50 +11,59 @@ namespace orb360 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+// (kWeightOne - weight) * first + weight * second, rounded and divided by kWeightOne.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V Blend(D d, V first, V second, V weight) {
+  const V rest = hn::Sub(hn::Set(d, ResampleTaps::kWeightOne), weight);
+  const V sum = hn::Add(hn::Mul(first, rest), hn::Mul(second, weight));
+  return hn::ShiftRight<ResampleTaps::kWeightBits>(
+      hn::Add(sum, hn::Set(d, ResampleTaps::kWeightOne / 2)));
+}
+
+HWY_INLINE uint8_t Blend(int first, int second, int weight) {
+  const int sum = first * (ResampleTaps::kWeightOne - weight) + second * weight;
+  return static_cast<uint8_t>((sum + ResampleTaps::kWeightOne / 2) >> ResampleTaps::kWeightBits);
+}
+
 void BlendRows(const uint8_t* upper, const uint8_t* lower, int weight, int count,
-               uint16_t* blended) {
+               uint8_t* blended) {
   const hn::ScalableTag<uint16_t> d;
+  const hn::RebindToSigned<decltype(d)> di;
   const hn::Rebind<uint8_t, decltype(d)> d8;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const auto second = hn::Set(d, static_cast<uint16_t>(weight));
-  const auto first = hn::Set(d, static_cast<uint16_t>(ResampleTaps::kWeightOne - weight));
+  const auto weights = hn::Set(d, static_cast<uint16_t>(weight));
   int x = 0;
   for (; x + lanes <= count; x += lanes) {
     const auto a = hn::PromoteTo(d, hn::LoadU(d8, upper + x));
     const auto b = hn::PromoteTo(d, hn::LoadU(d8, lower + x));
-    hn::StoreU(hn::Add(hn::Mul(a, first), hn::Mul(b, second)), d, blended + x);
+    hn::StoreU(hn::DemoteTo(d8, hn::BitCast(di, Blend(d, a, b, weights))), d8, blended + x);
   }
-  for (; x < count; ++x) {
-    blended[x] =
-        static_cast<uint16_t>(upper[x] * (ResampleTaps::kWeightOne - weight) + lower[x] * weight);
-  }
+  for (; x < count; ++x) blended[x] = Blend(upper[x], lower[x], weight);
 }
 
-void ResampleRow(const uint16_t* blended, const ResampleTaps& taps, uint8_t* out) {
-  constexpr int kShift = 2 * ResampleTaps::kWeightBits;
-  const hn::CappedTag<int32_t, 16> d;
-  const hn::Rebind<uint8_t, decltype(d)> d8;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const int count = static_cast<int>(taps.index.size());
-  const auto one = hn::Set(d, ResampleTaps::kWeightOne);
-  const auto half = hn::Set(d, 1 << (kShift - 1));
-  const auto low = hn::Set(d, 0xFFFF);
+void ResampleRow(const uint8_t* row, const ResampleTaps& taps, uint8_t* out) {
+  const int count = taps.size();
   int x = 0;
-  for (; x + lanes <= count; x += lanes) {
-    // Both neighbours in one 32-bit word (little endian: the first is the low half).
-    const auto offsets = hn::ShiftLeft<1>(hn::LoadU(d, taps.index.data() + x));
-    const auto pair = hn::GatherOffset(d, reinterpret_cast<const int32_t*>(blended), offsets);
-    const auto weight = hn::LoadU(d, taps.weight.data() + x);
-    const auto first = hn::Mul(hn::And(pair, low), hn::Sub(one, weight));
-    const auto second = hn::Mul(hn::ShiftRight<16>(pair), weight);
-    const auto sum = hn::ShiftRight<kShift>(hn::Add(hn::Add(first, second), half));
-    hn::StoreU(hn::DemoteTo(d8, sum), d8, out + x);
+#if HWY_TARGET != HWY_SCALAR  // which has no vectors of 16 bytes
+  const hn::Full128<uint8_t> d8;
+  const hn::Full128<uint16_t> d16;
+  const hn::Full128<int16_t> di16;
+  const hn::Rebind<uint8_t, decltype(d16)> d8half;
+  const auto low = hn::Set(d16, 0xFF);
+  const int num_fast = taps.lookup.empty() ? 0 : count - count % 8;
+  for (; x < num_fast; x += 8) {
+    const auto source = hn::LoadU(d8, row + taps.index[x]);
+    // Both samples of a pixel in one 16-bit word (little endian: the first is the low half).
+    const auto pairs = hn::BitCast(
+        d16, hn::TableLookupBytes(source, hn::LoadU(d8, taps.lookup.data() + ptrdiff_t{2} * x)));
+    const auto blended = Blend(d16, hn::And(pairs, low), hn::ShiftRight<8>(pairs),
+                               hn::LoadU(d16, taps.weight.data() + x));
+    hn::StoreU(hn::DemoteTo(d8half, hn::BitCast(di16, blended)), d8half, out + x);
   }
+#endif
   for (; x < count; ++x) {
-    const uint16_t* pair = blended + taps.index[x];
-    const int sum = pair[0] * (ResampleTaps::kWeightOne - taps.weight[x]) +
-                    pair[1] * taps.weight[x] + (1 << (kShift - 1));
-    out[x] = static_cast<uint8_t>(sum >> kShift);
+    const uint8_t* pair = row + taps.index[x];
+    out[x] = Blend(pair[0], pair[1], taps.weight[x]);
   }
 }
 
@@ -94,26 +103,35 @@ HWY_EXPORT(BlendRows);
 HWY_EXPORT(ResampleRow);
 HWY_EXPORT(HalveRows);
 
-ResampleTaps::ResampleTaps(int source_size, int target_size)
-    : index(target_size), weight(target_size) {
-  for (int i = 0; i < target_size; ++i) {
+ResampleTaps::ResampleTaps(int source, int target)
+    : source_size(source), index(target), weight(target) {
+  for (int i = 0; i < target; ++i) {
     // (i + 1/2) * source / target - 1/2, as a fraction over 2 * target.
-    const int64_t numerator = (int64_t{2} * i + 1) * source_size - target_size;
-    const int64_t denominator = int64_t{2} * target_size;
+    const int64_t numerator = (int64_t{2} * i + 1) * source - target;
+    const int64_t denominator = int64_t{2} * target;
     const int64_t whole = numerator >= 0 ? numerator / denominator : -1;
     const int64_t remainder = numerator - whole * denominator;
     index[i] = static_cast<int32_t>(whole);
-    weight[i] = static_cast<int32_t>((remainder * kWeightOne + target_size) / denominator);
+    weight[i] = static_cast<uint16_t>((remainder * kWeightOne + target) / denominator);
+  }
+  const auto place = [&](int i) { return index[i] - index[i - i % 8]; };
+  for (int i = 0; i < target; ++i) {
+    if (place(i) + 1 > kResampleReach) {
+      lookup.clear();
+      return;
+    }
+    lookup.push_back(static_cast<uint8_t>(place(i)));
+    lookup.push_back(static_cast<uint8_t>(place(i) + 1));
   }
 }
 
 void BlendRows(const uint8_t* upper, const uint8_t* lower, int weight, int count,
-               uint16_t* blended) {
+               uint8_t* blended) {
   HWY_DYNAMIC_DISPATCH(BlendRows)(upper, lower, weight, count, blended);
 }
 
-void ResampleRow(const uint16_t* blended, const ResampleTaps& taps, uint8_t* out) {
-  HWY_DYNAMIC_DISPATCH(ResampleRow)(blended, taps, out);
+void ResampleRow(const uint8_t* row, const ResampleTaps& taps, uint8_t* out) {
+  HWY_DYNAMIC_DISPATCH(ResampleRow)(row, taps, out);
 }
 
 void HalveRows(const uint8_t* upper, const uint8_t* lower, int count, uint8_t* out) {

@@ -12,19 +12,27 @@ struct ResampleTaps {
   static constexpr int kWeightBits = 7;
   static constexpr int kWeightOne = 1 << kWeightBits;
 
-  ResampleTaps(int source_size, int target_size);
+  ResampleTaps(int source, int target);
 
-  std::vector<int32_t> index;   // of the first of the two samples; -1 where it lies before the row
-  std::vector<int32_t> weight;  // of the second, in 1/kWeightOne
+  int size() const { return static_cast<int>(index.size()); }
+
+  int source_size;
+  std::vector<int32_t> index;    // of the first of the two samples; -1 where it lies before the row
+  std::vector<uint16_t> weight;  // of the second, in 1/kWeightOne
+  /// Both samples' places after index[i - i % 8], for 8 pixels at a time; empty where these lie
+  /// more than 16 samples apart.
+  std::vector<uint8_t> lookup;
 };
 
-/// blended[x] = (kWeightOne - weight) * upper[x] + weight * lower[x], for `count` pixels.
-void BlendRows(const uint8_t* upper, const uint8_t* lower, int weight, int count,
-               uint16_t* blended);
+/// blended[x] = ((kWeightOne - weight) * upper[x] + weight * lower[x]) / kWeightOne, rounded to
+/// nearest, for `count` pixels.
+void BlendRows(const uint8_t* upper, const uint8_t* lower, int weight, int count, uint8_t* blended);
 
-/// Row of taps.index.size() pixels from a blended one; reads blended[-1] where the first index is
-/// -1, and one element beyond the last index. Rounds to nearest.
-void ResampleRow(const uint16_t* blended, const ResampleTaps& taps, uint8_t* out);
+/// taps.size() pixels of `row`, rounded to nearest; `out` may be `row` where it shrinks. Reads
+/// row[-1] where the first index is -1, and up to kResampleReach pixels beyond the last index,
+/// whose values do not matter but for the first.
+inline constexpr int kResampleReach = 15;
+void ResampleRow(const uint8_t* row, const ResampleTaps& taps, uint8_t* out);
 
 /// Means of 2x2 pixels, rounded: `count` of them from two rows of twice as many.
 void HalveRows(const uint8_t* upper, const uint8_t* lower, int count, uint8_t* out);

@@ -26,7 +26,8 @@ bool IsWhole(int index) { return index >= kFirstWhole && index <= kLastWhole; }
 double CosineOfBand(int index) { return std::sin(std::numbers::pi * (index + 0.5) / kSphereBands); }
 
 // Widths from the level's to the band's, each at least half of the one before, so that two taps
-// suffice for a step; all multiples of the number of cells, so that a roll by whole cells stays one.
+// suffice for a step; all multiples of the number of cells, so that a roll by whole cells stays
+// one.
 std::vector<ResampleTaps> Steps(int level_width, int band_width) {
   std::vector<ResampleTaps> steps;
   for (int width = level_width; width > band_width;) {
@@ -41,19 +42,16 @@ std::vector<ResampleTaps> Steps(int level_width, int band_width) {
 // All rows of the band, compressed to its width, with margins left and right.
 void Compress(const PyramidLevel& level, SphereBand* band) {
   const int level_width = level.camera.width();
-  const std::vector<ResampleTaps> steps = Steps(level_width, band->width);
-  std::vector<uint8_t> row(level_width + 2);
-  std::vector<uint16_t> widened(level_width + 2);
+  std::vector<uint8_t> row(level_width + 2 + kResampleReach);
   for (int r = 0; r < band->padded.rows; ++r) {
     std::memcpy(row.data() + 1, level.padded.ptr(band->first_row + r + kMarginY) + kMarginX,
                 level_width);
     int width = level_width;
-    for (const ResampleTaps& taps : steps) {
+    for (const ResampleTaps& taps : band->compression) {
       row[0] = row[width];
       row[width + 1] = row[1];
-      BlendRows(row.data(), row.data(), 0, width + 2, widened.data());
-      ResampleRow(widened.data() + 1, taps, row.data() + 1);
-      width = static_cast<int>(taps.index.size());
+      ResampleRow(row.data() + 1, taps, row.data() + 1);
+      width = taps.size();
     }
     uint8_t* out = band->padded.ptr(r) + kMarginX;
     std::memcpy(out, row.data() + 1, band->width);
@@ -82,7 +80,12 @@ void CutBand(const PyramidLevel& level, int index, SphereBand* band) {
     return;
   }
   const double cells = width * CosineOfBand(index) / kSphereColumns;
-  band->width = kSphereColumns * std::max(1, static_cast<int>(std::lround(cells)));
+  const int band_width = kSphereColumns * std::max(1, static_cast<int>(std::lround(cells)));
+  if (band->compression.empty() || band->compression.front().source_size != width ||
+      band->width != band_width) {
+    band->compression = Steps(width, band_width);
+  }
+  band->width = band_width;
   band->first_row = band->y_begin - kMarginY;
   band->padded.create(band->y_end - band->y_begin + 2 * kMarginY, band->width + 2 * kMarginX,
                       CV_8U);

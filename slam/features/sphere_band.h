@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
+#include "slam/features/row_resample.h"
 #include "slam/features/sphere_pyramid.h"
 
 namespace orb360 {
@@ -24,8 +26,9 @@ struct SphereBand {
   int y_begin;  // rows of the level: [y_begin, y_end)
   int y_end;
   int width;
-  int first_row;   // the level's row that is row 0 of `padded`
-  cv::Mat padded;  // CV_8U, width + 2 PyramidLevel::kMarginX columns
+  int first_row;                          // the level's row that is row 0 of `padded`
+  std::vector<ResampleTaps> compression;  // from the level's width to the band's, one after another
+  cv::Mat padded;                         // CV_8U, width + 2 PyramidLevel::kMarginX columns
 
   ptrdiff_t stride() const { return static_cast<ptrdiff_t>(padded.step); }
   /// Pixel at column x of the band and row y of the level.

@@ -28,11 +28,11 @@ struct Resampling {
         columns(from.camera.width(), to->camera.width()),
         rows(from.camera.height(), to->camera.height()) {}
 
-  void ComputeRow(int y, std::vector<uint16_t>* scratch) const {
+  void ComputeRow(int y, std::vector<uint8_t>* scratch) const {
     const int source_width = source->camera.width();
     const ptrdiff_t stride = static_cast<ptrdiff_t>(source->padded.step);
     const uint8_t* upper = source->image().ptr(0) + rows.index[y] * stride - 1;
-    scratch->resize(source_width + 2);
+    scratch->resize(source_width + 2 + kResampleReach);
     BlendRows(upper, upper + stride, rows.weight[y], source_width + 2, scratch->data());
     ResampleRow(scratch->data() + 1, columns, target->image().ptr(y));
   }
@@ -43,7 +43,7 @@ void Halve(const PyramidLevel& source, PyramidLevel* target) {
   if (2 * target->camera.width() != source.camera.width() ||
       2 * target->camera.height() != source.camera.height()) {
     const Resampling resampling(source, target);
-    std::vector<uint16_t> scratch;
+    std::vector<uint8_t> scratch;
     for (int y = 0; y < target->camera.height(); ++y) resampling.ComputeRow(y, &scratch);
     return;
   }
@@ -127,7 +127,7 @@ void BuildSpherePyramid(const cv::Mat& gray, int num_levels, std::vector<Pyramid
   }
 #pragma omp parallel
   {
-    std::vector<uint16_t> scratch;
+    std::vector<uint8_t> scratch;
     for (const Resampling& resampling : resamplings) {
 #pragma omp for schedule(static) nowait
       for (int y = 0; y < resampling.target->camera.height(); ++y) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -11,16 +12,19 @@ namespace orb360 {
 ///
 /// A patch is described in tangent coordinates (a to the east, b to the south), in units of the
 /// pixel at the equator, so that its shape on the sphere, and with it what is sampled, is the same
-/// at every latitude and camera rotation. To second order a point is at
-///   du = c a / cos(lat) * (1 - k b tan(lat)),   dv = b + k a^2 tan(lat) / 2,   k = 2 pi / width,
-/// c the band's compression (sphere_band.h). Where the third order exceeds half a pixel, or points
-/// lie more than kMaxColumns aside, they are projected exactly. Single precision: the error stays
-/// below 0.01 pixels.
+/// at every latitude and camera rotation. With alpha = k a, beta = k b, k = 2 pi / width, a point
+/// seen from latitude phi is
+///   forward = cos(phi) + beta sin(phi),   longitude = atan(alpha / forward),
+///   latitude - phi = -atan((beta + e sin(phi)) / (1 + e cos(phi))),
+///   e = sqrt(forward^2 + alpha^2) - forward.
+/// Where patches are small, quotients, root and arctangents are series, at most kMaxError off;
+/// where these would be more, or points lie more than kMaxColumns aside, they are exact.
 struct TangentSampling {
   /// Points of a patch never lie farther than this from its centre, in pixels of the level.
   static constexpr float kMaxRadius = 15.0f;
   /// Columns that inexact sampling reaches at most to either side; exact sampling wraps.
   static constexpr int kMaxColumns = 26;
+  static constexpr double kMaxError = 0.25;  // of the series at kMaxRadius, pixels
 
   /// `u`, `v`: column of the band, which is `band_width` wide, and row of the level.
   TangentSampling(const EquirectangularCamera& level, int band_width, int u, int v)
@@ -29,17 +33,17 @@ struct TangentSampling {
     const double angle_of_pixel = level.AngleOfPixels(1.0);
     const double compression = static_cast<double>(band_width) / level.width();
     const double cos_latitude = std::cos(latitude);
-    // Of atan2(k a, cos + k b sin) the leading third-order term, a^3 k^2 / (3 cos^3).
-    const double reach = angle_of_pixel * kMaxRadius / cos_latitude;
-    const double third_order = kMaxRadius * compression / cos_latitude * reach * reach / 3.0;
-    const double columns =
-        kMaxRadius * compression / cos_latitude * (1.0 + reach * std::abs(std::sin(latitude)));
-    exact = third_order > 0.5 || columns > kMaxColumns;
+    const double reach = angle_of_pixel * kMaxRadius;
+    const double w = reach * std::abs(std::tan(latitude));
+    const double q = reach / cos_latitude / std::max(1.0 - w, 1e-3);  // tangent of the longitude
+    const double scale = level.fx() * compression;
+    // First omitted terms of 1 / (1 + w) and atan(q), in pixels.
+    const double error = scale * (q * std::pow(w, 5) + std::pow(q, 7) / 7.0);
+    exact = error > kMaxError || scale * q > kMaxColumns;
     k = static_cast<float>(angle_of_pixel);
     sine = static_cast<float>(std::sin(latitude));
     cosine = static_cast<float>(cos_latitude);
-    east_scale = static_cast<float>(compression / cos_latitude);
-    fx = static_cast<float>(level.fx() * compression);
+    fx = static_cast<float>(scale);
     fy = static_cast<float>(level.fy());
   }
 
@@ -51,8 +55,7 @@ struct TangentSampling {
   float k;     // angle of a pixel at the equator, rad
   float sine;  // of the centre's latitude
   float cosine;
-  float east_scale;  // columns of the band per unit to the east
-  float fx;          // pixels of the band per radian; fy is negative
+  float fx;  // pixels of the band per radian; fy is negative
   float fy;
 };
 
