@@ -1,5 +1,8 @@
 #include "slam/features/matching.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "slam/features/hamming.h"
@@ -25,17 +28,23 @@ std::vector<Match> KeepMutual(const std::vector<NearestTwo>& forward,
   return matches;
 }
 
-// For each of the second set, the nearest of the first among those that chose it.
-std::vector<int> InvertBest(const std::vector<NearestTwo>& forward, size_t second_size) {
-  std::vector<int> chosen(second_size, -1);
-  for (size_t i = 0; i < forward.size(); ++i) {
-    const int j = forward[i].best_index;
-    if (j < 0) continue;
-    if (chosen[j] < 0 || forward[i].best_distance < forward[chosen[j]].best_distance) {
-      chosen[j] = static_cast<int>(i);
+// For each feature of `from`, the nearest two of `to` within the radius.
+std::vector<NearestTwo> FindNearby(const Features& from, const Features& to, double radius) {
+  std::vector<NearestTwo> nearest(from.size());
+  const double min_cosine = std::cos(std::min(radius, std::numbers::pi));
+#pragma omp parallel
+  {
+    std::vector<int> candidates;
+#pragma omp for schedule(static)
+    for (int i = 0; i < from.size(); ++i) {
+      candidates.clear();
+      to.grid.Query(from.bearings[i], radius, &candidates);
+      std::erase_if(candidates,
+                    [&](int j) { return to.bearings[j].dot(from.bearings[i]) < min_cosine; });
+      nearest[i] = FindNearestTwo(from.descriptors[i], to.descriptors, candidates);
     }
   }
-  return chosen;
+  return nearest;
 }
 
 }  // namespace
@@ -65,24 +74,19 @@ std::vector<Match> MatchMutually(std::span<const Descriptor> first,
 
 std::vector<Match> MatchNearby(const Features& first, const Features& second, double radius,
                                const MatchOptions& options) {
-  std::vector<NearestTwo> forward(first.size());
-#pragma omp parallel
-  {
-    std::vector<int> candidates;
-#pragma omp for schedule(static)
-    for (int i = 0; i < first.size(); ++i) {
-      candidates.clear();
-      second.grid.Query(first.bearings[i], radius, &candidates);
-      NearestTwo& nearest = forward[i];
-      nearest = FindNearestTwo(first.descriptors[i], second.descriptors, candidates);
-      if (nearest.second_index >= 0 && second.keypoints[nearest.second_index].level !=
-                                           second.keypoints[nearest.best_index].level) {
-        nearest.second_distance = NearestTwo::kNone;
-      }
-      if (!IsDistinct(nearest, options)) nearest.best_index = -1;
+  std::vector<NearestTwo> forward = FindNearby(first, second, radius);
+  for (NearestTwo& nearest : forward) {
+    if (nearest.second_index >= 0 && second.keypoints[nearest.second_index].level !=
+                                         second.keypoints[nearest.best_index].level) {
+      nearest.second_distance = NearestTwo::kNone;
     }
+    if (!IsDistinct(nearest, options)) nearest.best_index = -1;
   }
-  return KeepMutual(forward, InvertBest(forward, second.size()));
+  std::vector<int> backward;
+  for (const NearestTwo& nearest : FindNearby(second, first, radius)) {
+    backward.push_back(nearest.best_index);
+  }
+  return KeepMutual(forward, backward);
 }
 
 }  // namespace orb360

@@ -38,17 +38,39 @@ TEST(Matching, TwinsFailTheRatioTest) {
   for (const Match& match : matches) EXPECT_NE(match.first, 4);
 }
 
-TEST(Matching, NearbyMatchesStayWithinTheRadius) {
+TEST(Matching, NearbyMatchesAreThoseOfBruteForceWithinTheRadius) {
   SyntheticScene scene(300);
   const auto first = scene.See(Rigid3());
-  const Rigid3 turned{ExpSo3({0, 0, 0.2}), Eigen::Vector3d::Zero()};
-  const auto second = scene.See(turned);
-  EXPECT_GT(MatchNearby(*first, *second, 0.21, {}).size(), 290u);
-  for (const Match& match : MatchNearby(*first, *second, 0.1, {})) {
-    EXPECT_LT(AngleBetween(first->bearings[match.first], second->bearings[match.second]), 0.2);
-    EXPECT_EQ(match.first, match.second);
+  const auto second = scene.See({ExpSo3({0, 0, 0.2}), Eigen::Vector3d::Zero()});
+  for (const double radius : {0.05, 0.1, 0.21, 3.2}) {
+    std::vector<int> expected;
+    for (int i = 0; i < 300; ++i) {
+      if (AngleBetween(first->bearings[i], second->bearings[i]) <= radius) expected.push_back(i);
+    }
+    std::vector<int> found;
+    for (const Match& match : MatchNearby(*first, *second, radius, {})) {
+      EXPECT_EQ(match.first, match.second);
+      found.push_back(match.first);
+    }
+    EXPECT_EQ(found, expected) << radius;
   }
-  EXPECT_LT(MatchNearby(*first, *second, 0.05, {}).size(), 150u);
+}
+
+TEST(Matching, NearbyMatchesAreMutual) {
+  SyntheticScene scene(2);
+  const auto first = scene.See(Rigid3());
+  const auto second = scene.See(Rigid3());
+  // Both want feature 0 of the second, which prefers the first of them.
+  for (const auto& features : {first, second}) {
+    features->bearings[1] = features->bearings[0];
+    features->grid = SphereGrid(features->bearings);
+  }
+  first->descriptors[1] = first->descriptors[0];
+  first->descriptors[1][0] ^= 1;
+  const std::vector<Match> matches = MatchNearby(*first, *second, 0.1, {});
+  ASSERT_EQ(matches.size(), 1u);
+  EXPECT_EQ(matches[0].first, 0);
+  EXPECT_EQ(matches[0].second, 0);
 }
 
 }  // namespace
