@@ -28,14 +28,17 @@ ConfigSchema MakeConfigSchema(Options* options) {
              "share of the matches that must agree with the motion", 0.1, 1.0);
 
   TrackerOptions& tracker = options->tracker;
-  schema.Add("tracker.narrow_radius", &tracker.narrow_radius,
+  schema.Add("tracker.motion_radius", &tracker.motion_radius,
              "search window around predicted landmarks, radians", 0.005, 1.0);
-  schema.Add("tracker.wide_radius", &tracker.wide_radius,
-             "search window when the narrow one finds too little, radians", 0.005, 1.5);
+  schema.Add("tracker.nearby_radius", &tracker.nearby_radius,
+             "angle within which frames are matched when the prediction fails, radians", 0.01, 3.2);
   schema.Add("tracker.local_radius_sigmas", &tracker.local_radius_sigmas,
              "search window for the local map, standard deviations of a feature", 1.0, 50.0);
   schema.Add("tracker.min_motion_inliers", &tracker.min_motion_inliers,
              "landmarks of the last frame that must be found again", 6, 1000);
+  schema.Add("tracker.min_inlier_share", &tracker.min_inlier_share,
+             "share of matches with the local map that must agree, or another start is tried", 0.0,
+             1.0);
   schema.Add("tracker.min_inliers", &tracker.min_inliers,
              "landmarks of the local map that make a frame tracked", 6, 1000);
 
@@ -49,8 +52,10 @@ ConfigSchema MakeConfigSchema(Options* options) {
              10.0);
   schema.Add("keyframe.mapping_frames", &keyframe.mapping_frames,
              "frames after which the mapping of a keyframe is adopted", 1, 100);
+  schema.Add("keyframe.min_held_share", &keyframe.min_held_share,
+             "earlier when fewer of its landmarks are still tracked", 0.0, 1.0);
   schema.Add("keyframe.urgent_inliers", &keyframe.urgent_inliers,
-             "with fewer tracked landmarks it is adopted at the next frame", 0, 10000);
+             "with fewer tracked landmarks a keyframe is made, and adopted at once", 0, 10000);
   schema.Add("keyframe.local_keyframes", &keyframe.local_keyframes,
              "neighbouring keyframes whose landmarks are searched in each frame", 1, 1000);
 

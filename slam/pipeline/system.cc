@@ -57,7 +57,7 @@ FrameReport System::Process(const Frame& frame) {
 
   ++num_processed_;
   const Clock::time_point adoption = Clock::now();
-  if (job_ && num_processed_ >= job_->adopt_at) AdoptMapping();
+  if (job_ && MustAdopt()) AdoptMapping();
   report.timing_ms["adoption"] = MillisecondsSince(adoption);
 
   const Clock::time_point tracking = Clock::now();
@@ -284,7 +284,12 @@ void System::CreateMap(const PendingFrame& first, const PendingFrame& second,
   local_ = MakeLocalMap(map_, keyframe2, options_.keyframe.local_keyframes);
   expected_.clear();
   found_.clear();
-  before_last_.reset();
+  before_last_ = {first.index,
+                  first.timestamp,
+                  first.features,
+                  map_.keyframe(keyframe1).world_from_camera,
+                  map_.keyframe(keyframe1).landmarks,
+                  0};
   last_ = {second.index,
            second.timestamp,
            second.features,
@@ -314,7 +319,6 @@ bool System::NeedsKeyframe() const {
 }
 
 void System::StartMapping() {
-  const bool urgent = last_.num_inliers < options_.keyframe.urgent_inliers;
   TrackedFrame keyframe = last_;
   for (LandmarkId& id : keyframe.landmarks) id = map_.Resolve(id);
   // The map moves into the job and comes back with its result.
@@ -325,7 +329,15 @@ void System::StartMapping() {
   };
   map_ = Map();
   job_ = MappingJob{std::async(std::launch::async, std::move(integrate)), std::move(keyframe),
-                    num_processed_ + (urgent ? 1 : options_.keyframe.mapping_frames)};
+                    num_processed_ + options_.keyframe.mapping_frames};
+}
+
+// Depends on frames and matches only, never on whether the job is done: that would make results
+// depend on the machine.
+bool System::MustAdopt() const {
+  const KeyframeOptions& options = options_.keyframe;
+  return num_processed_ >= job_->adopt_at || last_.num_inliers < options.urgent_inliers ||
+         last_.num_inliers < options.min_held_share * job_->frame.num_inliers;
 }
 
 void System::AdoptMapping() {

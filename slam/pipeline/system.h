@@ -80,6 +80,7 @@ class System {
   Rigid3 PredictPose(double timestamp) const;
   bool NeedsKeyframe() const;
   void StartMapping();
+  bool MustAdopt() const;
   void AdoptMapping();
   void CountMap();
   void CountSightings(Map* map);

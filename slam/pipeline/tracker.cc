@@ -41,10 +41,15 @@ PoseFit FitPose(const Features& features, const Rigid3& initial,
   return fit;
 }
 
+struct LocalFit {
+  TrackResult result;
+  double inlier_share = 0;  // of the matches with the local map
+};
+
 // From a pose known to a few sigmas: all of the local map.
-std::optional<TrackResult> TrackLocalMap(const Features& features, const Rigid3& initial,
-                                         const LocalMap& local, double pixel_sigma,
-                                         const TrackerOptions& options) {
+std::optional<LocalFit> TrackLocalMap(const Features& features, const Rigid3& initial,
+                                      const LocalMap& local, double pixel_sigma,
+                                      const TrackerOptions& options) {
   const ProjectionSearchOptions search{
       .radius = options.local_radius_sigmas * pixel_sigma, .scale_radius = true, .ratio = 0.8};
   const ProjectionMatches matches =
@@ -61,7 +66,59 @@ std::optional<TrackResult> TrackLocalMap(const Features& features, const Rigid3&
   for (size_t l = 0; l < local.landmarks.size(); ++l) {
     if (matches.expected[l]) result.expected.push_back(local.landmarks[l].id);
   }
-  return result;
+  return LocalFit{std::move(result),
+                  fit.pose.num_inliers / static_cast<double>(matches.num_matches)};
+}
+
+// From the predicted pose, with the last frame's landmarks.
+std::optional<Rigid3> FollowPrediction(const Features& features, const Rigid3& predicted,
+                                       const TrackedFrame& last, const LocalMap& local,
+                                       const TrackerOptions& options) {
+  std::vector<LocalLandmark> recent;
+  for (const LandmarkId id : last.landmarks) {
+    const LocalLandmark* landmark = id == kNoId ? nullptr : local.Find(id);
+    if (landmark != nullptr) recent.push_back(*landmark);
+  }
+  const ProjectionMatches matches =
+      SearchByProjection(features, predicted, recent, {}, {.radius = options.motion_radius});
+  if (matches.num_matches < options.min_motion_inliers) return std::nullopt;
+  const PoseFit fit = FitPose(features, predicted, recent, matches.landmark_of_feature);
+  if (fit.pose.num_inliers < options.min_motion_inliers) return std::nullopt;
+  return fit.pose.world_from_camera;
+}
+
+// The pose from features paired with landmarks of the list, some of them wrongly.
+std::optional<Rigid3> EstimatePose(const Features& features,
+                                   std::span<const LocalLandmark* const> landmarks,
+                                   std::span<const int> paired, const TrackerOptions& options) {
+  std::vector<Eigen::Vector3d> points;
+  std::vector<Eigen::Vector3d> bearings;
+  std::vector<double> sigmas;
+  for (size_t i = 0; i < paired.size(); ++i) {
+    points.push_back(landmarks[i]->position);
+    bearings.push_back(features.bearings[paired[i]]);
+    sigmas.push_back(features.keypoints[paired[i]].sigma);
+  }
+  RansacOptions ransac;
+  ransac.min_inliers = options.min_motion_inliers;
+  const std::optional<AbsolutePose> pose = EstimateAbsolutePose(points, bearings, sigmas, ransac);
+  if (!pose) return std::nullopt;
+  return pose->camera_from_world.Inverse();
+}
+
+// From matches with the last frame's features, whatever the motion between them.
+std::optional<Rigid3> FollowFeatures(const Features& features, const TrackedFrame& last,
+                                     const LocalMap& local, const TrackerOptions& options) {
+  std::vector<const LocalLandmark*> landmarks;
+  std::vector<int> paired;
+  for (const Match& match : MatchNearby(*last.features, features, options.nearby_radius, {})) {
+    const LandmarkId id = last.landmarks[match.first];
+    const LocalLandmark* landmark = id == kNoId ? nullptr : local.Find(id);
+    if (landmark == nullptr) continue;
+    landmarks.push_back(landmark);
+    paired.push_back(match.second);
+  }
+  return EstimatePose(features, landmarks, paired, options);
 }
 
 }  // namespace
@@ -70,23 +127,20 @@ std::optional<TrackResult> TrackFromPrediction(const Features& features,
                                                const Rigid3& predicted_world_from_camera,
                                                const TrackedFrame& last, const LocalMap& local,
                                                double pixel_sigma, const TrackerOptions& options) {
-  std::vector<LocalLandmark> recent;
-  for (const LandmarkId id : last.landmarks) {
-    const LocalLandmark* landmark = id == kNoId ? nullptr : local.Find(id);
-    if (landmark != nullptr) recent.push_back(*landmark);
+  std::optional<TrackResult> best;
+  for (const bool by_prediction : {true, false}) {
+    const std::optional<Rigid3> start =
+        by_prediction
+            ? FollowPrediction(features, predicted_world_from_camera, last, local, options)
+            : FollowFeatures(features, last, local, options);
+    if (!start) continue;
+    std::optional<LocalFit> fit = TrackLocalMap(features, *start, local, pixel_sigma, options);
+    if (!fit) continue;
+    const bool convinces = fit->inlier_share >= options.min_inlier_share;
+    if (!best || fit->result.num_inliers > best->num_inliers) best = std::move(fit->result);
+    if (convinces) break;
   }
-  for (const double radius : {options.narrow_radius, options.wide_radius}) {
-    const ProjectionMatches matches =
-        SearchByProjection(features, predicted_world_from_camera, recent, {}, {.radius = radius});
-    if (matches.num_matches < options.min_motion_inliers) continue;
-    const PoseFit fit =
-        FitPose(features, predicted_world_from_camera, recent, matches.landmark_of_feature);
-    if (fit.pose.num_inliers < options.min_motion_inliers) continue;
-    std::optional<TrackResult> result =
-        TrackLocalMap(features, fit.pose.world_from_camera, local, pixel_sigma, options);
-    if (result) return result;
-  }
-  return std::nullopt;
+  return best;
 }
 
 std::optional<TrackResult> TrackWithoutPrediction(const Features& features, const LocalMap& local,
@@ -96,19 +150,17 @@ std::optional<TrackResult> TrackWithoutPrediction(const Features& features, cons
   descriptors.reserve(local.landmarks.size());
   for (const LocalLandmark& landmark : local.landmarks) descriptors.push_back(landmark.descriptor);
   const std::vector<Match> matches = MatchMutually(descriptors, features.descriptors, {});
-  std::vector<Eigen::Vector3d> points;
-  std::vector<Eigen::Vector3d> bearings;
-  std::vector<double> sigmas;
+  std::vector<const LocalLandmark*> landmarks;
+  std::vector<int> paired;
   for (const Match& match : matches) {
-    points.push_back(local.landmarks[match.first].position);
-    bearings.push_back(features.bearings[match.second]);
-    sigmas.push_back(features.keypoints[match.second].sigma);
+    landmarks.push_back(&local.landmarks[match.first]);
+    paired.push_back(match.second);
   }
-  RansacOptions ransac;
-  ransac.min_inliers = options.min_motion_inliers;
-  const std::optional<AbsolutePose> pose = EstimateAbsolutePose(points, bearings, sigmas, ransac);
-  if (!pose) return std::nullopt;
-  return TrackLocalMap(features, pose->camera_from_world.Inverse(), local, pixel_sigma, options);
+  const std::optional<Rigid3> start = EstimatePose(features, landmarks, paired, options);
+  if (!start) return std::nullopt;
+  std::optional<LocalFit> fit = TrackLocalMap(features, *start, local, pixel_sigma, options);
+  if (!fit) return std::nullopt;
+  return std::move(fit->result);
 }
 
 }  // namespace orb360

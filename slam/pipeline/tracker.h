@@ -11,15 +11,19 @@
 namespace orb360 {
 
 struct TrackerOptions {
-  /// Search windows around the predicted position, radians, tried in this order until enough
-  /// landmarks of the last frame are found: smooth motion, then a jerk of the hand or a low frame
-  /// rate.
-  double narrow_radius = 0.05;
-  double wide_radius = 0.2;
+  /// Search window around the predicted positions of the last frame's landmarks, radians: smooth
+  /// motion.
+  double motion_radius = 0.05;
+  /// Angle within which features are matched with the last frame's where that convinces not,
+  /// radians: a jerk of the hand, a low frame rate, a start.
+  double nearby_radius = 0.3;
   /// Search window for the rest of the local map, in standard deviations of a feature's position.
   double local_radius_sigmas = 5.0;
   /// Matches of the last frame's landmarks that make the pose good enough to go on from.
   int min_motion_inliers = 20;
+  /// Share of the local map's matches that must agree with the pose, or another start is tried:
+  /// repeated texture lets the pose settle beside the truth.
+  double min_inlier_share = 0.6;
   /// Landmarks of the local map that make a frame tracked.
   int min_inliers = 30;
 };
@@ -41,9 +45,11 @@ struct TrackResult {
   std::vector<LandmarkId> expected;  // landmarks that should have been seen, ordered by id
 };
 
-/// Pose of a frame near to where it is predicted: landmarks of the last frame are searched around
-/// their predicted positions and the pose refined, then the same with the whole local map.
-/// Empty where too little is found. `pixel_sigma` is the angular noise on pyramid level 0, rad.
+/// Pose of a frame that follows `last`. Landmarks of the last frame are searched around their
+/// predicted positions, the pose refined, then the same with the whole local map. Where too few
+/// matches agree the start is instead P3P in RANSAC from matches with the last frame's features,
+/// and the pose with more landmarks wins. Empty where too little is found. `pixel_sigma` is the
+/// angular noise on pyramid level 0, rad.
 std::optional<TrackResult> TrackFromPrediction(const Features& features,
                                                const Rigid3& predicted_world_from_camera,
                                                const TrackedFrame& last, const LocalMap& local,

@@ -139,6 +139,17 @@ TEST(SystemSlow, TracksAtSixFramesASecond) {
   EXPECT_LT(error.rmse, 0.005 * error.length);
 }
 
+// 0.8 m from frame to frame, walls and floor 2 to 4 m away.
+TEST(SystemSlow, TracksLargeStepsBetweenFrames) {
+  std::vector<double> frames;
+  for (int i = 0; i < 16; ++i) frames.push_back(16.0 * i);
+  const Reconstruction result = Track(Hall(), frames);
+  EXPECT_EQ(result.frames.size(), frames.size());
+  EXPECT_EQ(result.lost, 0);
+  const PathError error = Compare(result.frames, frames);
+  EXPECT_LT(error.rmse, 0.005 * error.length);
+}
+
 TEST(SystemSlow, WaitsForMotionAndThenTracksTheBeginningBackwards) {
   std::vector<double> frames(15, 0.0);  // the camera stands still at first
   for (int i = 0; i < 60; ++i) frames.push_back(i);

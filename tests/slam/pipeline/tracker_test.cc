@@ -45,6 +45,15 @@ TEST_F(TrackerTest, FindsThePoseAndItsLandmarksFromARoughPrediction) {
   }
 }
 
+TEST_F(TrackerTest, FindsThePoseWhereThePredictionIsFarOff) {
+  const Rigid3 jerk{ExpSo3({0.0, 0.1, 0.15}), {0.5, -0.5, 0.0}};
+  const auto result = TrackFromPrediction(*scene_.See(truth_), last_.world_from_camera * jerk,
+                                          last_, local_, scene_.sigma, {});
+  ASSERT_TRUE(result.has_value());
+  ExpectNear(result->world_from_camera, truth_);
+  EXPECT_GT(result->num_inliers, 320);
+}
+
 TEST_F(TrackerTest, FindsThePoseWithoutAnyPrediction) {
   const Rigid3 turned{ExpSo3({0.4, 1.2, -2.0}), {-0.5, 0.3, 0.2}};
   const auto result = TrackWithoutPrediction(*scene_.See(turned), local_, scene_.sigma, {});
