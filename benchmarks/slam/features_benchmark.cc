@@ -20,8 +20,9 @@ const cv::Mat& Picture() {
 
 void ExtractOrb360(benchmark::State& state) {
   OrbExtractor extractor{OrbOptions()};
+  const cv::Mat& picture = Picture();  // rendered here, not while the clock runs
   int count = 0;
-  for (auto _ : state) count = extractor.Extract(Picture()).size();
+  for (auto _ : state) count = extractor.Extract(picture).size();
   state.counters["features"] = count;
 }
 BENCHMARK(ExtractOrb360)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
@@ -30,7 +31,8 @@ void ExtractOpenCv(benchmark::State& state) {
   const cv::Ptr<cv::ORB> orb = cv::ORB::create(2000);
   std::vector<cv::KeyPoint> keypoints;
   cv::Mat descriptors;
-  for (auto _ : state) orb->detectAndCompute(Picture(), {}, keypoints, descriptors);
+  const cv::Mat& picture = Picture();
+  for (auto _ : state) orb->detectAndCompute(picture, {}, keypoints, descriptors);
   state.counters["features"] = static_cast<double>(keypoints.size());
 }
 BENCHMARK(ExtractOpenCv)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();

@@ -56,23 +56,32 @@ HWY_INLINE hn::Vec<DI> Offsets(D d, const TangentSampling& at, int stride, V a, 
   const V east = hn::Mul(a, hn::Set(d, at.k));
   const V south = hn::Mul(b, hn::Set(d, at.k));
   const V one = hn::Set(d, 1.0f);
-  if (!at.exact) {
-    const float secant = 1.0f / at.cosine;
+  const V secant = hn::Set(d, 1.0f / at.cosine);
+  // Of pixels that are not aside of the band's ends.
+  const auto offsets = [&](V longitude, V down) HWY_ATTR {
+    const V columns = hn::Round(hn::Mul(hn::Set(d, at.fx), longitude));
+    const V rows = hn::Round(hn::Mul(hn::Set(d, -at.fy), down));
+    return hn::ConvertTo(di, hn::MulAdd(rows, hn::Set(d, static_cast<float>(stride)), columns));
+  };
+  if (at.order == TangentSampling::Order::kSecond) {
+    const V tangent = hn::Mul(hn::Set(d, at.sine), secant);
+    const V longitude = hn::Mul(hn::Mul(east, secant), hn::NegMulAdd(tangent, south, one));
+    const V sag = hn::Mul(hn::Mul(hn::Set(d, 0.5f), tangent), hn::Mul(east, east));
+    return offsets(longitude, hn::Add(south, sag));
+  }
+  if (at.order == TangentSampling::Order::kSeries) {
     // 1 / forward = sec / (1 + w).
-    const V w = hn::Mul(hn::Set(d, at.sine * secant), south);
+    const V w = hn::Mul(hn::Mul(hn::Set(d, at.sine), secant), south);
     V inverse = hn::Sub(one, w);
     for (int i = 0; i < 3; ++i) inverse = hn::NegMulAdd(inverse, w, one);
-    const V q = hn::Mul(hn::Mul(east, hn::Set(d, secant)), inverse);
+    const V q = hn::Mul(hn::Mul(east, secant), inverse);
     const V q2 = hn::Mul(q, q);
-    const V longitude = hn::Mul(q, AtanSeries(d, q2));
     // forward (sqrt(1 + q^2) - 1).
     const V e = hn::Mul(hn::Mul(q, east), hn::NegMulAdd(hn::Set(d, 0.125f), q2, hn::Set(d, 0.5f)));
     const V ce = hn::Mul(hn::Set(d, at.cosine), e);
     const V shrink = hn::NegMulAdd(ce, hn::Sub(one, ce), one);
     const V p = hn::Mul(hn::MulAdd(hn::Set(d, at.sine), e, south), shrink);
-    const V down = hn::Mul(p, AtanSeries(d, hn::Mul(p, p)));
-    return hn::Add(hn::Mul(hn::NearestInt(hn::Mul(hn::Set(d, -at.fy), down)), hn::Set(di, stride)),
-                   hn::NearestInt(hn::Mul(hn::Set(d, at.fx), longitude)));
+    return offsets(hn::Mul(q, AtanSeries(d, q2)), hn::Mul(p, AtanSeries(d, hn::Mul(p, p))));
   }
   // Exactly, in a frame whose meridian is the patch's own: nothing depends on the longitude.
   const V forward = hn::MulAdd(hn::Set(d, at.sine), south, hn::Set(d, at.cosine));

@@ -17,14 +17,16 @@ namespace orb360 {
 ///   forward = cos(phi) + beta sin(phi),   longitude = atan(alpha / forward),
 ///   latitude - phi = -atan((beta + e sin(phi)) / (1 + e cos(phi))),
 ///   e = sqrt(forward^2 + alpha^2) - forward.
-/// Where patches are small, quotients, root and arctangents are series, at most kMaxError off;
-/// where these would be more, or points lie more than kMaxColumns aside, they are exact.
+/// Where patches are small these are taken to second order, where they are larger with quotients,
+/// root and arctangents as series, if either is at most kMaxError off and no point lies more than
+/// kMaxColumns aside; exactly otherwise.
 struct TangentSampling {
   /// Points of a patch never lie farther than this from its centre, in pixels of the level.
   static constexpr float kMaxRadius = 15.0f;
   /// Columns that inexact sampling reaches at most to either side; exact sampling wraps.
   static constexpr int kMaxColumns = 26;
-  static constexpr double kMaxError = 0.25;  // of the series at kMaxRadius, pixels
+  static constexpr double kMaxError = 0.25;  // at kMaxRadius, pixels
+  enum class Order : uint8_t { kSecond, kSeries, kExact };
 
   /// `u`, `v`: column of the band, which is `band_width` wide, and row of the level.
   TangentSampling(const EquirectangularCamera& level, int band_width, int u, int v)
@@ -37,9 +39,13 @@ struct TangentSampling {
     const double w = reach * std::abs(std::tan(latitude));
     const double q = reach / cos_latitude / std::max(1.0 - w, 1e-3);  // tangent of the longitude
     const double scale = level.fx() * compression;
-    // First omitted terms of 1 / (1 + w) and atan(q), in pixels.
-    const double error = scale * (q * std::pow(w, 5) + std::pow(q, 7) / 7.0);
-    exact = error > kMaxError || scale * q > kMaxColumns;
+    // First omitted terms. The product a b^2 is at most 0.4 of the radius' cube.
+    const double second_error = scale * (0.4 * q * w * w + std::pow(q, 3) / 3.0);
+    const double series_error = scale * (q * std::pow(w, 5) + std::pow(q, 7) / 7.0);
+    const bool wraps = scale * q > kMaxColumns;
+    order = wraps || series_error > kMaxError ? Order::kExact
+            : second_error > kMaxError        ? Order::kSeries
+                                              : Order::kSecond;
     k = static_cast<float>(angle_of_pixel);
     sine = static_cast<float>(std::sin(latitude));
     cosine = static_cast<float>(cos_latitude);
@@ -51,7 +57,7 @@ struct TangentSampling {
   int v_index;
   int width;  // of the band
   int height;
-  bool exact;
+  Order order;
   float k;     // angle of a pixel at the equator, rad
   float sine;  // of the centre's latitude
   float cosine;

@@ -10,9 +10,9 @@ namespace orb360 {
 /// Larger windows and more iterations took longer without lowering the error of trajectories.
 struct LocalBundleOptions {
   /// Keyframes that move: the newest and those that share most landmarks with it.
-  int max_keyframes = 8;
+  int max_keyframes = 6;
   /// Keyframes beyond, which see the same landmarks and hold them in place.
-  int max_fixed_keyframes = 10;
+  int max_fixed_keyframes = 8;
   /// Landmarks that a keyframe must share with the newest to move.
   int min_shared = 15;
   int max_iterations = 4;

@@ -17,13 +17,13 @@ struct KeyframeOptions {
   /// Standing still adds nothing: the least motion, as above.
   double min_motion = 0.01;
   /// Frames after which the mapping of a keyframe is adopted; it runs beside tracking meanwhile.
-  int mapping_frames = 4;
+  int mapping_frames = 6;
   /// Earlier when the landmarks tracked have fallen below this share of the keyframe's ...
   double min_held_share = 0.8;
   /// ... or below this number; then a keyframe is needed anyway.
   int urgent_inliers = 150;
   /// Keyframes around the reference whose landmarks tracking searches.
-  int local_keyframes = 20;
+  int local_keyframes = 12;
 };
 
 struct RecoveryOptions {

@@ -6,7 +6,7 @@ namespace orb360 {
 
 struct TriangulationOptions {
   /// Keyframes a new one is matched with, those that share most landmarks.
-  int max_neighbours = 10;
+  int max_neighbours = 6;
   /// Shortest baseline, as a share of the median range of the neighbour's landmarks.
   double min_baseline = 0.01;
   /// Matches farther from the epipolar plane than this many standard deviations are wrong.

@@ -3,6 +3,7 @@
 #include "slam/features/matching.h"
 #include "slam/geometry/absolute_pose.h"
 #include "slam/optimization/pose_refinement.h"
+#include "slam/pipeline/frame_motion.h"
 #include "slam/pipeline/projection_search.h"
 
 namespace orb360 {
@@ -106,12 +107,13 @@ std::optional<Rigid3> EstimatePose(const Features& features,
   return pose->camera_from_world.Inverse();
 }
 
-// From matches with the last frame's features, whatever the motion between them.
-std::optional<Rigid3> FollowFeatures(const Features& features, const TrackedFrame& last,
-                                     const LocalMap& local, const TrackerOptions& options) {
+// From landmarks of the last frame, matched from feature to feature, whatever the motion.
+std::optional<Rigid3> FollowLandmarks(const Features& features, const TrackedFrame& last,
+                                      const LocalMap& local, std::span<const Match> matches,
+                                      const TrackerOptions& options) {
   std::vector<const LocalLandmark*> landmarks;
   std::vector<int> paired;
-  for (const Match& match : MatchNearby(*last.features, features, options.nearby_radius, {})) {
+  for (const Match& match : matches) {
     const LandmarkId id = last.landmarks[match.first];
     const LocalLandmark* landmark = id == kNoId ? nullptr : local.Find(id);
     if (landmark == nullptr) continue;
@@ -127,12 +129,21 @@ std::optional<TrackResult> TrackFromPrediction(const Features& features,
                                                const Rigid3& predicted_world_from_camera,
                                                const TrackedFrame& last, const LocalMap& local,
                                                double pixel_sigma, const TrackerOptions& options) {
+  std::vector<Match> matches;  // with the last frame, once needed
+  const auto find_start = [&](int attempt) {
+    if (attempt == 0) {
+      return FollowPrediction(features, predicted_world_from_camera, last, local, options);
+    }
+    if (attempt == 1) {
+      matches = MatchNearby(*last.features, features, options.nearby_radius, {});
+      return FollowLandmarks(features, last, local, matches, options);
+    }
+    return PoseFromMotion(features, last, local, matches);
+  };
   std::optional<TrackResult> best;
-  for (const bool by_prediction : {true, false}) {
-    const std::optional<Rigid3> start =
-        by_prediction
-            ? FollowPrediction(features, predicted_world_from_camera, last, local, options)
-            : FollowFeatures(features, last, local, options);
+  constexpr int kAttempts = 3;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const std::optional<Rigid3> start = find_start(attempt);
     if (!start) continue;
     std::optional<LocalFit> fit = TrackLocalMap(features, *start, local, pixel_sigma, options);
     if (!fit) continue;

@@ -47,9 +47,10 @@ struct TrackResult {
 
 /// Pose of a frame that follows `last`. Landmarks of the last frame are searched around their
 /// predicted positions, the pose refined, then the same with the whole local map. Where too few
-/// matches agree the start is instead P3P in RANSAC from matches with the last frame's features,
-/// and the pose with more landmarks wins. Empty where too little is found. `pixel_sigma` is the
-/// angular noise on pyramid level 0, rad.
+/// matches agree, other starts are tried: P3P in RANSAC from landmarks of the last frame matched
+/// from feature to feature, then the motion between both frames (frame_motion.h); the pose with
+/// most landmarks wins. Empty where too little is found. `pixel_sigma` is the angular noise on
+/// pyramid level 0, rad.
 std::optional<TrackResult> TrackFromPrediction(const Features& features,
                                                const Rigid3& predicted_world_from_camera,
                                                const TrackedFrame& last, const LocalMap& local,

@@ -54,6 +54,15 @@ TEST_F(TrackerTest, FindsThePoseWhereThePredictionIsFarOff) {
   EXPECT_GT(result->num_inliers, 320);
 }
 
+TEST_F(TrackerTest, FindsThePoseWithAHandfulOfLandmarksLeft) {
+  for (int f = 12; f < static_cast<int>(last_.landmarks.size()); ++f) last_.landmarks[f] = kNoId;
+  const auto result = TrackFromPrediction(*scene_.See(truth_), last_.world_from_camera, last_,
+                                          local_, scene_.sigma, {});
+  ASSERT_TRUE(result.has_value());
+  ExpectNear(result->world_from_camera, truth_);
+  EXPECT_GT(result->num_inliers, 320);
+}
+
 TEST_F(TrackerTest, FindsThePoseWithoutAnyPrediction) {
   const Rigid3 turned{ExpSo3({0.4, 1.2, -2.0}), {-0.5, 0.3, 0.2}};
   const auto result = TrackWithoutPrediction(*scene_.See(turned), local_, scene_.sigma, {});
