@@ -6,6 +6,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "apps/orb360/input.h"
 #include "slam/check.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/image_file.h"
@@ -26,7 +27,7 @@ cv::Mat LoadMask(const std::string& file, cv::Size size) {
 
 cv::Mat ChooseMask(const std::string& choice, const std::string& input,
                    const SequenceOptions& options, const Sequence& sequence) {
-  if (choice == "none") return {};
+  if (choice == "none" || (choice == "auto" && IsRendered(input))) return {};
   if (choice == "auto") return FindSelfMask(input, options, sequence.frame_rate());
   return LoadMask(choice, sequence.image_size());
 }

@@ -14,8 +14,8 @@ namespace orb360 {
 cv::Mat LoadMask(const std::string& file, cv::Size size);
 
 /// The mask that --mask asks for: `auto` looks for what moves with the camera at the start of
-/// `input` (FindSelfMask), `none` is an empty mask, all else is an image's name. `sequence` is the
-/// input as opened with `options`.
+/// `input` (FindSelfMask), in a rendered one for nothing; `none` is an empty mask, all else is an
+/// image's name. `sequence` is the input as opened with `options`.
 cv::Mat ChooseMask(const std::string& choice, const std::string& input,
                    const SequenceOptions& options, const Sequence& sequence);
 

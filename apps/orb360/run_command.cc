@@ -11,6 +11,7 @@
 #include <sys/resource.h>
 
 #include "apps/orb360/commands.h"
+#include "apps/orb360/input.h"
 #include "apps/orb360/interrupt.h"
 #include "apps/orb360/mask.h"
 #include "apps/orb360/progress.h"
@@ -150,7 +151,7 @@ int Run(const RunOptions& options) {
   if (!options.config.empty()) MakeConfigSchema(&system_options).Load(options.config);
   SequenceOptions sequence_options = options.sequence;
   sequence_options.resize = ParseSize(options.resize);
-  const std::unique_ptr<Sequence> sequence = OpenSequence(options.input, sequence_options);
+  const std::unique_ptr<Sequence> sequence = OpenInput(options.input, sequence_options);
   RunOutput output(options.out);
   const int threads = SetThreads(options.threads);
   const cv::Mat mask = ChooseMask(options.mask, options.input, sequence_options, *sequence);
@@ -168,7 +169,7 @@ int Run(const RunOptions& options) {
   output.Finish(reconstruction, summary);
   if (options.saves_sparse) {
     WriteSparseKeyframes(output.folder() / "sparse", system.maps(),
-                         OpenSequence(options.input, sequence_options).get());
+                         OpenInput(options.input, sequence_options).get());
   }
   if (!options.is_quiet) PrintResult(summary, output.folder());
 
@@ -192,8 +193,10 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
   const auto options = std::make_shared<RunOptions>();
   SequenceOptions& sequence = options->sequence;
   command
-      ->add_option("INPUT", options->input,
-                   "Equirectangular video, folder of images, or sequence folder")
+      ->add_option(
+          "INPUT", options->input,
+          "Equirectangular video, folder of images, sequence folder, or town:NAME to render a "
+          "town (Town1 ... Town5, Loop, a seed) while tracking it")
       ->required();
   command->add_option("--out", options->out, "Folder for the results; created if need be")
       ->required()

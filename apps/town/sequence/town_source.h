@@ -1,0 +1,26 @@
+#pragma once
+
+#include "apps/town/sequence/drive.h"
+#include "slam/io/frame_source.h"
+
+namespace orb360::town {
+
+/// The pictures of a drive, rendered when they are asked for: nothing is stored.
+class TownSource : public FrameSource {
+ public:
+  /// `name`: how messages call it. Building the town takes seconds. Throws UserError for an unknown
+  /// light.
+  TownSource(const std::string& name, const TownSpec& spec, const EquirectangularCamera& camera,
+             double fps);
+
+  const SourceInfo& info() const override { return info_; }
+  std::optional<Frame> Read() override;
+  bool Skip() override;
+
+ private:
+  Drive drive_;
+  SourceInfo info_;
+  int next_ = 0;
+};
+
+}  // namespace orb360::town
