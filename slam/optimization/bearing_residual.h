@@ -16,7 +16,7 @@ inline Eigen::Vector2d BearingResidual(const Eigen::Vector3d& point_camera,
                                        Eigen::Matrix<double, 2, 3>* jacobian) {
   const double inverse_range = 1.0 / point_camera.norm();
   const Eigen::Vector3d unit = inverse_range * point_camera;
-  const Eigen::Vector2d residual = scaled_basis.transpose() * unit;
+  Eigen::Vector2d residual = scaled_basis.transpose() * unit;
   if (jacobian != nullptr) {
     *jacobian = inverse_range * (scaled_basis.transpose() - residual * unit.transpose());
   }

@@ -36,6 +36,7 @@ std::vector<Eigen::Vector3d> PointsBelow(const Map& map, std::span<const Keyfram
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   std::vector<Eigen::Vector3d> points;
+  points.reserve(ids.size());
   for (const LandmarkId id : ids) points.push_back(map.landmark(id).position);
   return points;
 }

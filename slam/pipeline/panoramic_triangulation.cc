@@ -87,7 +87,7 @@ std::optional<Eigen::Vector3d> MakePoint(const Features& features1, int f1,
   if (parallax < std::max(options.min_parallax, options.min_parallax_sigmas * sigma)) {
     return std::nullopt;
   }
-  const std::optional<Eigen::Vector3d> point = TriangulateTwoViews(
+  std::optional<Eigen::Vector3d> point = TriangulateTwoViews(
       camera1_from_camera2, bearing1, bearing2, keypoint1.sigma, keypoint2.sigma);
   if (!point) return std::nullopt;
   const Eigen::Vector3d point2 = camera1_from_camera2.Inverse() * *point;
