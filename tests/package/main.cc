@@ -1,0 +1,15 @@
+#include <cstdio>
+
+#include "slam/pipeline/system.h"
+
+// One black picture: nothing to track, and the report says so.
+int main() {
+  orb360::System system(orb360::EquirectangularCamera(640, 320), {}, {});
+  const orb360::FrameReport report =
+      system.Process({0, 0.0, cv::Mat(320, 640, CV_8UC3, cv::Scalar(0, 0, 0))});
+  if (report.world_from_camera || !system.Finish().frames.empty()) {
+    std::puts("a pose was found in a black picture");
+    return 1;
+  }
+  return 0;
+}
