@@ -8,6 +8,7 @@
 
 #include "apps/town/drive/camera_motion.h"
 #include "apps/town/render/renderer.h"
+#include "apps/town/world/town.h"
 
 namespace orb360::town {
 namespace {
@@ -16,8 +17,8 @@ struct World {
   Town town = BuildTown(1);
   Light light = MakeLight("noon", 1);
   Sky sky{light, 1};
-  RayScene scene{town};
-  Shader shader{town, light, sky};
+  RayScene scene{town.scenery};
+  Shader shader{town.scenery.palette, light, sky};
   FrameScene frame{scene, {}};
   Lap lap{town.plan, town.plan.tour, {}};
 

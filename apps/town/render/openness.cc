@@ -97,11 +97,11 @@ void BakeMesh(const Occluded& occluded, Mesh* mesh) {
 
 }  // namespace
 
-void BakeOpenness(const RayScene& scene, Town* town) {
+void BakeOpenness(const RayScene& scene, Scenery* scenery) {
   BakeMesh(
       [&](const int* valid, RTCRay16* rays) { scene.Occluded(valid, rays, Coherence::kSpread); },
-      &town->fixed);
-  for (uint32_t i = 0; i < town->models.size(); ++i) {
+      &scenery->fixed);
+  for (uint32_t i = 0; i < scenery->models.size(); ++i) {
     const auto occluded = [&](const int* valid, RTCRay16* rays) {
       scene.OccludedByModel(i, valid, rays);
       for (int lane = 0; lane < kPacket; ++lane) {
@@ -110,11 +110,11 @@ void BakeOpenness(const RayScene& scene, Town* town) {
         if (meets_ground) rays->tfar[lane] = -1;
       }
     };
-    BakeMesh(occluded, &town->models[i]);
+    BakeMesh(occluded, &scenery->models[i]);
   }
 #pragma omp parallel for schedule(dynamic, 16)
-  for (size_t i = 0; i < town->instances.size(); ++i) {
-    Instance& instance = town->instances[i];
+  for (size_t i = 0; i < scenery->instances.size(); ++i) {
+    Instance& instance = scenery->instances[i];
     // From above the thing itself, so that it does not shade itself twice.
     const Vector3f top = instance.world_from_model.translation() + Vector3f(0, 0, instance.lookout);
     instance.openness = Openness(top, Vector3f::UnitZ(), [&](const int* valid, RTCRay16* rays) {

@@ -1,14 +1,14 @@
 #pragma once
 
 #include "apps/town/render/ray_scene.h"
-#include "apps/town/world/town.h"
+#include "apps/town/world/scenery.h"
 
 namespace orb360::town {
 
-/// Finds for every vertex of the town how much of the sky it sees (Vertex::openness): rays over
+/// Finds for every vertex of a scenery how much of the sky it sees (Vertex::openness): rays over
 /// the hemisphere above the surface, weighted by the cosine (ambient occlusion). Vertices of
 /// models see their own model standing on level ground; each instance is then dimmed as a whole by
-/// what it sees from its place. `scene` must be made from `town`.
-void BakeOpenness(const RayScene& scene, Town* town);
+/// what it sees from its place. `scene` must be made from `scenery`.
+void BakeOpenness(const RayScene& scene, Scenery* scenery);
 
 }  // namespace orb360::town

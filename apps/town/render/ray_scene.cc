@@ -31,23 +31,24 @@ void OccludedByInstances(RTCScene scene, const int* valid, RTCRay16* rays) {
 
 }  // namespace
 
-RayScene::RayScene(const Town& town) : town_(&town), device_(rtcNewDevice("threads=1")) {
+RayScene::RayScene(const Scenery& scenery)
+    : scenery_(&scenery), device_(rtcNewDevice("threads=1")) {
   ORB360_CHECK(device_.get() != nullptr, rtcGetDeviceError(nullptr));
-  ORB360_CHECK(town.instances.size() < 60000, town.instances.size());  // masks have 16 bits
-  const auto parts_of = [&town](const Mesh& mesh) {
-    return Parts{{{&town.materials, &mesh, 0}, {&town.materials, &mesh, mesh.opaque_count}}};
+  ORB360_CHECK(scenery.instances.size() < 60000, scenery.instances.size());  // masks have 16 bits
+  const auto parts_of = [&scenery](const Mesh& mesh) {
+    return Parts{{{&scenery.palette, &mesh, 0}, {&scenery.palette, &mesh, mesh.opaque_count}}};
   };
   fixed_scene_ = NewScene(RTC_BUILD_QUALITY_HIGH);
-  fixed_parts_ = std::make_unique<Parts>(parts_of(town.fixed));
+  fixed_parts_ = std::make_unique<Parts>(parts_of(scenery.fixed));
   AttachMesh(fixed_scene_.get(), *fixed_parts_);
   rtcCommitScene(fixed_scene_.get());
-  for (const Mesh& model : town.models) {
+  for (const Mesh& model : scenery.models) {
     model_parts_.push_back(parts_of(model));
     model_scenes_.push_back(NewScene(RTC_BUILD_QUALITY_HIGH));
     AttachMesh(model_scenes_.back().get(), model_parts_.back());
     rtcCommitScene(model_scenes_.back().get());
   }
-  instance_scene_ = MakeInstanceScene(town.instances, 0, RTC_BUILD_QUALITY_HIGH);
+  instance_scene_ = MakeInstanceScene(scenery.instances, 0, RTC_BUILD_QUALITY_HIGH);
   ORB360_CHECK(rtcGetDeviceError(device_.get()) == RTC_ERROR_NONE);
 }
 
@@ -111,8 +112,8 @@ void RayScene::RejectCutouts(const RTCFilterFunctionNArguments* arguments) {
     const Vertex& a = part.mesh->vertices[triangle.vertices[0]];
     const Vertex& b = part.mesh->vertices[triangle.vertices[1]];
     const Vertex& c = part.mesh->vertices[triangle.vertices[2]];
-    const Material& material = (*part.materials)[triangle.material];
-    const float coverage = part.materials->textures[material.texture].Coverage(
+    const Material& material = (*part.palette)[triangle.material];
+    const float coverage = part.palette->textures[material.texture].Coverage(
         (1 - u - v) * a.u + u * b.u + v * c.u, (1 - u - v) * a.v + u * b.v + v * c.v);
     if (coverage < 0.5F) arguments->valid[i] = 0;
   }
@@ -136,33 +137,33 @@ void RayScene::OccludedByModel(uint32_t model, const int* valid, RTCRay16* rays)
   rtcOccluded16(valid, model_scenes_[model].get(), &context, rays);
 }
 
-FrameScene::FrameScene(const RayScene& town, std::vector<Instance> moving)
-    : town_(&town), moving_(std::move(moving)) {
+FrameScene::FrameScene(const RayScene& fixed, std::vector<Instance> moving)
+    : fixed_(&fixed), moving_(std::move(moving)) {
   if (moving_.empty()) return;
   moving_scene_ =
-      town.MakeInstanceScene(moving_, town.town_->instances.size(), RTC_BUILD_QUALITY_LOW);
+      fixed.MakeInstanceScene(moving_, fixed.scenery_->instances.size(), RTC_BUILD_QUALITY_LOW);
 }
 
 void FrameScene::Intersect(const int* valid, RTCRayHit16* rays) const {
-  town_->Intersect(valid, rays);
+  fixed_->Intersect(valid, rays);
   if (moving_.empty()) return;
   RTCIntersectContext context = MakeContext(Coherence::kSpread);
   rtcIntersect16(valid, moving_scene_.get(), &context, rays);
 }
 
 void FrameScene::Occluded(const int* valid, RTCRay16* rays) const {
-  town_->Occluded(valid, rays);
+  fixed_->Occluded(valid, rays);
   if (!moving_.empty()) OccludedByInstances(moving_scene_.get(), valid, rays);
 }
 
 SurfaceHit FrameScene::Resolve(const RTCHit16& hit, int lane) const {
   const size_t id = hit.instID[0][lane];
   const Instance* instance = nullptr;
-  const RayScene::Parts* parts = town_->fixed_parts_.get();
+  const RayScene::Parts* parts = fixed_->fixed_parts_.get();
   if (hit.instID[0][lane] != RTC_INVALID_GEOMETRY_ID) {
-    const std::vector<Instance>& fixed = town_->town_->instances;
+    const std::vector<Instance>& fixed = fixed_->scenery_->instances;
     instance = id < fixed.size() ? &fixed[id] : &moving_[id - fixed.size()];
-    parts = &town_->model_parts_[instance->model];
+    parts = &fixed_->model_parts_[instance->model];
   }
   const RayScene::Part& part = (*parts)[hit.geomID[lane]];
   return {part.mesh, instance, &part.mesh->triangles[part.first + hit.primID[lane]]};
@@ -175,7 +176,7 @@ uint16_t FrameScene::ObjectId(const RTCHit16& hit, int lane) const {
 }
 
 uint16_t FrameScene::first_moving_id() const {
-  return static_cast<uint16_t>(kFixed + 1 + town_->town_->instances.size());
+  return static_cast<uint16_t>(kFixed + 1 + fixed_->scenery_->instances.size());
 }
 
 }  // namespace orb360::town

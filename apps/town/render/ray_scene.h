@@ -9,7 +9,7 @@
 
 #include <embree3/rtcore.h>
 
-#include "apps/town/world/town.h"
+#include "apps/town/world/scenery.h"
 
 namespace orb360::town {
 
@@ -65,15 +65,15 @@ struct SurfaceHit {
   const Triangle* triangle;
 };
 
-/// A town's fixed mesh and its instances of models as two ray-tracing structures. Keeps pointers to
-/// what it was made from. Building uses one thread, so that the structure (and the order in which
-/// surfaces at equal distances are found) is always the same.
+/// The fixed mesh of a scenery and its instances of models as two ray-tracing structures. Keeps
+/// pointers to what it was made from. Building uses one thread, so that the structure (and the
+/// order in which surfaces at equal distances are found) is always the same.
 ///
 /// Two, because Embree's frustum traversal of coherent packets is fast in plain meshes and very
 /// slow through instances, which are traversed ray by ray.
 class RayScene {
  public:
-  explicit RayScene(const Town& town);
+  explicit RayScene(const Scenery& scenery);
 
   /// Nearest hits of a packet; lanes with valid[i] == 0 are left alone.
   void Intersect(const int* valid, RTCRayHit16* rays) const;
@@ -87,7 +87,7 @@ class RayScene {
 
   /// The triangles of a mesh from `first` on that are one geometry.
   struct Part {
-    const Materials* materials;
+    const Palette* palette;
     const Mesh* mesh;
     size_t first;
   };
@@ -101,7 +101,7 @@ class RayScene {
                           RTCBuildQuality quality) const;
   static void RejectCutouts(const RTCFilterFunctionNArguments* arguments);
 
-  const Town* town_;
+  const Scenery* scenery_;
   Device device_;
   std::unique_ptr<Parts> fixed_parts_;  // Embree holds the addresses
   std::deque<Parts> model_parts_;       // likewise
@@ -110,10 +110,10 @@ class RayScene {
   Scene instance_scene_;
 };
 
-/// The town together with what moves through it at one moment. The RayScene must outlive it.
+/// The scenery together with what moves through it at one moment. The RayScene must outlive it.
 class FrameScene {
  public:
-  FrameScene(const RayScene& town, std::vector<Instance> moving);
+  FrameScene(const RayScene& fixed, std::vector<Instance> moving);
 
   /// As RayScene's.
   void Intersect(const int* valid, RTCRayHit16* rays) const;
@@ -122,7 +122,7 @@ class FrameScene {
   /// The surface in one lane of a packet which hit (geomID is not invalid).
   SurfaceHit Resolve(const RTCHit16& hit, int lane) const;
 
-  /// Numbers for masks: nothing, the fixed mesh, then the town's instances, then what moves.
+  /// Numbers for masks: nothing, the fixed mesh, then the scenery's instances, then what moves.
   static constexpr uint16_t kNothing = 0;
   static constexpr uint16_t kFixed = 1;
   uint16_t ObjectId(const RTCHit16& hit, int lane) const;
@@ -130,7 +130,7 @@ class FrameScene {
   uint16_t first_moving_id() const;
 
  private:
-  const RayScene* town_;
+  const RayScene* fixed_;
   std::vector<Instance> moving_;
   Scene moving_scene_;  // empty where nothing moves
 };

@@ -17,8 +17,8 @@ float Level(const Texture& texture, float tiles) {
 
 }  // namespace
 
-Shader::Shader(const Town& town, const Light& light, const Sky& sky)
-    : town_(&town), light_(&light), sky_(&sky) {}
+Shader::Shader(const Palette& palette, const Light& light, const Sky& sky)
+    : palette_(&palette), light_(&light), sky_(&sky) {}
 
 Surface Shader::Describe(const SurfaceHit& hit, float b, float c, const Vector3f& direction,
                          float footprint) const {
@@ -26,7 +26,7 @@ Surface Shader::Describe(const SurfaceHit& hit, float b, float c, const Vector3f
   const Vertex& va = hit.mesh->vertices[hit.triangle->vertices[0]];
   const Vertex& vb = hit.mesh->vertices[hit.triangle->vertices[1]];
   const Vertex& vc = hit.mesh->vertices[hit.triangle->vertices[2]];
-  const Material& material = town_->materials[hit.triangle->material];
+  const Material& material = (*palette_)[hit.triangle->material];
   Surface surface;
   surface.finish = material.finish;
   Vector3f normal =
@@ -47,7 +47,7 @@ Surface Shader::Describe(const SurfaceHit& hit, float b, float c, const Vector3f
 
   // A tilted surface stretches the footprint one way by 1/cos: the geometric mean of both ways.
   const float stretched = footprint / std::sqrt(std::max(-facing, 0.04F));
-  surface.texture = &town_->materials.textures[material.texture];
+  surface.texture = &palette_->textures[material.texture];
   surface.level = Level(*surface.texture, stretched * hit.triangle->tiles_per_metre);
   surface.tone = (a * Vector3f(va.tint[0], va.tint[1], va.tint[2]) +
                   b * Vector3f(vb.tint[0], vb.tint[1], vb.tint[2]) +
@@ -59,7 +59,7 @@ Surface Shader::Describe(const SurfaceHit& hit, float b, float c, const Vector3f
     surface.tone = surface.tone.cwiseProduct(Vector3f(tint.r, tint.g, tint.b));
   }
   if (material.blotches > 0) {
-    const Texture& blotches = town_->materials.textures[town_->materials.blotches_texture];
+    const Texture& blotches = palette_->textures[palette_->blotches_texture];
     const float scale = 1 / (kBlotchTile * material.tiles_per_metre);
     const float u = a * va.u + b * vb.u + c * vc.u;
     const float v = a * va.v + b * vb.v + c * vc.v;

@@ -2,7 +2,7 @@
 
 #include "apps/town/render/ray_scene.h"
 #include "apps/town/render/sky.h"
-#include "apps/town/world/town.h"
+#include "apps/town/world/scenery.h"
 
 namespace orb360::town {
 
@@ -20,7 +20,7 @@ struct Surface {
 /// Turns hits into light.
 class Shader {
  public:
-  Shader(const Town& town, const Light& light, const Sky& sky);
+  Shader(const Palette& palette, const Light& light, const Sky& sky);
 
   const Light& light() const { return *light_; }
   const Sky& sky() const { return *sky_; }
@@ -41,7 +41,7 @@ class Shader {
                     const Vector3f& direction, float range) const;
 
  private:
-  const Town* town_;
+  const Palette* palette_;
   const Light* light_;
   const Sky* sky_;
 };

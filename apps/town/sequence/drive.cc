@@ -28,13 +28,13 @@ Drive::Drive(const TownSpec& spec, const EquirectangularCamera& camera, double f
       light_(MakeLight(spec.light, spec.seed)),
       town_(BuildTown(spec.seed, spec.plan)),
       sky_(light_, spec.seed),
-      scene_(town_),
-      shader_(town_, light_, sky_),
+      scene_(town_.scenery),
+      shader_(town_.scenery.palette, light_, sky_),
       lap_(town_.plan, town_.plan.tour, LapOf(spec)),
       oncoming_lap_(town_.plan, Reversed(town_.plan.tour), {.seed = SeedOf(spec, kOncomingLap)}),
       traffic_(town_, lap_, oncoming_lap_,
                {.seed = SeedOf(spec, kTraffic), .density = spec.traffic}) {
-  BakeOpenness(scene_, &town_);
+  BakeOpenness(scene_, &town_.scenery);
   motion_.seed = SeedOf(spec, kShaking);
   motion_.height = Random(SeedOf(spec, kCameraHeight)).Uniform(1.8, 2.2);
 }

@@ -20,11 +20,10 @@ struct Models {
   uint32_t traffic_light, bench, bin, bollard;
 };
 
-Models MakeModels(const Random& random, Town* town) {
-  const Materials& m = town->materials;
+Models MakeModels(const Random& random, const Materials& m, Town* town) {
   const auto add = [town](Mesh mesh) {
-    town->models.push_back(std::move(mesh));
-    return static_cast<uint32_t>(town->models.size() - 1);
+    town->scenery.models.push_back(std::move(mesh));
+    return static_cast<uint32_t>(town->scenery.models.size() - 1);
   };
   Models models;
   for (uint64_t i = 0; i < 6; ++i) models.trees.push_back(add(MakeTree(m, random.Fork(10 + i))));
@@ -73,8 +72,8 @@ class Side {
         Eigen::Translation3f(Eigen::Vector3d(q.x(), q.y(), height).cast<float>()) *
         Eigen::AngleAxisf(static_cast<float>(std::atan2(-outward.y(), -outward.x()) + yaw),
                           Vector3f::UnitZ());
-    town_->instances.push_back(instance);
-    return town_->instances.back();
+    town_->scenery.instances.push_back(instance);
+    return town_->scenery.instances.back();
   }
 
  private:
@@ -149,8 +148,8 @@ void FurnishSide(Side& side, const Street& street, const Models& models, const T
 
 }  // namespace
 
-void FurnishStreets(Random random, Town* town) {
-  const Models models = MakeModels(random, town);
+void FurnishStreets(const Random& random, const Materials& materials, Town* town) {
+  const Models models = MakeModels(random, materials, town);
   for (size_t i = 0; i < town->plan.streets.size(); ++i) {
     for (const double sign : {1.0, -1.0}) {
       const Street& street = town->plan.streets[i];

@@ -7,6 +7,6 @@ namespace orb360::town {
 
 /// Adds the models of street furniture, trees and vehicles to the town and places them along its
 /// streets: parked cars by the kerb, the rest on the pavements.
-void FurnishStreets(Random random, Town* town);
+void FurnishStreets(const Random& random, const Materials& materials, Town* town);
 
 }  // namespace orb360::town

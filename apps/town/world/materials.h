@@ -26,20 +26,23 @@ struct Material {
   float blotches = 0;         ///< strength of the large-scale variation
 };
 
-/// The town's textures and materials, with the names the builders use.
-struct Materials {
+/// Textures and the materials that use them.
+struct Palette {
   std::vector<Texture> textures;
   std::vector<Material> all;
+  uint16_t blotches_texture = 0;  ///< of the large-scale variation
 
+  const Material& operator[](MaterialId id) const { return all[id]; }
+};
+
+/// A procedural town's palette, with the names the builders use.
+struct Materials : Palette {
   MaterialId asphalt, setts, paving, kerb, grass, road_paint;
   MaterialId plaster, ashlar, concrete, roof_tiles, gravel;
   MaterialId trim;   ///< painted wood or stone around openings, to be tinted
   MaterialId metal;  ///< dark painted metal
   MaterialId railing, bark, paint, car_glass, rubber, lamp;
   std::vector<MaterialId> bricks, rooms, shops, doors, signs, leaves;
-  uint16_t blotches_texture = 0;
-
-  const Material& operator[](MaterialId id) const { return all[id]; }
 };
 
 /// Paints every texture; the same materials for the same seed.

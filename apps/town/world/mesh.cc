@@ -13,10 +13,10 @@ std::array<uint8_t, 4> EncodeTint(const Rgba& tint) {
   return {channel(tint.r), channel(tint.g), channel(tint.b), 255};
 }
 
-void Mesh::PartitionCutouts(const Materials& materials) {
+void Mesh::PartitionCutouts(const Palette& palette) {
   const auto first_cutout = std::stable_partition(
       triangles.begin(), triangles.end(),
-      [&](const Triangle& triangle) { return !materials[triangle.material].cutout; });
+      [&](const Triangle& triangle) { return !palette[triangle.material].cutout; });
   opaque_count = static_cast<size_t>(first_cutout - triangles.begin());
 }
 

@@ -38,7 +38,7 @@ struct Mesh {
   size_t opaque_count = 0;  ///< triangles before this one have no cut-outs; set by PartitionCutouts
 
   /// Brings the triangles of materials with cut-outs to the end.
-  void PartitionCutouts(const Materials& materials);
+  void PartitionCutouts(const Palette& palette);
   void Append(const Mesh& other, const Eigen::Affine3f& mesh_from_other);
 };
 

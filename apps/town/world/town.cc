@@ -18,9 +18,9 @@ StreetPlan PlanTown(uint64_t seed, PlanOptions plan) {
 Town BuildTown(uint64_t seed, PlanOptions plan) {
   const Random random(seed);
   Town town;
-  town.materials = PaintMaterials(random.Fork(1).Next());
+  Materials materials = PaintMaterials(random.Fork(1).Next());
   town.plan = PlanTown(seed, plan);
-  MeshBuilder builder(town.materials);
+  MeshBuilder builder(materials);
   AddGround(town.plan, builder);
   AddRoadMarkings(town.plan, builder);
   Random lots_random = random.Fork(3);
@@ -29,10 +29,11 @@ Town BuildTown(uint64_t seed, PlanOptions plan) {
     Random lot_random = random.Fork(number++);
     AddBuilding(lot, lot_random, builder);
   }
-  town.fixed = std::move(builder.mesh());
-  FurnishStreets(random.Fork(4), &town);
-  town.fixed.PartitionCutouts(town.materials);
-  for (Mesh& model : town.models) model.PartitionCutouts(town.materials);
+  town.scenery.fixed = std::move(builder.mesh());
+  FurnishStreets(random.Fork(4), materials, &town);
+  town.scenery.fixed.PartitionCutouts(materials);
+  for (Mesh& model : town.scenery.models) model.PartitionCutouts(materials);
+  town.scenery.palette = std::move(materials);
   return town;
 }
 

@@ -23,10 +23,10 @@ Rigid3 Pose() {
 
 /// Compares every rendered range with `distance(origin, direction)`, negative where unknown.
 void ExpectRanges(
-    const Town& town,
+    const Scenery& scenery,
     const std::function<double(const Eigen::Vector3d&, const Eigen::Vector3d&)>& distance,
     int minimum_checked) {
-  const RayScene scene(town);
+  const RayScene scene(scenery);
   const GeometryImage image = RenderGeometry(FrameScene(scene, {}), kCamera, Pose());
   int checked = 0;
   for (int row = 0; row < kCamera.height(); ++row) {
@@ -42,37 +42,39 @@ void ExpectRanges(
   EXPECT_GE(checked, minimum_checked);
 }
 
-Town PlainTown() {
-  Town town;
-  town.materials = PlainMaterials();
-  return town;
+const Materials kPlain = PlainMaterials();
+
+Scenery PlainScenery() {
+  Scenery scenery;
+  scenery.palette = kPlain;
+  return scenery;
 }
 
-void Finish(MeshBuilder& builder, Town* town) {
-  town->fixed = builder.mesh();
-  town->fixed.PartitionCutouts(town->materials);
+void Finish(MeshBuilder& builder, Scenery* scenery) {
+  scenery->fixed = builder.mesh();
+  scenery->fixed.PartitionCutouts(kPlain);
 }
 
 TEST(RenderGeometry, RangeToAPlaneIsExactToAMillimetre) {
-  Town town = PlainTown();
-  MeshBuilder builder(town.materials);
+  Scenery scenery = PlainScenery();
+  MeshBuilder builder(kPlain);
   builder.AddGroundPolygon(0, {{-500, -500, 0}, {500, -500, 0}, {500, 500, 0}, {-500, 500, 0}});
-  Finish(builder, &town);
+  Finish(builder, &scenery);
   const auto distance = [](const Eigen::Vector3d& origin, const Eigen::Vector3d& d) {
     if (d.z() >= 0) return 0.0;
     const double t = -origin.z() / d.z();
     return t < 250 ? t : -1;  // what a 16-bit range image can hold
   };
-  ExpectRanges(town, distance, 100000);
+  ExpectRanges(scenery, distance, 100000);
 }
 
 TEST(RenderGeometry, RangeToABoxIsExactToAMillimetre) {
-  Town town = PlainTown();
-  MeshBuilder builder(town.materials);
+  Scenery scenery = PlainScenery();
+  MeshBuilder builder(kPlain);
   const Panel front{{4, -3, -2}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}};  // the camera is inside
   builder.AddBox(0, front, 0, 6, 0, 5, -9, 0);
   builder.AddRectangle(0, front, 0, 6, 0, 5, -9);
-  Finish(builder, &town);
+  Finish(builder, &scenery);
   const auto distance = [](const Eigen::Vector3d& origin, const Eigen::Vector3d& d) {
     double nearest = 1e30;
     const Eigen::Vector3d low(-5, -3, -2);
@@ -83,13 +85,13 @@ TEST(RenderGeometry, RangeToABoxIsExactToAMillimetre) {
     }
     return nearest;
   };
-  ExpectRanges(town, distance, 512 * 256);
+  ExpectRanges(scenery, distance, 512 * 256);
 }
 
 TEST(RenderGeometry, RangeToASphereIsExactToAMillimetre) {
   // An instance, so that transforms are tested as well: a unit sphere of fine facets, moved.
-  Town town = PlainTown();
-  MeshBuilder builder(town.materials);
+  Scenery scenery = PlainScenery();
+  MeshBuilder builder(kPlain);
   constexpr int kRings = 600;
   constexpr double kPi = std::numbers::pi;
   const auto at = [](int ring, int side) {
@@ -113,13 +115,13 @@ TEST(RenderGeometry, RangeToASphereIsExactToAMillimetre) {
       builder.AddTriangle(0, a, a + 2 * kRings + 2, a + 2 * kRings + 1);
     }
   }
-  town.models.push_back(builder.mesh());
-  town.models.back().PartitionCutouts(town.materials);
+  scenery.models.push_back(builder.mesh());
+  scenery.models.back().PartitionCutouts(kPlain);
   Instance instance;
   const Eigen::Vector3d centre(2.5, 1.25, 0.75);
   instance.world_from_model = Eigen::Translation3f(centre.cast<float>()) *
                               Eigen::AngleAxisf(0.7F, Vector3f(1, 2, 3).normalized());
-  town.instances.push_back(instance);
+  scenery.instances.push_back(instance);
   const auto distance = [&](const Eigen::Vector3d& origin, const Eigen::Vector3d& d) {
     const double along = (centre - origin).dot(d);
     const double squared_off = (centre - origin).squaredNorm() - along * along;
@@ -127,15 +129,15 @@ TEST(RenderGeometry, RangeToASphereIsExactToAMillimetre) {
     if (squared_off > 0.97) return -1.0;  // grazing: the facets' own error counts
     return along < 0 ? 0.0 : along - std::sqrt(1 - squared_off);
   };
-  ExpectRanges(town, distance, 100000);
+  ExpectRanges(scenery, distance, 100000);
 }
 
 TEST(RenderGeometry, CutoutsAreThereOnlyWhereTheTextureCovers) {
-  Town town = PlainTown();
-  MeshBuilder builder(town.materials);
+  Scenery scenery = PlainScenery();
+  MeshBuilder builder(kPlain);
   const Panel wall{{5, 4, -3}, {0, -1, 0}, {0, 0, 1}, {-1, 0, 0}};
   builder.AddPicture(2, wall, 0, 8, 0, 8);  // covers the half y > 0
-  Finish(builder, &town);
+  Finish(builder, &scenery);
   const auto distance = [](const Eigen::Vector3d& origin, const Eigen::Vector3d& d) {
     if (d.x() <= 0) return 0.0;
     const Eigen::Vector3d p = origin + (5 - origin.x()) / d.x() * d;
@@ -144,26 +146,26 @@ TEST(RenderGeometry, CutoutsAreThereOnlyWhereTheTextureCovers) {
       return -1.0;
     return p.y() > 0 && p.y() < 4 && p.z() > -3 && p.z() < 5 ? (p - origin).norm() : 0.0;
   };
-  ExpectRanges(town, distance, 130000);
+  ExpectRanges(scenery, distance, 130000);
 }
 
 TEST(RenderGeometry, MovingObjectsHaveTheLastNumbers) {
-  Town town = PlainTown();
-  MeshBuilder ground(town.materials);
+  Scenery scenery = PlainScenery();
+  MeshBuilder ground(kPlain);
   ground.AddGroundPolygon(0, {{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}});
-  Finish(ground, &town);
-  MeshBuilder cube(town.materials);
+  Finish(ground, &scenery);
+  MeshBuilder cube(kPlain);
   const Panel front{{0.5, -0.5, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
   cube.AddBox(0, front, 0, 1, 0, 1, -1, 0);
-  town.models.push_back(cube.mesh());
-  town.models.back().PartitionCutouts(town.materials);
+  scenery.models.push_back(cube.mesh());
+  scenery.models.back().PartitionCutouts(kPlain);
   const auto at = [](float x) {
     Instance instance;
     instance.world_from_model.translation() = Vector3f(x, 0, 0.8F);
     return instance;
   };
-  town.instances.push_back(at(-6));
-  const RayScene scene(town);
+  scenery.instances.push_back(at(-6));
+  const RayScene scene(scenery);
   const FrameScene frame(scene, {at(6)});
   const GeometryImage image = RenderGeometry(frame, kCamera, Pose());
   const auto id_at = [&](const Eigen::Vector3d& world) {
@@ -177,8 +179,8 @@ TEST(RenderGeometry, MovingObjectsHaveTheLastNumbers) {
 }
 
 TEST(RenderColour, AGreyGroundInTheSunIsBrighterThanInTheShadow) {
-  Town town = PlainTown();
-  MeshBuilder builder(town.materials);
+  Scenery scenery = PlainScenery();
+  MeshBuilder builder(kPlain);
   builder.AddGroundPolygon(0, {{-50, -50, 0}, {50, -50, 0}, {50, 50, 0}, {-50, 50, 0}});
   const Light light = MakeLight("noon", 1);
   // A roof whose shadow falls on the point below the camera's left.
@@ -186,11 +188,11 @@ TEST(RenderColour, AGreyGroundInTheSunIsBrighterThanInTheShadow) {
   const Vector3f roof = shaded + 8 / light.to_sun.z() * light.to_sun;
   builder.AddGroundPolygon(0, {roof + Vector3f(-1, -1, 0), roof + Vector3f(1, -1, 0),
                                roof + Vector3f(1, 1, 0), roof + Vector3f(-1, 1, 0)});
-  Finish(builder, &town);
-  const RayScene scene(town);
+  Finish(builder, &scenery);
+  const RayScene scene(scenery);
   const Sky sky(light, 1);
   const cv::Mat3b image =
-      RenderColour(FrameScene(scene, {}), Shader(town, light, sky), kCamera, Pose());
+      RenderColour(FrameScene(scene, {}), Shader(scenery.palette, light, sky), kCamera, Pose());
   const auto green_at = [&](const Eigen::Vector3d& world) {
     const Eigen::Vector2d pixel = kCamera.Project(Pose().Inverse() * world);
     return image(static_cast<int>(pixel.y()), static_cast<int>(pixel.x()))[1];
