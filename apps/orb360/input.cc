@@ -17,9 +17,10 @@ bool IsRendered(const std::string& input) { return input.starts_with(kTownPrefix
 std::unique_ptr<Sequence> OpenInput(const std::string& input, const SequenceOptions& options) {
   if (!IsRendered(input)) return OpenSequence(input, options);
   const cv::Size size = options.resize.empty() ? kTownSize : options.resize;
-  auto source =
-      std::make_unique<town::TownSource>(input, town::FindTown(input.substr(kTownPrefix.size())),
-                                         EquirectangularCamera(size.width, size.height), kTownFps);
+  const town::TownSpec spec = town::FindTown(input.substr(kTownPrefix.size()));
+  const town::Recording recording{EquirectangularCamera(size.width, size.height), kTownFps,
+                                  spec.frames};
+  auto source = std::make_unique<town::TownSource>(input, spec, recording);
   return std::make_unique<Sequence>(std::move(source), options);
 }
 

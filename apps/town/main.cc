@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <numbers>
 #include <optional>
 #include <string>
 
@@ -9,9 +10,9 @@
 #include <omp.h>
 #include <unistd.h>
 
-#include "apps/town/sequence/drive.h"
 #include "apps/town/sequence/folder.h"
 #include "apps/town/sequence/named_town.h"
+#include "apps/town/sequence/town_drive.h"
 #include "slam/check.h"
 
 namespace orb360::town {
@@ -27,6 +28,10 @@ struct RenderArguments {
   std::optional<double> traffic;
   int depth_every = 1;
   bool masks = false;
+  double pitch_degrees = 0;
+  double roll_degrees = 0;
+  std::optional<double> camera_height;
+  double shaking = 1;
   int threads = 0;
 };
 
@@ -62,14 +67,16 @@ class ProgressBar {
 
 void Render(const RenderArguments& arguments) {
   TownSpec spec = FindTown(arguments.town);
-  if (arguments.frames) spec.frames = *arguments.frames;
   if (arguments.light) spec.light = *arguments.light;
   if (arguments.traffic) spec.traffic = *arguments.traffic;
   if (arguments.threads > 0) omp_set_num_threads(arguments.threads);
-  const Drive drive(spec, EquirectangularCamera(arguments.width, arguments.width / 2),
-                    arguments.fps);
-  ProgressBar bar(spec.frames);
-  const FolderOptions options{spec.frames, arguments.depth_every, arguments.masks};
+  constexpr double kDegree = std::numbers::pi / 180;
+  spec.mount = {arguments.camera_height, arguments.pitch_degrees * kDegree,
+                arguments.roll_degrees * kDegree, arguments.shaking};
+  const TownDrive drive(spec, {EquirectangularCamera(arguments.width, arguments.width / 2),
+                               arguments.fps, arguments.frames.value_or(spec.frames)});
+  ProgressBar bar(drive.frames());
+  const FolderOptions options{arguments.depth_every, arguments.masks};
   RenderIntoFolder(drive, arguments.out, options,
                    [&bar](int done, int rendered) { bar.Show(done, rendered); });
 }
@@ -110,6 +117,25 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000000));
   render->add_flag("--masks", arguments.masks,
                    "With the depth, write objects/ (16-bit ids) and moving/ (255 where it moves)");
+  render
+      ->add_option("--camera-height", arguments.camera_height,
+                   "Metres above the road [drawn from the seed, 1.8 to 2.2]")
+      ->check(CLI::Range(0.2, 10.0));
+  render
+      ->add_option("--camera-pitch", arguments.pitch_degrees,
+                   "Degrees that the camera is tilted nose up")
+      ->capture_default_str()
+      ->check(CLI::Range(-90.0, 90.0));
+  render
+      ->add_option("--camera-roll", arguments.roll_degrees,
+                   "Degrees that the camera is tilted left side up")
+      ->capture_default_str()
+      ->check(CLI::Range(-180.0, 180.0));
+  render
+      ->add_option("--shaking", arguments.shaking,
+                   "Factor on vibration, and on leaning when braking and in bends")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 10.0));
   render->add_option("--threads", arguments.threads, "Threads to use; 0: all cores")
       ->capture_default_str()
       ->check(CLI::Range(0, 256));

@@ -62,7 +62,9 @@ Rigid3 CameraPose(const Lap& lap, const CameraMotionOptions& options, double tim
   Rigid3 pose;
   pose.rotation = (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
                    Eigen::AngleAxisd(-nose_up, Eigen::Vector3d::UnitY()) *
-                   Eigen::AngleAxisd(left_up, Eigen::Vector3d::UnitX()) * level)
+                   Eigen::AngleAxisd(left_up, Eigen::Vector3d::UnitX()) *
+                   Eigen::AngleAxisd(-options.pitch, Eigen::Vector3d::UnitY()) *
+                   Eigen::AngleAxisd(options.roll, Eigen::Vector3d::UnitX()) * level)
                       .normalized();
   pose.translation << road.position, road.height + options.height + heave;
   return pose;

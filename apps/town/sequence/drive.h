@@ -1,53 +1,51 @@
 #pragma once
 
-#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
-#include "apps/town/drive/camera_motion.h"
-#include "apps/town/drive/lap.h"
-#include "apps/town/drive/traffic.h"
 #include "apps/town/render/renderer.h"
-#include "apps/town/sequence/named_town.h"
+#include "apps/town/render/stage.h"
+#include "slam/geometry/camera.h"
+#include "slam/geometry/rigid3.h"
 
 namespace orb360::town {
 
-/// How the camera's car drives its lap of a town.
-LapOptions LapOf(const TownSpec& spec);
+/// How a drive is recorded.
+struct Recording {
+  EquirectangularCamera camera;
+  double fps = 20;
+  int frames = 600;
+};
 
-/// A drive through a town that can be rendered at any frame, in any order.
+/// A camera's way through a scenery that can be rendered at any frame, in any order.
 class Drive {
  public:
-  /// Builds the town, which takes seconds. Throws UserError for an unknown light.
-  Drive(const TownSpec& spec, const EquirectangularCamera& camera, double fps);
+  explicit Drive(const Recording& recording) : recording_(recording) {}
+  virtual ~Drive() = default;
   Drive(const Drive&) = delete;
   Drive& operator=(const Drive&) = delete;
 
-  const TownSpec& spec() const { return spec_; }
-  const EquirectangularCamera& camera() const { return camera_; }
-  double fps() const { return fps_; }
-  double camera_height() const { return motion_.height; }  ///< metres above the road
-  const Town& town() const { return town_; }
+  const EquirectangularCamera& camera() const { return recording_.camera; }
+  double fps() const { return recording_.fps; }
+  int frames() const { return recording_.frames; }
 
-  Rigid3 WorldFromCamera(int frame) const;
-  FrameScene SceneAt(int frame) const;
+  virtual Rigid3 WorldFromCamera(int frame) const = 0;
+  /// Metres above the road, where there is a road.
+  virtual std::optional<double> camera_height() const = 0;
+  /// What it was made from: lines of YAML.
+  virtual std::string Origin() const = 0;
+
+  FrameScene SceneAt(int frame) const { return stage().With(MovingAt(frame)); }
   cv::Mat3b Colour(const FrameScene& scene, int frame) const;
   GeometryImage Geometry(const FrameScene& scene, int frame) const;
 
- private:
-  double TimeOf(int frame) const { return start_ + frame / fps_; }
+ protected:
+  virtual const Stage& stage() const = 0;
+  virtual std::vector<Instance> MovingAt(int frame) const = 0;
 
-  TownSpec spec_;
-  EquirectangularCamera camera_;
-  double fps_;
-  Light light_;
-  Town town_;
-  Sky sky_;
-  RayScene scene_;
-  Shader shader_;
-  Lap lap_;
-  Lap oncoming_lap_;
-  double start_;  ///< seconds on the lap's clock at frame 0
-  Traffic traffic_;
-  CameraMotionOptions motion_;
+ private:
+  Recording recording_;
 };
 
 }  // namespace orb360::town

@@ -34,7 +34,8 @@ void WriteImage(const std::filesystem::path& path, const cv::Mat& image,
   WriteFileAtomically(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-std::string Description(const Drive& drive, int frames) {
+std::string Description(const Drive& drive) {
+  const int frames = drive.frames();
   double distance = 0;
   double fastest = 0;
   for (int frame = 1; frame < frames; ++frame) {
@@ -44,13 +45,13 @@ std::string Description(const Drive& drive, int frames) {
     distance += step;
     fastest = std::max(fastest, step * drive.fps());
   }
-  const TownSpec& spec = drive.spec();
   std::ostringstream text;
   text << "camera:\n  model: equirectangular\n  width: " << drive.camera().width()
-       << "\n  height: " << drive.camera().height() << "\ncamera_height: " << drive.camera_height()
-       << "  # metres above the road\nfps: " << drive.fps() << "\nframes: " << frames
-       << "\ntown: " << spec.name << "\nseed: " << spec.seed << "\nlight: " << spec.light
-       << "\ntraffic: " << spec.traffic << "\npath_length: " << distance
+       << "\n  height: " << drive.camera().height() << "\n";
+  if (drive.camera_height())
+    text << "camera_height: " << *drive.camera_height() << "  # metres above the road\n";
+  text << "fps: " << drive.fps() << "\nframes: " << frames << "\n"
+       << drive.Origin() << "path_length: " << distance
        << "  # metres\nspeed:  # metres per second\n  mean: "
        << (frames > 1 ? distance * drive.fps() / (frames - 1) : 0.0) << "\n  maximum: " << fastest
        << "\n";
@@ -108,7 +109,7 @@ void WriteContactSheet(const std::filesystem::path& folder, int frames) {
 
 void RenderIntoFolder(const Drive& drive, const std::filesystem::path& folder,
                       const FolderOptions& options, const std::function<void(int, int)>& progress) {
-  ClaimFolder(folder, Description(drive, options.frames));
+  ClaimFolder(folder, Description(drive));
   MakeFolder(folder / "rgb");
   MakeFolder(folder / "depth");
   if (options.masks) {
@@ -116,12 +117,12 @@ void RenderIntoFolder(const Drive& drive, const std::filesystem::path& folder,
     MakeFolder(folder / "moving");
   }
   std::vector<StampedPose> poses;
-  for (int frame = 0; frame < options.frames; ++frame)
+  for (int frame = 0; frame < drive.frames(); ++frame)
     poses.push_back({frame / drive.fps(), drive.WorldFromCamera(frame)});
   WriteTrajectory(folder / "groundtruth.txt", poses);
 
   int rendered = 0;
-  for (int frame = 0; frame < options.frames; ++frame) {
+  for (int frame = 0; frame < drive.frames(); ++frame) {
     const auto missing = [&](const char* kind, const char* extension) {
       return !std::filesystem::exists(FramePath(folder, kind, frame, extension));
     };
@@ -148,7 +149,7 @@ void RenderIntoFolder(const Drive& drive, const std::filesystem::path& folder,
     }
     progress(frame + 1, rendered);
   }
-  WriteContactSheet(folder, options.frames);
+  WriteContactSheet(folder, drive.frames());
 }
 
 }  // namespace orb360::town

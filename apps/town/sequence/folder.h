@@ -8,7 +8,6 @@
 namespace orb360::town {
 
 struct FolderOptions {
-  int frames = 600;
   int depth_every = 1;  ///< ranges of every n-th frame
   bool masks = false;   ///< with the ranges: objects/ (16-bit ids) and moving/ (8-bit, 255 moving)
 };

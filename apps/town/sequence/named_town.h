@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -8,13 +9,22 @@
 
 namespace orb360::town {
 
-/// What is to be rendered, all but the size of the pictures.
+/// How the camera is mounted on the car's roof.
+struct Mount {
+  std::optional<double> height;  ///< metres above the road; without it, the town's own
+  double pitch = 0;              ///< radians, nose up
+  double roll = 0;               ///< radians, left side up
+  double shaking = 1;            ///< factor on vibration and on leaning in bends
+};
+
+/// What is to be rendered.
 struct TownSpec {
   std::string name;  ///< as the user gave it
   uint64_t seed = 0;
   std::string light = "noon";
   double traffic = 0;  ///< density, 0 to 1
-  int frames = 600;
+  int frames = 600;    ///< that show all of it, at 20 a second
+  Mount mount;
   PlanOptions plan;  ///< its seed is drawn from `seed`
 };
 

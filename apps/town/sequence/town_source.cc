@@ -2,20 +2,23 @@
 
 namespace orb360::town {
 
-TownSource::TownSource(const std::string& name, const TownSpec& spec,
-                       const EquirectangularCamera& camera, double fps)
-    : drive_(spec, camera, fps),
-      info_{name, {camera.width(), camera.height()}, fps, spec.frames, drive_.camera_height()} {}
+TownSource::TownSource(const std::string& name, const TownSpec& spec, const Recording& recording)
+    : drive_(spec, recording),
+      info_{name,
+            {recording.camera.width(), recording.camera.height()},
+            recording.fps,
+            recording.frames,
+            drive_.camera_height()} {}
 
 std::optional<Frame> TownSource::Read() {
-  if (next_ == drive_.spec().frames) return std::nullopt;
+  if (next_ == drive_.frames()) return std::nullopt;
   Frame frame{next_, next_ / drive_.fps(), drive_.Colour(drive_.SceneAt(next_), next_)};
   ++next_;
   return frame;
 }
 
 bool TownSource::Skip() {
-  if (next_ == drive_.spec().frames) return false;
+  if (next_ == drive_.frames()) return false;
   ++next_;
   return true;
 }

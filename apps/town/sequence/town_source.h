@@ -1,6 +1,6 @@
 #pragma once
 
-#include "apps/town/sequence/drive.h"
+#include "apps/town/sequence/town_drive.h"
 #include "slam/io/frame_source.h"
 
 namespace orb360::town {
@@ -10,15 +10,14 @@ class TownSource : public FrameSource {
  public:
   /// `name`: how messages call it. Building the town takes seconds. Throws UserError for an unknown
   /// light.
-  TownSource(const std::string& name, const TownSpec& spec, const EquirectangularCamera& camera,
-             double fps);
+  TownSource(const std::string& name, const TownSpec& spec, const Recording& recording);
 
   const SourceInfo& info() const override { return info_; }
   std::optional<Frame> Read() override;
   bool Skip() override;
 
  private:
-  Drive drive_;
+  TownDrive drive_;
   SourceInfo info_;
   int next_ = 0;
 };

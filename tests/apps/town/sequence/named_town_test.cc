@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "apps/town/sequence/drive.h"
+#include "apps/town/sequence/town_drive.h"
 #include "slam/check.h"
 
 namespace orb360::town {

@@ -1,4 +1,4 @@
-#include "apps/town/sequence/drive.h"
+#include "apps/town/sequence/town_drive.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +27,7 @@ TownSpec SmallTown() {
 
 /// Built once: it takes seconds.
 const Drive& SmallDrive() {
-  static const Drive drive(SmallTown(), EquirectangularCamera(512, 256), 20);
+  static const TownDrive drive(SmallTown(), {EquirectangularCamera(512, 256), 20, 4});
   return drive;
 }
 
@@ -61,7 +61,7 @@ class DriveSlow : public testing::Test {
 TEST_F(DriveSlow, GivesTheSameBytesForAnyNumberOfThreadsAndFromASecondBuild) {
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
-  const Drive again(SmallTown(), EquirectangularCamera(512, 256), 20);
+  const TownDrive again(SmallTown(), {EquirectangularCamera(512, 256), 20, 4});
   const FrameScene scene_one = again.SceneAt(30);
   const cv::Mat3b colour_one = again.Colour(scene_one, 30);
   const GeometryImage geometry_one = again.Geometry(scene_one, 30);
@@ -139,7 +139,7 @@ TEST_F(DriveSlow, TrafficMovesAndNothingElseDoes) {
 }
 
 TEST_F(DriveSlow, AnInterruptedRenderingResumesToTheSameFolder) {
-  const FolderOptions options{.frames = 4, .depth_every = 2, .masks = true};
+  const FolderOptions options{.depth_every = 2, .masks = true};
   const auto silent = [](int, int) {};
   const std::filesystem::path whole = folder_ / "whole";
   const std::filesystem::path resumed = folder_ / "resumed";
@@ -160,12 +160,16 @@ TEST_F(DriveSlow, AnInterruptedRenderingResumesToTheSameFolder) {
   EXPECT_FALSE(std::filesystem::exists(whole / "depth/000001.png"));
   const Dataset dataset = OpenDataset(whole);
   EXPECT_EQ(dataset.frame_rate, 20);
-  EXPECT_NEAR(dataset.camera_height.value(), SmallDrive().camera_height(), 1e-4);
+  EXPECT_NEAR(dataset.camera_height.value(), SmallDrive().camera_height().value(), 1e-4);
 }
 
 TEST_F(DriveSlow, AFolderWithAnotherSequenceIsRefused) {
-  RenderIntoFolder(SmallDrive(), folder_, {.frames = 1}, [](int, int) {});
-  EXPECT_THROW(RenderIntoFolder(SmallDrive(), folder_, {.frames = 2}, [](int, int) {}), UserError);
+  const auto render = [&](int frames) {
+    const TownDrive drive(SmallTown(), {EquirectangularCamera(64, 32), 20, frames});
+    RenderIntoFolder(drive, folder_, {}, [](int, int) {});
+  };
+  render(1);
+  EXPECT_THROW(render(2), UserError);
 }
 
 }  // namespace

@@ -1,0 +1,12 @@
+#include "apps/town/render/stage.h"
+
+#include "apps/town/render/openness.h"
+
+namespace orb360::town {
+
+Stage::Stage(Scenery* scenery, const Light& light, uint64_t seed)
+    : light_(light), sky_(light_, seed), scene_(*scenery), shader_(scenery->palette, light_, sky_) {
+  BakeOpenness(scene_, scenery);
+}
+
+}  // namespace orb360::town

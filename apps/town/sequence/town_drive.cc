@@ -1,0 +1,57 @@
+#include "apps/town/sequence/town_drive.h"
+
+#include <sstream>
+
+#include "apps/town/image/random.h"
+
+namespace orb360::town {
+namespace {
+
+/// Parts of a seed, so that what one part draws leaves the others as they are.
+enum SeedPart : uint64_t { kCameraHeight = 50, kLap, kOncomingLap, kTraffic, kShaking };
+
+uint64_t SeedOf(const TownSpec& spec, SeedPart part) { return Random(spec.seed).Fork(part).Next(); }
+
+std::vector<size_t> Reversed(const std::vector<size_t>& tour) {
+  return {tour.rbegin(), tour.rend()};
+}
+
+CameraMotionOptions MotionOf(const TownSpec& spec) {
+  const double height = Random(SeedOf(spec, kCameraHeight)).Uniform(1.8, 2.2);
+  return {.seed = SeedOf(spec, kShaking),
+          .height = spec.mount.height.value_or(height),
+          .pitch = spec.mount.pitch,
+          .roll = spec.mount.roll,
+          .shaking = spec.mount.shaking};
+}
+
+}  // namespace
+
+LapOptions LapOf(const TownSpec& spec) { return {.seed = SeedOf(spec, kLap)}; }
+
+TownDrive::TownDrive(const TownSpec& spec, const Recording& recording)
+    : Drive(recording),
+      spec_(spec),
+      town_(BuildTown(spec.seed, spec.plan)),
+      stage_(&town_.scenery, MakeLight(spec.light, spec.seed), spec.seed),
+      lap_(town_.plan, town_.plan.tour, LapOf(spec)),
+      oncoming_lap_(town_.plan, Reversed(town_.plan.tour), {.seed = SeedOf(spec, kOncomingLap)}),
+      traffic_(town_, lap_, oncoming_lap_,
+               {.seed = SeedOf(spec, kTraffic), .density = spec.traffic}),
+      motion_(MotionOf(spec)) {}
+
+Rigid3 TownDrive::WorldFromCamera(int frame) const {
+  return CameraPose(lap_, motion_, frame / fps());
+}
+
+std::vector<Instance> TownDrive::MovingAt(int frame) const { return traffic_.At(frame / fps()); }
+
+std::string TownDrive::Origin() const {
+  std::ostringstream text;
+  text << "town: " << spec_.name << "\nseed: " << spec_.seed << "\nlight: " << spec_.light
+       << "\ntraffic: " << spec_.traffic << "\nmount:  # radians\n  pitch: " << motion_.pitch
+       << "\n  roll: " << motion_.roll << "\n  shaking: " << motion_.shaking << "\n";
+  return text.str();
+}
+
+}  // namespace orb360::town

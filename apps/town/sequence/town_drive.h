@@ -1,0 +1,42 @@
+#pragma once
+
+#include "apps/town/drive/camera_motion.h"
+#include "apps/town/drive/lap.h"
+#include "apps/town/drive/traffic.h"
+#include "apps/town/sequence/drive.h"
+#include "apps/town/sequence/named_town.h"
+#include "apps/town/world/town.h"
+
+namespace orb360::town {
+
+/// How the camera's car drives its lap of a town.
+LapOptions LapOf(const TownSpec& spec);
+
+/// A car's drive through a procedural town.
+class TownDrive : public Drive {
+ public:
+  /// Builds the town, which takes seconds. Throws UserError for an unknown light.
+  TownDrive(const TownSpec& spec, const Recording& recording);
+
+  const Town& town() const { return town_; }
+  const Lap& lap() const { return lap_; }
+
+  Rigid3 WorldFromCamera(int frame) const override;
+  std::optional<double> camera_height() const override { return motion_.height; }
+  std::string Origin() const override;
+
+ protected:
+  const Stage& stage() const override { return stage_; }
+  std::vector<Instance> MovingAt(int frame) const override;
+
+ private:
+  TownSpec spec_;
+  Town town_;
+  Stage stage_;
+  Lap lap_;
+  Lap oncoming_lap_;
+  Traffic traffic_;
+  CameraMotionOptions motion_;
+};
+
+}  // namespace orb360::town
