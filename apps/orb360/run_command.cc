@@ -137,13 +137,13 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
 }
 
 void PrintResult(const nlohmann::json& summary, const std::filesystem::path& folder) {
-  std::cout
-      << summary["tracked"] << " of " << summary["frames"] << " frames tracked in "
-      << summary["maps"] << (summary["maps"] == 1 ? " map, " : " maps, ") << summary["keyframes"]
-      << " keyframes, " << summary["landmarks"] << " landmarks, "
-      << std::lround(summary["frames_per_second"].get<double>())
-      << " frames a second\nwrote trajectory.txt, keyframes.txt, cloud.ply and summary.json to "
-      << folder.string() << std::endl;
+  std::cout << summary["tracked"] << " of " << summary["frames"] << " frames tracked in "
+            << summary["maps"] << (summary["maps"] == 1 ? " map, " : " maps, ")
+            << summary["keyframes"] << " keyframes, " << summary["landmarks"] << " landmarks, "
+            << std::lround(summary["frames_per_second"].get<double>())
+            << " frames a second\nwrote trajectory.txt, keyframes.txt, cloud.ply, map.svg and "
+               "summary.json to "
+            << folder.string() << std::endl;
 }
 
 int Run(const RunOptions& options) {

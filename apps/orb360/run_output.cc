@@ -1,9 +1,11 @@
 #include "apps/orb360/run_output.h"
 
+#include <algorithm>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "slam/evaluation/map_plot.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/ply.h"
 
@@ -25,6 +27,23 @@ std::vector<StampedPose> ToStamped(const std::vector<FramePose>& frames) {
   poses.reserve(frames.size());
   for (const FramePose& frame : frames) poses.push_back({frame.timestamp, frame.world_from_camera});
   return poses;
+}
+
+/// The map from above, in the frame of the written files. The more landmarks two keyframes share,
+/// the darker their link.
+std::string DrawMap(const Reconstruction& reconstruction, const Rigid3& file_world_from_map) {
+  std::vector<Eigen::Vector2d> keyframes;
+  std::vector<Eigen::Vector2d> landmarks;
+  std::vector<MapLink> links;
+  for (const FramePose& frame : reconstruction.keyframes) {
+    keyframes.emplace_back((file_world_from_map * frame.world_from_camera.translation).head<2>());
+  }
+  for (const CloudPoint& point : reconstruction.landmarks)
+    landmarks.emplace_back((file_world_from_map * point.position).head<2>());
+  constexpr double kDarkest = 200;  // landmarks in common
+  for (const CovisibleFrames& pair : reconstruction.covisibility)
+    links.push_back({pair.first, pair.second, std::min(1.0, pair.shared / kDarkest)});
+  return PlotMap(keyframes, links, landmarks);
 }
 
 }  // namespace
@@ -60,6 +79,8 @@ void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::jso
   WriteTrajectory(folder_ / "keyframes.txt", ToStamped(reconstruction.keyframes),
                   file_world_from_map);
   WritePly(folder_ / "cloud.ply", cloud, file_world_from_map);
+  if (!reconstruction.keyframes.empty())
+    WriteFileAtomically(folder_ / "map.svg", DrawMap(reconstruction, file_world_from_map));
   WriteFileAtomically(folder_ / "summary.json", summary.dump(2) + "\n");
   std::filesystem::remove(folder_ / kJournalName);
 }

@@ -24,7 +24,8 @@ class RunOutput {
   /// Adds to the journal. Its world is that of the first pose.
   void Append(double timestamp, const Rigid3& map_from_camera);
 
-  /// Writes trajectory.txt, keyframes.txt, cloud.ply and summary.json, then removes the journal.
+  /// Writes trajectory.txt, keyframes.txt, cloud.ply, map.svg (where there is a keyframe) and
+  /// summary.json, then removes the journal.
   void Finish(const Reconstruction& reconstruction, const nlohmann::json& summary);
 
   const std::filesystem::path& folder() const { return folder_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "slam/map/covisibility.h"
 #include "slam/pipeline/ground.h"
 
 namespace orb360 {
@@ -37,6 +38,15 @@ Reconstruction MakeReconstruction(const std::vector<Map>& maps,
   }
   std::sort(result.keyframes.begin(), result.keyframes.end(),
             [](const FramePose& a, const FramePose& b) { return a.index < b.index; });
+  std::map<int, size_t> position_of;  // in result.keyframes, by frame index
+  for (size_t i = 0; i < result.keyframes.size(); ++i) position_of[result.keyframes[i].index] = i;
+  for (const Map& map : maps) {
+    for (const CovisibilityEdge& edge : FindCovisibilityEdges(map, kCovisible)) {
+      result.covisibility.push_back({position_of.at(map.keyframe(edge.first).frame_index),
+                                     position_of.at(map.keyframe(edge.second).frame_index),
+                                     edge.shared});
+    }
+  }
   if (!result.keyframes.empty()) {
     result.features_per_keyframe = matched / static_cast<double>(result.keyframes.size());
   }

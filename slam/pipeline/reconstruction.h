@@ -32,6 +32,13 @@ struct CloudPoint {
   Color color;
 };
 
+/// Two keyframes that see the same landmarks.
+struct CovisibleFrames {
+  size_t first;  // indices into Reconstruction::keyframes
+  size_t second;
+  int shared;  // landmarks seen by both
+};
+
 /// One map of a reconstruction.
 struct MapSummary {
   int first_frame = 0;  // indices of tracked frames
@@ -41,10 +48,14 @@ struct MapSummary {
   int landmarks = 0;
 };
 
+/// Landmarks in common that link two keyframes in the covisibility graph.
+inline constexpr int kCovisible = 15;
+
 /// Everything a run computed, in the internal conventions of frames (camera -X forward).
 struct Reconstruction {
-  std::vector<FramePose> frames;     // ordered by index
-  std::vector<FramePose> keyframes;  // ordered by index
+  std::vector<FramePose> frames;              // ordered by index
+  std::vector<FramePose> keyframes;           // ordered by index
+  std::vector<CovisibleFrames> covisibility;  // with at least kCovisible landmarks in common
   std::vector<CloudPoint> landmarks;
   std::vector<MapSummary> maps;
   std::optional<int> initialized_at;  // frame at which the first map was made

@@ -113,7 +113,7 @@ TEST_F(RunTest, TheSameInputGivesTheSameBytesWithOneAndTwoThreads) {
   WriteRoom();
   EXPECT_EQ(Run().status, 0);
   EXPECT_EQ(RunOrb360({"run", Input(), "--out", folder_ / "two", "--threads", "2"}).status, 0);
-  for (const char* name : {"trajectory.txt", "keyframes.txt", "cloud.ply"}) {
+  for (const char* name : {"trajectory.txt", "keyframes.txt", "cloud.ply", "map.svg"}) {
     EXPECT_EQ(ReadText(OutFile(name)), ReadText(folder_ / "two" / name)) << name;
   }
 }

@@ -1,4 +1,4 @@
-#include "slam/evaluation/plot.h"
+#include "slam/evaluation/trajectory_plot.h"
 
 #include <cmath>
 #include <sstream>

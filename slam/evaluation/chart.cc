@@ -1,0 +1,111 @@
+#include "slam/evaluation/chart.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace orb360 {
+namespace {
+
+constexpr size_t kMostPoints = 4000;
+
+std::string Pixel(double value) { return Decimal(value, 1); }
+
+/// 1, 2 or 5 times a power of ten, so that about `count` steps make up `extent`.
+double TickStep(double extent, int count) {
+  const double raw = extent / count;
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  const double digit = raw / power;
+  return power * (digit < 1.5 ? 1.0 : digit < 3.5 ? 2.0 : digit < 7.5 ? 5.0 : 10.0);
+}
+
+int TickDecimals(double step) {
+  return std::clamp(static_cast<int>(-std::floor(std::log10(step) + 1e-9)), 0, 9);
+}
+
+std::string Text(double x, double y, const std::string& anchor, const std::string& text) {
+  return "<text x=\"" + Pixel(x) + "\" y=\"" + Pixel(y) + "\" text-anchor=\"" + anchor + "\">" +
+         text + "</text>\n";
+}
+
+}  // namespace
+
+Eigen::AlignedBox2d EqualAspect(const Eigen::AlignedBox2d& box, const Eigen::Vector2d& size) {
+  const double metres_per_pixel =
+      1.1 * std::max({box.sizes().x() / size.x(), box.sizes().y() / size.y(), 1e-9});
+  const Eigen::Vector2d half = 0.5 * metres_per_pixel * size;
+  return {box.center() - half, box.center() + half};
+}
+
+size_t ThinningStep(size_t points) { return points / kMostPoints + 1; }
+
+std::string Decimal(double value, int decimals) {
+  std::array<char, 400> buffer;
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value + 0.0,
+                                    std::chars_format::fixed, decimals);
+  return {buffer.data(), result.ptr};
+}
+
+std::string DrawLine(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                     const std::string& attributes) {
+  return "<line x1=\"" + Pixel(from.x()) + "\" y1=\"" + Pixel(from.y()) + "\" x2=\"" +
+         Pixel(to.x()) + "\" y2=\"" + Pixel(to.y()) + "\" " + attributes + "/>\n";
+}
+
+std::string DrawCircle(const Eigen::Vector2d& centre, double radius,
+                       const std::string& attributes) {
+  return "<circle cx=\"" + Pixel(centre.x()) + "\" cy=\"" + Pixel(centre.y()) + "\" r=\"" +
+         Pixel(radius) + "\" " + attributes + "/>\n";
+}
+
+std::string DrawPolyline(const std::vector<Eigen::Vector2d>& points, const Axes& axes,
+                         const std::string& attributes) {
+  std::string svg = "<polyline fill=\"none\" " + attributes + " points=\"";
+  const size_t step = ThinningStep(points.size());
+  for (size_t i = 0; i < points.size(); i += step) {
+    const Eigen::Vector2d pixel = axes.ToPixel(points[i]);
+    svg += Pixel(pixel.x()) + "," + Pixel(pixel.y()) + " ";
+  }
+  return svg + "\"/>\n";
+}
+
+std::string DrawAxes(const Axes& axes, const std::string& title, const std::string& x_label,
+                     const std::string& y_label) {
+  const Eigen::Vector2d corner = axes.origin - Eigen::Vector2d(0, axes.size.y());
+  std::string svg = "<rect x=\"" + Pixel(corner.x()) + "\" y=\"" + Pixel(corner.y()) +
+                    "\" width=\"" + Pixel(axes.size.x()) + "\" height=\"" + Pixel(axes.size.y()) +
+                    "\" fill=\"none\" stroke=\"#888\"/>\n";
+  for (int axis = 0; axis < 2; ++axis) {
+    const double low = axes.data.min()[axis];
+    const double high = axes.data.max()[axis];
+    const double step = TickStep(high - low, static_cast<int>(axes.size[axis] / 80.0));
+    for (long i = std::lround(std::ceil(low / step)); step * static_cast<double>(i) <= high; ++i) {
+      const double tick = step * static_cast<double>(i);
+      Eigen::Vector2d from = axes.data.min();
+      Eigen::Vector2d to = axes.data.max();
+      from[axis] = to[axis] = tick;
+      const Eigen::Vector2d at = axes.ToPixel(from);
+      svg += DrawLine(at, axes.ToPixel(to), "stroke=\"#e4e4e4\"");
+      const std::string label = Decimal(tick, TickDecimals(step));
+      svg += axis == 0 ? Text(at.x(), at.y() + 18, "middle", label)
+                       : Text(at.x() - 6, at.y() + 4, "end", label);
+    }
+  }
+  svg += Text(corner.x() + axes.size.x() / 2, axes.origin.y() + 38, "middle", x_label);
+  svg += Text(corner.x(), corner.y() - 10, "start", y_label);
+  svg += Text(corner.x() + axes.size.x() / 2, corner.y() - 10, "middle", title);
+  return svg;
+}
+
+std::string MakeSvg(const Eigen::Vector2d& size, const std::string& elements) {
+  const std::string width = Decimal(size.x(), 0);
+  const std::string height = Decimal(size.y(), 0);
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + width + " " + height +
+         "\" width=\"" + width + "\" height=\"" + height +
+         "\" font-family=\"sans-serif\" font-size=\"13\">\n"
+         "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" +
+         elements + "</svg>\n";
+}
+
+}  // namespace orb360

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace orb360 {
+
+/// A rectangle of a picture that shows a rectangle of data.
+struct Axes {
+  Eigen::AlignedBox2d data;
+  Eigen::Vector2d origin;  ///< Pixel of the data's lower left corner.
+  Eigen::Vector2d size;    ///< Pixels.
+
+  Eigen::Vector2d ToPixel(const Eigen::Vector2d& p) const {
+    const Eigen::Vector2d share = (p - data.min()).cwiseQuotient(data.sizes());
+    return origin + Eigen::Vector2d(share.x() * size.x(), -share.y() * size.y());
+  }
+};
+
+/// The data's box with a margin of 5 %, extended to the shape of `size`, so that a metre is the
+/// same to the right and upward.
+Eigen::AlignedBox2d EqualAspect(const Eigen::AlignedBox2d& box, const Eigen::Vector2d& size);
+
+/// Points closer than can be told apart are left out: every n-th is drawn.
+size_t ThinningStep(size_t points);
+
+/// Elements of SVG. Positions are in pixels, y downward; `attributes` as in `stroke="#000"`.
+/// Numbers are written the same way in every locale.
+std::string Decimal(double value, int decimals);
+std::string DrawLine(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                     const std::string& attributes);
+std::string DrawCircle(const Eigen::Vector2d& centre, double radius, const std::string& attributes);
+/// Points of the data, thinned.
+std::string DrawPolyline(const std::vector<Eigen::Vector2d>& points, const Axes& axes,
+                         const std::string& attributes);
+/// Frame, grid and labels of both axes.
+std::string DrawAxes(const Axes& axes, const std::string& title, const std::string& x_label,
+                     const std::string& y_label);
+
+/// A whole file: elements on white ground.
+std::string MakeSvg(const Eigen::Vector2d& size, const std::string& elements);
+
+}  // namespace orb360

@@ -1,0 +1,88 @@
+#include "slam/evaluation/map_plot.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "slam/check.h"
+#include "slam/evaluation/chart.h"
+
+namespace orb360 {
+namespace {
+
+constexpr size_t kMostLandmarks = 20000;
+constexpr int kShades = 5;  // of links
+
+/// A command of an SVG path.
+std::string To(char command, const Eigen::Vector2d& pixel) {
+  std::string text(1, command);
+  text += Decimal(pixel.x(), 1);
+  text += ' ';
+  text += Decimal(pixel.y(), 1);
+  return text;
+}
+
+/// The range that holds all but the outermost twentieth at either end.
+Eigen::AlignedBox1d Bulk(std::span<const Eigen::Vector2d> points, int axis) {
+  if (points.empty()) return {};
+  std::vector<double> values;
+  values.reserve(points.size());
+  for (const Eigen::Vector2d& p : points) values.push_back(p[axis]);
+  const auto low = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 20);
+  std::nth_element(values.begin(), low, values.end());
+  const double minimum = *low;
+  const auto high = values.end() - 1 - static_cast<std::ptrdiff_t>(values.size() / 20);
+  std::nth_element(values.begin(), high, values.end());
+  return Eigen::AlignedBox1d(Eigen::Matrix<double, 1, 1>(minimum),
+                             Eigen::Matrix<double, 1, 1>(*high));
+}
+
+/// The keyframes and, up to the extent of the path around it, the bulk of the landmarks.
+Eigen::AlignedBox2d Extent(std::span<const Eigen::Vector2d> keyframes,
+                           std::span<const Eigen::Vector2d> landmarks) {
+  Eigen::AlignedBox2d path;
+  for (const Eigen::Vector2d& p : keyframes) path.extend(p);
+  if (landmarks.empty()) return path;
+  const double reach = std::max(path.sizes().maxCoeff(), 1e-3);
+  Eigen::AlignedBox2d box = path;
+  for (int axis = 0; axis < 2; ++axis) {
+    const Eigen::AlignedBox1d bulk = Bulk(landmarks, axis);
+    box.min()[axis] = std::min(path.min()[axis], std::max(bulk.min()[0], path.min()[axis] - reach));
+    box.max()[axis] = std::max(path.max()[axis], std::min(bulk.max()[0], path.max()[axis] + reach));
+  }
+  return box;
+}
+
+}  // namespace
+
+std::string PlotMap(std::span<const Eigen::Vector2d> keyframes, std::span<const MapLink> links,
+                    std::span<const Eigen::Vector2d> landmarks) {
+  ORB360_CHECK(!keyframes.empty());
+  const Eigen::Vector2d size(880, 880);
+  const Axes axes{EqualAspect(Extent(keyframes, landmarks), size), {90, 930}, size};
+  std::string svg = DrawAxes(axes, "from above", "x", "y");
+  // A stroke as short as its width for each landmark: a tenth of the size of as many circles.
+  std::string marks;
+  const size_t step = landmarks.size() / kMostLandmarks + 1;
+  for (size_t i = 0; i < landmarks.size(); i += step) {
+    if (axes.data.contains(landmarks[i])) marks += To('M', axes.ToPixel(landmarks[i])) + "h1.2";
+  }
+  svg += "<path stroke=\"#999\" stroke-width=\"1.2\" d=\"" + marks + "\"/>\n";
+  for (int shade = 0; shade < kShades; ++shade) {
+    std::string path;
+    for (const MapLink& link : links) {
+      if (std::clamp(static_cast<int>(link.weight * kShades), 0, kShades - 1) != shade) continue;
+      path += To('M', axes.ToPixel(keyframes[link.first])) +
+              To('L', axes.ToPixel(keyframes[link.second]));
+    }
+    svg += "<path stroke=\"#1a9850\" stroke-width=\"0.8\" opacity=\"" +
+           Decimal((shade + 1.0) / kShades, 1) + "\" d=\"" + path + "\"/>\n";
+  }
+  svg += DrawPolyline({keyframes.begin(), keyframes.end()}, axes,
+                      "stroke=\"#2040c0\" stroke-width=\"1.2\"");
+  for (const Eigen::Vector2d& p : keyframes)
+    svg += DrawCircle(axes.ToPixel(p), 2.2, "fill=\"#2040c0\"");
+  svg += DrawCircle(axes.ToPixel(keyframes.front()), 6, "fill=\"none\" stroke=\"#000\"");
+  return MakeSvg({1000, 1000}, svg);
+}
+
+}  // namespace orb360
