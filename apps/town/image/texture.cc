@@ -70,6 +70,10 @@ Texture::Texture(int width, int height, std::vector<Rgba> texels) {
                    std::has_single_bit(static_cast<unsigned>(height)) &&
                    texels.size() == static_cast<size_t>(width) * static_cast<size_t>(height),
                width, height, texels.size());
+  covered_.resize(texels.size() / 64 + 1);
+  for (size_t i = 0; i < texels.size(); ++i) {
+    if (texels[i].a >= 0.5F) covered_[i / 64] |= 1ULL << (i % 64);
+  }
   while (true) {
     levels_.push_back({width, height, texels_.size()});
     for (const Rgba& texel : texels) texels_.push_back(Encode(texel));
@@ -78,16 +82,6 @@ Texture::Texture(int width, int height, std::vector<Rgba> texels) {
     width = std::max(width / 2, 1);
     height = std::max(height / 2, 1);
   }
-}
-
-float Texture::Coverage(float u, float v) const {
-  const Level& l = levels_.front();
-  const int x = FloorToInt(u * static_cast<float>(l.width)) & (l.width - 1);
-  const int y = FloorToInt(v * static_cast<float>(l.height)) & (l.height - 1);
-  return static_cast<float>(texels_[static_cast<size_t>(y) * static_cast<size_t>(l.width) +
-                                    static_cast<size_t>(x)] >>
-                            24) *
-         (1.0F / 255);
 }
 
 }  // namespace orb360::town

@@ -63,8 +63,15 @@ class Texture {
     return Decode(Lerp(Lerp(row0[x0], row0[x1], wx), Lerp(row1[x0], row1[x1], wx), wy));
   }
 
-  /// Coverage of the nearest texel of level 0.
-  float Coverage(float u, float v) const;
+  /// Whether the nearest texel of level 0 covers at least half.
+  bool Covers(float u, float v) const {
+    const Level& l = levels_.front();
+    const auto x = static_cast<size_t>(FloorToInt(u * static_cast<float>(l.width)) & (l.width - 1));
+    const auto y =
+        static_cast<size_t>(FloorToInt(v * static_cast<float>(l.height)) & (l.height - 1));
+    const size_t texel = y * static_cast<size_t>(l.width) + x;
+    return (covered_[texel / 64] >> (texel % 64) & 1U) != 0;
+  }
 
  private:
   struct Level {
@@ -93,6 +100,7 @@ class Texture {
 
   std::vector<Level> levels_;
   std::vector<uint32_t> texels_;
+  std::vector<uint64_t> covered_;  ///< one bit a texel of level 0
 };
 
 /// log2(x) for positive x, within 0.09: enough to choose a mip level.

@@ -1,8 +1,7 @@
 #pragma once
 
 #include <array>
-#include <deque>
-#include <memory>
+#include <map>
 #include <span>
 #include <utility>
 #include <vector>
@@ -65,12 +64,11 @@ struct SurfaceHit {
   const Triangle* triangle;
 };
 
-/// The fixed mesh of a scenery and its instances of models as two ray-tracing structures. Keeps
-/// pointers to what it was made from. Building uses one thread, so that the structure (and the
-/// order in which surfaces at equal distances are found) is always the same.
-///
-/// Two, because Embree's frustum traversal of coherent packets is fast in plain meshes and very
-/// slow through instances, which are traversed ray by ray.
+/// A scenery as ray-tracing structures: what stands still as one plain scene, which Embree
+/// traverses by the packet (through instances it goes ray by ray, twice as slowly), and a scene for
+/// each model, for instances that move. Keeps pointers to what it was made from. Building uses one
+/// thread, so that the structure (and the order in which surfaces at equal distances are found) is
+/// always the same.
 class RayScene {
  public:
   explicit RayScene(const Scenery& scenery);
@@ -85,29 +83,33 @@ class RayScene {
  private:
   friend class FrameScene;
 
-  /// The triangles of a mesh from `first` on that are one geometry.
-  struct Part {
-    const Palette* palette;
-    const Mesh* mesh;
-    size_t first;
+  /// A triangle that is there only where its texture is: texture coordinates of the first corner,
+  /// and the ways from there to the second and the third.
+  struct Cutout {
+    Vector2f uv;
+    Vector2f to_second;
+    Vector2f to_third;
+    const Texture* texture;
   };
-  /// A mesh's opaque part and its part with cut-outs, by Embree's geomID.
-  using Parts = std::array<Part, 2>;
+  /// A mesh that stands somewhere. Its opaque part and its part with cut-outs are two geometries.
+  struct Placed {
+    const Mesh* mesh;
+    const Instance* instance;  // null for the fixed mesh, and for models in their own frame
+  };
 
   Scene NewScene(RTCBuildQuality quality) const;
-  void AttachMesh(RTCScene scene, const Parts& parts) const;
-  /// A committed scene of instances whose ids count from `first_id`.
-  Scene MakeInstanceScene(std::span<const Instance> instances, size_t first_id,
-                          RTCBuildQuality quality) const;
+  /// Attaches the two parts as geometries 2 * index and 2 * index + 1.
+  void Attach(RTCScene scene, size_t index, const Placed& placed) const;
+  /// A committed scene of instances.
+  Scene MakeInstanceScene(std::span<const Instance> instances) const;
   static void RejectCutouts(const RTCFilterFunctionNArguments* arguments);
 
   const Scenery* scenery_;
   Device device_;
-  std::unique_ptr<Parts> fixed_parts_;  // Embree holds the addresses
-  std::deque<Parts> model_parts_;       // likewise
+  std::map<const Mesh*, std::vector<Cutout>> cutouts_;  // by mesh; Embree holds the addresses
+  std::vector<Placed> placed_;                          // in fixed_scene_, by geomID / 2
   std::vector<Scene> model_scenes_;
   Scene fixed_scene_;
-  Scene instance_scene_;
 };
 
 /// The scenery together with what moves through it at one moment. The RayScene must outlive it.
@@ -121,6 +123,8 @@ class FrameScene {
 
   /// The surface in one lane of a packet which hit (geomID is not invalid).
   SurfaceHit Resolve(const RTCHit16& hit, int lane) const;
+  /// Its normal in the world, of any length.
+  Vector3f GeometricNormal(const RTCHit16& hit, int lane) const;
 
   /// Numbers for masks: nothing, the fixed mesh, then the scenery's instances, then what moves.
   static constexpr uint16_t kNothing = 0;

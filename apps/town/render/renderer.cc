@@ -143,9 +143,7 @@ class PacketRenderer {
     patch.first_lane = lane;
     patch.surface = shader_->Describe(hit, rays_.hit.u[lane], rays_.hit.v[lane], direction,
                                       range * sample_angle_);
-    Vector3f geometric(rays_.hit.Ng_x[lane], rays_.hit.Ng_y[lane], rays_.hit.Ng_z[lane]);
-    if (hit.instance != nullptr) geometric = hit.instance->world_from_model.linear() * geometric;
-    geometric.normalize();
+    const Vector3f geometric = scene_->GeometricNormal(rays_.hit, lane).normalized();
     const float side = geometric.dot(direction) > 0 ? -1.0F : 1.0F;
     patch.lift = side * (2e-3F + 1e-5F * range) *
                  geometric;  // metres; well above the rounding of coordinates

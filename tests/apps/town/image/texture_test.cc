@@ -48,8 +48,8 @@ TEST(Texture, ColourOutsideACutoutDoesNotBleedIn) {
   const Rgba mean = half.Sample(0.5F, 0.5F, 6);
   EXPECT_NEAR(mean.r, 0.5F, 0.01F);
   EXPECT_NEAR(mean.a, 0.5F, 0.01F);
-  EXPECT_EQ(half.Coverage(0.25F, 0.5F), 1.0F);
-  EXPECT_EQ(half.Coverage(0.75F, 0.5F), 0.0F);
+  EXPECT_TRUE(half.Covers(0.25F, 0.5F));
+  EXPECT_FALSE(half.Covers(0.75F, 0.5F));
 }
 
 TEST(Texture, RefusesSidesThatAreNoPowersOfTwo) {
