@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <omp.h>
@@ -12,6 +13,7 @@
 
 #include "apps/town/sequence/folder.h"
 #include "apps/town/sequence/named_town.h"
+#include "apps/town/sequence/statistics.h"
 #include "apps/town/sequence/town_drive.h"
 #include "slam/check.h"
 
@@ -81,6 +83,23 @@ void Render(const RenderArguments& arguments) {
                    [&bar](int done, int rendered) { bar.Show(done, rendered); });
 }
 
+struct DescribeArguments {
+  std::vector<std::string> towns;
+  int every = 50;
+};
+
+/// Prints what drives are like.
+void Describe(const DescribeArguments& arguments) {
+  constexpr int kSought = 2000;
+  std::vector<DriveStatistics> statistics;
+  for (const std::string& name : arguments.towns) {
+    const TownSpec spec = FindTown(name);
+    const TownDrive drive(spec, {EquirectangularCamera(1024, 512), 20, spec.frames});
+    statistics.push_back(MeasureDrive(drive, arguments.every, kSought));
+  }
+  std::fputs(StatisticsTable(arguments.towns, statistics).c_str(), stdout);
+}
+
 }  // namespace
 }  // namespace orb360::town
 
@@ -139,9 +158,19 @@ int main(int argc, char** argv) {
   render->add_option("--threads", arguments.threads, "Threads to use; 0: all cores")
       ->capture_default_str()
       ->check(CLI::Range(0, 256));
+  orb360::town::DescribeArguments described;
+  CLI::App* describe = app.add_subcommand(
+      "describe", "Print speeds, turns, revisits, ranges and corners of drives as a table");
+  describe->add_option("TOWN", described.towns, "Town1 ... Town5, Loop, or a seed")->required();
+  describe
+      ->add_option("--every", described.every,
+                   "Look for ranges and corners in every n-th frame, rendered at 1024x512")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000000));
   CLI11_PARSE(app, argc, argv);
   try {
-    orb360::town::Render(arguments);
+    if (render->parsed()) orb360::town::Render(arguments);
+    if (describe->parsed()) orb360::town::Describe(described);
   } catch (const orb360::UserError& error) {
     std::fprintf(stderr, "town: %s\n", error.what());
     return 1;

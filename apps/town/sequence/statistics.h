@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/town/sequence/drive.h"
+
+namespace orb360::town {
+
+/// How a path comes back to where it was: within 5 m of a place, after more than 50 m of travel.
+struct Revisits {
+  double same_share = 0;      ///< of the path, heading within 45 degrees of the earlier one
+  double opposite_share = 0;  ///< of the path, heading within 45 degrees of the reverse
+};
+Revisits FindRevisits(std::span<const Rigid3> world_from_camera);
+
+/// Upper ends of the bins of range, metres; one more bin holds what is farther, one the sky.
+inline constexpr std::array<double, 6> kRangeBins = {2.5, 5, 10, 20, 40, 80};
+
+/// What a drive is like.
+struct DriveStatistics {
+  int frames = 0;
+  double seconds = 0;
+  double path_length = 0;    ///< metres
+  double mean_speed = 0;     ///< metres per second, while driving
+  double maximum_speed = 0;  ///< metres per second
+  double standing_share = 0;
+  double climb = 0;              ///< metres between the lowest and the highest place
+  double turn_rate_95 = 0;       ///< degrees per second, 95th percentile
+  double maximum_turn_rate = 0;  ///< degrees per second
+  double total_turn = 0;         ///< degrees, all turns to either side added up
+  Revisits revisits;
+  std::array<double, kRangeBins.size() + 2> range_shares{};  ///< of the sphere's solid angle
+  double moving_share = 0;                                   ///< of the solid angle, what moves
+  double mean_corners = 0;     ///< corners found in a picture, at most as many as were sought
+  double minimum_corners = 0;  ///< in the poorest of the pictures looked at
+};
+
+/// Measures a drive from its poses, and ranges and corners (ORB, `sought` of them) in every
+/// `every`-th frame.
+DriveStatistics MeasureDrive(const Drive& drive, int every, int sought);
+
+/// A Markdown table with a column for each drive.
+std::string StatisticsTable(std::span<const std::string> names,
+                            std::span<const DriveStatistics> statistics);
+
+}  // namespace orb360::town
