@@ -10,10 +10,10 @@ namespace orb360::town {
 namespace {
 
 constexpr double kStep = 0.25;                // metres between the points of the driven line
-constexpr double kLateralAcceleration = 3.5;  // metres per second squared, in bends
-constexpr double kBraking = 2.4;              // metres per second squared
+constexpr double kLateralAcceleration = 4.0;  // metres per second squared, in bends
+constexpr double kBraking = 2.8;              // metres per second squared
 constexpr double kStopShare = 0.15;           // of the junctions, where the driver waits
-constexpr double kAccelerating = 2.0;
+constexpr double kAccelerating = 2.4;
 
 /// A stretch of one street between two junctions, as driven.
 struct Leg {

@@ -23,7 +23,7 @@ struct Named {
   int tour_blocks;
 };
 /// The tours are a little shorter than the sequences, so that each path closes its loop.
-constexpr std::array<Named, 6> kTowns = {{{"Town1", 1, "noon", 0.3, 1000, 3, 3, 35, 2},
+constexpr std::array<Named, 6> kTowns = {{{"Town1", 1, "noon", 0.3, 1000, 3, 3, 32, 2},
                                           {"Town2", 2, "sunset", 0.5, 2000, 4, 3, 54, 3},
                                           {"Town3", 3, "morning", 0.2, 2850, 4, 4, 56, 4},
                                           {"Town4", 4, "noon", 0.8, 3000, 5, 3, 50, 5},

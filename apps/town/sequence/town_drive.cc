@@ -37,7 +37,9 @@ TownDrive::TownDrive(const TownSpec& spec, const Recording& recording)
       lap_(town_.plan, town_.plan.tour, LapOf(spec)),
       oncoming_lap_(town_.plan, Reversed(town_.plan.tour), {.seed = SeedOf(spec, kOncomingLap)}),
       traffic_(town_, lap_, oncoming_lap_,
-               {.seed = SeedOf(spec, kTraffic), .density = spec.traffic}),
+               {.seed = SeedOf(spec, kTraffic),
+                .density = spec.traffic,
+                .until = recording.frames / recording.fps}),
       motion_(MotionOf(spec)) {}
 
 Rigid3 TownDrive::WorldFromCamera(int frame) const {

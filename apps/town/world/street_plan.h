@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -26,9 +27,10 @@ struct Street {
   bool has_centre_line = true;
   bool parking = false;  ///< a row of parked cars on either side, kParkingWidth wide
 
-  /// Metres from the centreline to the middle of the lane on either side.
+  /// Metres from the centreline to the middle of what is driven on either side: of the lane, but
+  /// where it is very wide, nearer to the centre.
   double LaneOffset(double half_width) const {
-    return 0.5 * (half_width - (parking ? kParkingWidth : 0.0));
+    return std::min(0.5 * (half_width - (parking ? kParkingWidth : 0.0)), 2.1);
   }
 
   double Length() const { return points.back().station; }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
+#include <utility>
 
 #include "slam/check.h"
 
@@ -26,13 +28,39 @@ bool TurnsRound(const std::vector<size_t>& walk) {
   return false;
 }
 
-}  // namespace
+/// Whether a closed walk uses some street in both directions.
+bool ComesBack(const std::vector<size_t>& walk) {
+  const size_t n = walk.size();
+  std::set<std::pair<size_t, size_t>> legs;
+  for (size_t i = 0; i < n; ++i) legs.emplace(walk[i], walk[(i + 1) % n]);
+  return std::any_of(legs.begin(), legs.end(), [&](const auto& leg) {
+    return legs.contains({leg.second, leg.first});
+  });
+}
 
-std::vector<size_t> PlanTour(const TourOptions& options, Random random) {
+/// A walk around two neighbouring blocks PQRS and QXYR that soon repeats a side in the same
+/// direction (PQ) and comes back along one in the opposite direction (QR, RQ).
+std::vector<size_t> CircleTwoBlocks(const TourOptions& options, Random& random) {
+  const int columns = options.columns;
+  const int rows = options.rows;
+  const bool side_by_side = columns > 2 && (rows == 2 || random.Chance(0.5));
+  // Counter-clockwise either way: with x and y swapped, the walk is mirrored and begins elsewhere.
+  const int column = random.Int(side_by_side ? columns - 2 : columns - 1);
+  const int row = random.Int(side_by_side ? rows - 1 : rows - 2);
+  const auto node = [&](int along, int across) {
+    const int c = side_by_side ? column + along : column + 1 - across;
+    const int r = side_by_side ? row + across : row + along;
+    return static_cast<size_t>(r * columns + c);
+  };
+  const size_t p = node(0, 0), q = node(1, 0), x = node(2, 0);
+  const size_t s = node(0, 1), r = node(1, 1), y = node(2, 1);
+  return {p, q, r, s, p, q, x, y, r, q, x, y, r, s};
+}
+
+/// Circles around blocks, the next one entered at a junction of the walk so far.
+std::vector<size_t> CircleBlocks(const TourOptions& options, Random random) {
   const int block_columns = options.columns - 1;
   const int block_rows = options.rows - 1;
-  ORB360_CHECK(block_columns >= 1 && block_rows >= 1 && options.blocks >= 1, options.columns,
-               options.rows, options.blocks);
   const bool clockwise = random.Chance(0.5);
   std::vector<bool> circled(static_cast<size_t>(block_columns) * static_cast<size_t>(block_rows),
                             false);
@@ -61,6 +89,21 @@ std::vector<size_t> PlanTour(const TourOptions& options, Random random) {
     take(column, row);
     ++blocks;
   }
+  return walk;
+}
+
+}  // namespace
+
+std::vector<size_t> PlanTour(const TourOptions& options, Random random) {
+  ORB360_CHECK(options.columns >= 2 && options.rows >= 2 && options.blocks >= 1, options.columns,
+               options.rows, options.blocks);
+  if (options.blocks == 1) return CircleBlocks(options, random);
+  if (options.blocks == 2 && options.columns * options.rows > 4)
+    return CircleTwoBlocks(options, random);
+  constexpr uint64_t kTries = 200;
+  std::vector<size_t> walk;
+  for (uint64_t i = 0; i < kTries && !ComesBack(walk); ++i)
+    walk = CircleBlocks(options, random.Fork(i));
   return walk;
 }
 

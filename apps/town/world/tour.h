@@ -14,9 +14,9 @@ struct TourOptions {
 };
 
 /// A closed walk over the junctions of a lattice, without turning round at any of them: circles
-/// around blocks, the next one entered at a junction of the walk so far. Blocks that share a side
-/// are circled both in the same sense, so that the walk comes back along the shared side in the
-/// opposite direction.
+/// around blocks, all in the same sense, the next one entered at a junction of the walk so far, so
+/// that the walk comes back along the side that two blocks share in the opposite direction. Two
+/// blocks are circled in a longer walk that also repeats a side in the same direction soon.
 std::vector<size_t> PlanTour(const TourOptions& options, Random random);
 
 }  // namespace orb360::town

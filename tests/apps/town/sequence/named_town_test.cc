@@ -1,9 +1,11 @@
 #include "apps/town/sequence/named_town.h"
 
 #include <set>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "apps/town/sequence/statistics.h"
 #include "apps/town/sequence/town_drive.h"
 #include "slam/check.h"
 
@@ -27,17 +29,22 @@ TEST(FindTown, EvaluationTownsHaveThePapersLengthsAndLight) {
   EXPECT_EQ(FindTown("Town5").light, "sunset");
 }
 
-TEST(FindTown, ToursCloseALoopWithinTheSequence) {
-  // A tour of several blocks is back at a junction when the first block is circled, well before
-  // the lap is over.
-  for (const char* name : {"Town1", "Town2", "Town3", "Town4", "Town5", "Loop"}) {
+TEST(FindTown, EvaluationPathsCloseALoopAndComeBackBothWays) {
+  for (const char* name : {"Town1", "Town2", "Town3", "Town4", "Town5"}) {
     const TownSpec spec = FindTown(name);
     const StreetPlan plan = PlanTown(spec.seed, spec.plan);
     const Lap lap(plan, plan.tour, LapOf(spec));
-    const double lap_frames = 20 * lap.duration();
-    const double share = spec.plan.tour_blocks == 1 ? 0.95 : 1.1;
-    EXPECT_LT(lap_frames, share * spec.frames) << name << ": " << lap.length() << " m";
-    EXPECT_GT(lap_frames, 0.4 * spec.frames) << name << ": " << lap.length() << " m";
+    std::vector<Rigid3> path;
+    double length = 0;
+    for (int frame = 0; frame < spec.frames; ++frame) {
+      path.push_back(CameraPose(lap, {}, frame / 20.0));
+      if (frame > 0)
+        length += (path[path.size() - 1].translation - path[path.size() - 2].translation).norm();
+    }
+    const Revisits revisits = FindRevisits(path);
+    EXPECT_GT(revisits.same_share * length, 15) << name << ": metres of " << length;
+    EXPECT_GT(revisits.opposite_share * length, 15) << name << ": metres of " << length;
+    EXPECT_GT(length / spec.frames * 20, 5) << name << ": mean speed, stops included";
   }
 }
 
