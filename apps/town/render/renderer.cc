@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <vector>
+#include <numbers>
 
+#include "apps/town/render/ray_directions.h"
 #include "apps/town/render/tone.h"
 
 namespace orb360::town {
@@ -23,46 +23,23 @@ constexpr std::array<std::array<double, 2>, kSamples> kPattern = {
 /// Spread over a mip level, so that the mean of a pixel's samples is filtered trilinearly.
 constexpr std::array<float, kSamples> kLevelOffset = {0.125F, 0.625F, 0.875F, 0.375F};
 
-/// Ray directions in the world, from one table over the columns and one over the rows: with
-/// EquirectangularCamera, direction(u, v) = cos(latitude) * horizontal(u) + sin(latitude) * up.
-class RayDirections {
- public:
-  RayDirections(const EquirectangularCamera& camera, const Rigid3& world_from_camera,
-                const std::vector<std::array<double, 2>>& pattern)
-      : pattern_size_(pattern.size()) {
-    up_ = (world_from_camera.rotation * Eigen::Vector3d::UnitZ()).cast<float>();
-    for (int column = 0; column < camera.width(); ++column) {
-      for (const auto& offset : pattern) {
-        horizontal_.push_back(
-            (world_from_camera.rotation * camera.Bearing({column + offset[0], camera.cy()}))
-                .cast<float>());
-      }
-    }
-    for (int row = 0; row < camera.height(); ++row) {
-      for (const auto& offset : pattern) {
-        const Eigen::Vector3d bearing = camera.Bearing({camera.cx(), row + offset[1]});
-        latitude_.emplace_back(static_cast<float>(-bearing.x()), static_cast<float>(bearing.z()));
-      }
-    }
+/// A packet of rays from the camera that have met nothing yet.
+void PrepareRays(const RayDirections& directions, int column, int row, const Vector3f& origin,
+                 RTCRayHit16* rays) {
+  directions.Fill(column, row, &rays->ray);
+  for (int lane = 0; lane < kPacket; ++lane) {
+    rays->ray.org_x[lane] = origin.x();
+    rays->ray.org_y[lane] = origin.y();
+    rays->ray.org_z[lane] = origin.z();
+    rays->ray.tnear[lane] = 0;
+    rays->ray.tfar[lane] = kFar;
+    rays->ray.time[lane] = 0;
+    rays->ray.mask[lane] = ~0U;
+    rays->ray.id[lane] = 0;
+    rays->ray.flags[lane] = 0;
+    rays->hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+    rays->hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
   }
-  Vector3f At(int column, int row, int sample) const {
-    const Vector2f& latitude =
-        latitude_[static_cast<size_t>(row) * pattern_size_ + static_cast<size_t>(sample)];
-    return latitude.x() * horizontal_[static_cast<size_t>(column) * pattern_size_ +
-                                      static_cast<size_t>(sample)] +
-           latitude.y() * up_;
-  }
-
- private:
-  size_t pattern_size_;
-  std::vector<Vector3f> horizontal_;
-  std::vector<Vector2f> latitude_;  // cosine, sine
-  Vector3f up_;
-};
-
-void ClearHit(RTCHit16& hit, int lane) {
-  hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-  hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
 }
 
 /// Whether two lanes of a packet lie on the same flat piece of one mesh, so that they can share
@@ -104,12 +81,8 @@ class PacketRenderer {
   }
 
   void Render(int column, int row, std::array<Vector3f, kPixels>* result) {
-    for (int lane = 0; lane < kPacket; ++lane) {
-      SetRay(rays_.ray, lane, origin_,
-             directions_->At(column + lane / kSamples, row, lane % kSamples), kFar);
-      ClearHit(rays_.hit, lane);
-      valid_[static_cast<size_t>(lane)] = -1;
-    }
+    PrepareRays(*directions_, column, row, origin_, &rays_);
+    valid_.fill(-1);
     scene_->Intersect(valid_.data(), &rays_);
     patch_count_ = 0;
     valid_.fill(0);
@@ -220,53 +193,43 @@ class PacketRenderer {
   size_t patch_count_ = 0;
 };
 
-}  // namespace
-
-cv::Mat3b RenderColour(const FrameScene& scene, const Shader& shader,
-                       const EquirectangularCamera& camera, const Rigid3& world_from_camera) {
-  const RayDirections directions(camera, world_from_camera, {kPattern.begin(), kPattern.end()});
-  const Vector3f origin = world_from_camera.translation.cast<float>();
-  const auto sample_angle = static_cast<float>(camera.AngleOfPixels(1.0 / std::sqrt(kSamples)));
+cv::Mat3b Colour(const FrameScene& scene, const Shader& shader, const RayDirections& directions,
+                 const Vector3f& origin, double pixel_angle) {
+  const auto sample_angle = static_cast<float>(pixel_angle / std::sqrt(kSamples));
   const ToneCurve tone;
-  cv::Mat3b image(camera.height(), camera.width());
+  cv::Mat3b image(directions.height(), directions.width());
 #pragma omp parallel
   {
     PacketRenderer packet(scene, shader, directions, origin, sample_angle);
     std::array<Vector3f, kPixels> colours;
 #pragma omp for schedule(dynamic, 2)
-    for (int row = 0; row < camera.height(); ++row) {
-      for (int column = 0; column < camera.width(); column += kPixels) {
-        packet.Render(std::min(column, camera.width() - kPixels), row, &colours);
-        for (int i = 0; i < kPixels; ++i) {
-          image(row, std::min(column, camera.width() - kPixels) + i) =
-              tone.Encode(colours[static_cast<size_t>(i)]);
-        }
+    for (int row = 0; row < image.rows; ++row) {
+      for (int column = 0; column < image.cols; column += kPixels) {
+        const int first = std::min(column, image.cols - kPixels);
+        packet.Render(first, row, &colours);
+        for (int i = 0; i < kPixels; ++i)
+          image(row, first + i) = tone.Encode(colours[static_cast<size_t>(i)]);
       }
     }
   }
   return image;
 }
 
-GeometryImage RenderGeometry(const FrameScene& scene, const EquirectangularCamera& camera,
-                             const Rigid3& world_from_camera) {
-  const RayDirections directions(camera, world_from_camera, {{0.5, 0.5}});
-  const Vector3f origin = world_from_camera.translation.cast<float>();
-  GeometryImage image{cv::Mat1f(camera.height(), camera.width()),
-                      cv::Mat1w(camera.height(), camera.width())};
+GeometryImage Geometry(const FrameScene& scene, const RayDirections& directions,
+                       const Vector3f& origin) {
+  GeometryImage image{cv::Mat1f(directions.height(), directions.width()),
+                      cv::Mat1w(directions.height(), directions.width())};
 #pragma omp parallel for schedule(dynamic, 4)
-  for (int row = 0; row < camera.height(); ++row) {
+  for (int row = 0; row < image.range.rows; ++row) {
     RTCRayHit16 rays;
     alignas(64) std::array<int, kPacket> valid;
-    for (int column = 0; column < camera.width(); column += kPacket) {
-      for (int lane = 0; lane < kPacket; ++lane) {
-        const bool inside = column + lane < camera.width();
-        valid[static_cast<size_t>(lane)] = inside ? -1 : 0;
-        SetRay(rays.ray, lane, origin, directions.At(inside ? column + lane : column, row, 0),
-               kFar);
-        ClearHit(rays.hit, lane);
-      }
+    for (int column = 0; column < image.range.cols; column += kPacket) {
+      const int pixels = std::min(kPacket, image.range.cols - column);
+      for (int lane = 0; lane < kPacket; ++lane)
+        valid[static_cast<size_t>(lane)] = lane < pixels ? -1 : 0;
+      PrepareRays(directions, column, row, origin, &rays);
       scene.Intersect(valid.data(), &rays);
-      for (int lane = 0; lane < kPacket && column + lane < camera.width(); ++lane) {
+      for (int lane = 0; lane < pixels; ++lane) {
         image.object(row, column + lane) = scene.ObjectId(rays.hit, lane);
         image.range(row, column + lane) =
             rays.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID ? 0 : rays.ray.tfar[lane];
@@ -274,6 +237,60 @@ GeometryImage RenderGeometry(const FrameScene& scene, const EquirectangularCamer
     }
   }
   return image;
+}
+
+constexpr std::array<std::array<double, 2>, 1> kCentre = {{{0.5, 0.5}}};
+
+RayDirections FaceDirections(int face, int size, const Rigid3& world_from_camera,
+                             RayDirections::Pattern pattern) {
+  return RayDirections::OfCubeFace(size, world_from_camera.rotation * CameraFromFace(face),
+                                   pattern);
+}
+
+}  // namespace
+
+cv::Mat3b RenderColour(const FrameScene& scene, const Shader& shader,
+                       const EquirectangularCamera& camera, const Rigid3& world_from_camera) {
+  return Colour(scene, shader,
+                RayDirections::OfPanorama(camera, world_from_camera.rotation, kPattern),
+                world_from_camera.translation.cast<float>(), camera.AngleOfPixels(1));
+}
+
+GeometryImage RenderGeometry(const FrameScene& scene, const EquirectangularCamera& camera,
+                             const Rigid3& world_from_camera) {
+  return Geometry(scene, RayDirections::OfPanorama(camera, world_from_camera.rotation, kCentre),
+                  world_from_camera.translation.cast<float>());
+}
+
+CubeImages<cv::Vec3b> RenderCubeColour(const FrameScene& scene, const Shader& shader, int size,
+                                       const Rigid3& world_from_camera) {
+  CubeImages<cv::Vec3b> faces;
+  for (int face = 0; face < kCubeFaces; ++face) {
+    // The angle of a pixel in the middle of a side, between those of the centre and the corners.
+    faces[static_cast<size_t>(face)] =
+        Colour(scene, shader, FaceDirections(face, size, world_from_camera, kPattern),
+               world_from_camera.translation.cast<float>(), std::numbers::pi / 2 / size);
+  }
+  return faces;
+}
+
+CubeImages<float> RenderCubeDepth(const FrameScene& scene, int size,
+                                  const Rigid3& world_from_camera) {
+  CubeImages<float> faces;
+  for (int face = 0; face < kCubeFaces; ++face) {
+    cv::Mat1f depth = Geometry(scene, FaceDirections(face, size, world_from_camera, kCentre),
+                               world_from_camera.translation.cast<float>())
+                          .range;
+    for (int row = 0; row < size; ++row) {
+      for (int column = 0; column < size; ++column) {
+        const double right = 2 * (column + 0.5) / size - 1;
+        const double up = 1 - 2 * (row + 0.5) / size;
+        depth(row, column) /= static_cast<float>(std::sqrt(1 + right * right + up * up));
+      }
+    }
+    faces[static_cast<size_t>(face)] = depth;
+  }
+  return faces;
 }
 
 }  // namespace orb360::town

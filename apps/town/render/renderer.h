@@ -2,6 +2,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "apps/town/image/stitch.h"
 #include "apps/town/render/ray_scene.h"
 #include "apps/town/render/shading.h"
 #include "slam/geometry/camera.h"
@@ -21,5 +22,12 @@ struct GeometryImage {
 };
 GeometryImage RenderGeometry(const FrameScene& scene, const EquirectangularCamera& camera,
                              const Rigid3& world_from_camera);
+
+/// As above by the six faces of a cube, `size` pixels wide and high.
+CubeImages<cv::Vec3b> RenderCubeColour(const FrameScene& scene, const Shader& shader, int size,
+                                       const Rigid3& world_from_camera);
+/// Metres along each face's optical axis, 0 where nothing is met.
+CubeImages<float> RenderCubeDepth(const FrameScene& scene, int size,
+                                  const Rigid3& world_from_camera);
 
 }  // namespace orb360::town

@@ -88,6 +88,64 @@ TEST(RenderGeometry, RangeToABoxIsExactToAMillimetre) {
   ExpectRanges(scenery, distance, 512 * 256);
 }
 
+/// A box around the origin of its own frame.
+Scenery BoxModel() {
+  Scenery scenery = PlainScenery();
+  MeshBuilder builder(kPlain);
+  const Panel panel{{-1, -0.5F, -0.7F}, Vector3f::UnitX(), Vector3f::UnitZ(), -Vector3f::UnitY()};
+  builder.AddBox(0, panel, 0, 2, 0, 1.5F, 0, 1);
+  scenery.models.push_back(builder.mesh());
+  scenery.models.back().PartitionCutouts(kPlain);
+  return scenery;
+}
+
+TEST(RenderGeometry, AThingIsSeenAlikeWhetherItStandsOrMoves) {
+  Instance instance;
+  instance.world_from_model = Eigen::Translation3f(2.5F, 1.25F, 0.75F) *
+                              Eigen::AngleAxisf(0.7F, Vector3f(1, 2, 3).normalized());
+  Scenery with_model = BoxModel();
+  Scenery with_instance = with_model;
+  with_instance.instances.push_back(instance);
+  const RayScene model(with_model);
+  const RayScene standing(with_instance);
+  const FrameScene moving(model, {instance});
+  const GeometryImage a = RenderGeometry(moving, kCamera, Pose());
+  const GeometryImage b = RenderGeometry(FrameScene(standing, {}), kCamera, Pose());
+  EXPECT_GT(cv::countNonZero(a.range), 1000);
+  // Rays along an edge may miss one and meet the other.
+  const cv::Mat differs = cv::abs(a.range - b.range) > 1e-3;
+  EXPECT_LE(cv::countNonZero(differs), 3);
+  EXPECT_EQ(cv::countNonZero(a.object >= moving.first_moving_id()), cv::countNonZero(a.range));
+}
+
+TEST(RenderCube, StitchedItShowsWhatThePanoramaShows) {
+  Scenery scenery = PlainScenery();
+  MeshBuilder builder(kPlain);
+  const Panel panel{{-4, -3, -1}, Vector3f::UnitX(), Vector3f::UnitZ(), Vector3f::UnitY()};
+  builder.AddBox(1, panel, 0, 11, 0, 5, 0, 8);
+  builder.AddRectangle(1, panel, 0, 11, 0, 5);
+  Finish(builder, &scenery);
+  const RayScene rays(scenery);
+  const FrameScene scene(rays, {});
+  const cv::Mat1f range = RenderGeometry(scene, kCamera, Pose()).range;
+  const cv::Mat1f stitched = StitchRange(RenderCubeDepth(scene, 192, Pose()), kCamera);
+  int close = 0;
+  for (int row = 0; row < range.rows; ++row) {
+    for (int column = 0; column < range.cols; ++column) {
+      const float truth = range(row, column);
+      close += std::abs(stitched(row, column) - truth) < 1e-3F * truth ? 1 : 0;
+    }
+  }
+  EXPECT_GT(close, 0.97 * range.rows * range.cols);  // all but the pixels at edges
+
+  const Light light = MakeLight("noon", 1);
+  const Sky sky(light, 1);
+  const Shader shader(scenery.palette, light, sky);
+  const cv::Mat3b colour = RenderColour(scene, shader, kCamera, Pose());
+  const cv::Mat3b joined = StitchColour(RenderCubeColour(scene, shader, 192, Pose()), kCamera);
+  EXPECT_LT(cv::norm(colour, joined, cv::NORM_L1) / (3 * colour.total()), 1.0);  // grey levels
+}
+
 TEST(RenderGeometry, RangeToASphereIsExactToAMillimetre) {
   // An instance, so that transforms are tested as well: a unit sphere of fine facets, moved.
   Scenery scenery = PlainScenery();

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+
+#include <opencv2/core.hpp>
+
+#include "apps/town/image/cube.h"
+#include "slam/geometry/camera.h"
+
+namespace orb360::town {
+
+/// Pictures of the faces, by CubeFace; square and of one size.
+template <typename Pixel>
+using CubeImages = std::array<cv::Mat_<Pixel>, kCubeFaces>;
+
+/// The panorama that six pictures show: the mean of four bilinear samples a pixel, across the
+/// borders of the faces.
+cv::Mat3b StitchColour(const CubeImages<cv::Vec3b>& faces, const EquirectangularCamera& camera);
+
+/// The range along the panorama's rays, metres, from depth along each face's optical axis (z,
+/// metres; 0 where there is none). Within a surface the inverse of z is interpolated, which is
+/// exact for planes; where the samples around differ by more than a twentieth, it is the nearest's.
+cv::Mat1f StitchRange(const CubeImages<float>& depth, const EquirectangularCamera& camera);
+
+/// Depth along the optical axis in metres from the 24-bit encoding of driving simulators: red is
+/// the lowest byte, blue the highest, and the largest number stands for `farthest` metres, which
+/// means nothing was met. `image` is 8-bit with three or four channels, blue first.
+cv::Mat1f DecodeDepth24(const cv::Mat& image, double farthest);
+
+}  // namespace orb360::town
