@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <opencv2/imgproc.hpp>
 
@@ -70,6 +71,29 @@ cv::Vec3d Sample(const cv::Mat3b& wide, const CubePoint& point) {
          wy * ((1 - wx) * cv::Vec3d(wide(y0 + 1, x0)) + wx * cv::Vec3d(wide(y0 + 1, x0 + 1)));
 }
 
+/// Bearings of a grid with `per_pixel` places to either side of a pixel, in its middle if there is
+/// one: from tables over the columns and the rows.
+class BearingGrid {
+ public:
+  BearingGrid(const EquirectangularCamera& camera, int per_pixel) {
+    for (int i = 0; i < camera.width() * per_pixel; ++i)
+      horizontal_.push_back(camera.Bearing({(i + 0.5) / per_pixel, camera.cy()}));
+    for (int i = 0; i < camera.height() * per_pixel; ++i) {
+      const Eigen::Vector3d bearing = camera.Bearing({camera.cx(), (i + 0.5) / per_pixel});
+      latitude_.emplace_back(-bearing.x(), bearing.z());
+    }
+  }
+  Eigen::Vector3d At(int column, int row) const {
+    const Eigen::Vector3d& horizontal = horizontal_[static_cast<size_t>(column)];
+    const Eigen::Vector2d& latitude = latitude_[static_cast<size_t>(row)];
+    return {latitude.x() * horizontal.x(), latitude.x() * horizontal.y(), latitude.y()};
+  }
+
+ private:
+  std::vector<Eigen::Vector3d> horizontal_;
+  std::vector<Eigen::Vector2d> latitude_;  // cosine, sine
+};
+
 /// z at a point of a face: see StitchRange.
 double SampleDepth(const cv::Mat1f& depth, const CubePoint& point) {
   constexpr double kEdge = 1.05;  // ratio of depths at which a surface ends
@@ -97,14 +121,15 @@ double SampleDepth(const cv::Mat1f& depth, const CubePoint& point) {
 
 cv::Mat3b StitchColour(const CubeImages<cv::Vec3b>& faces, const EquirectangularCamera& camera) {
   const CubeImages<cv::Vec3b> wide = AddBorders(faces);
+  const BearingGrid grid(camera, 2);
   cv::Mat3b panorama(camera.height(), camera.width());
 #pragma omp parallel for schedule(dynamic, 4)
   for (int row = 0; row < panorama.rows; ++row) {
     for (int column = 0; column < panorama.cols; ++column) {
       cv::Vec3d sum(0, 0, 0);
-      for (const double dy : {0.25, 0.75}) {
-        for (const double dx : {0.25, 0.75}) {
-          const CubePoint point = MeetCube(camera.Bearing({column + dx, row + dy}));
+      for (const int y : {2 * row, 2 * row + 1}) {
+        for (const int x : {2 * column, 2 * column + 1}) {
+          const CubePoint point = MeetCube(grid.At(x, y));
           sum += Sample(wide[static_cast<size_t>(point.face)], point);
         }
       }
@@ -117,11 +142,12 @@ cv::Mat3b StitchColour(const CubeImages<cv::Vec3b>& faces, const Equirectangular
 
 cv::Mat1f StitchRange(const CubeImages<float>& depth, const EquirectangularCamera& camera) {
   ORB360_CHECK(SizeOf(depth) >= 2);
+  const BearingGrid grid(camera, 1);
   cv::Mat1f range(camera.height(), camera.width());
 #pragma omp parallel for schedule(dynamic, 4)
   for (int row = 0; row < range.rows; ++row) {
     for (int column = 0; column < range.cols; ++column) {
-      const CubePoint point = MeetCube(camera.Bearing({column + 0.5, row + 0.5}));
+      const CubePoint point = MeetCube(grid.At(column, row));
       const double z = SampleDepth(depth[static_cast<size_t>(point.face)], point);
       range(row, column) =
           static_cast<float>(z * std::sqrt(1 + point.right * point.right + point.up * point.up));

@@ -16,6 +16,7 @@ struct Recording {
   EquirectangularCamera camera;
   double fps = 20;
   int frames = 600;
+  int cube_size = 0;  ///< stitch pictures from six faces of that width; 0: render them directly
 };
 
 /// A camera's way through a scenery that can be rendered at any frame, in any order.
@@ -29,6 +30,7 @@ class Drive {
   const EquirectangularCamera& camera() const { return recording_.camera; }
   double fps() const { return recording_.fps; }
   int frames() const { return recording_.frames; }
+  int cube_size() const { return recording_.cube_size; }
 
   virtual Rigid3 WorldFromCamera(int frame) const = 0;
   /// Metres above the road, where there is a road.
@@ -38,6 +40,7 @@ class Drive {
 
   FrameScene SceneAt(int frame) const { return stage().With(MovingAt(frame)); }
   cv::Mat3b Colour(const FrameScene& scene, int frame) const;
+  /// Along the rays of the panorama, however its colours are made.
   GeometryImage Geometry(const FrameScene& scene, int frame) const;
 
  protected:

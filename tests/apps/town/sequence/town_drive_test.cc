@@ -11,7 +11,7 @@
 #include <omp.h>
 #include <unistd.h>
 
-#include "apps/town/sequence/folder.h"
+#include "apps/town/sequence/render_folder.h"
 #include "slam/check.h"
 #include "slam/io/dataset.h"
 

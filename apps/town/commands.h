@@ -1,0 +1,13 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace orb360::town {
+
+/// Each adds a subcommand that does its work when the command line is parsed; it may throw
+/// UserError.
+void AddRenderCommand(CLI::App* app);
+void AddStitchCommand(CLI::App* app);
+void AddDescribeCommand(CLI::App* app);
+
+}  // namespace orb360::town

@@ -1,0 +1,80 @@
+#include "apps/town/sequence/render_folder.h"
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "apps/town/sequence/sequence_writer.h"
+#include "slam/io/trajectory.h"
+
+namespace orb360::town {
+namespace {
+
+constexpr const char* kObjects = "objects";
+constexpr const char* kMoving = "moving";
+
+std::string Description(const Drive& drive) {
+  const int frames = drive.frames();
+  double distance = 0;
+  double fastest = 0;
+  for (int frame = 1; frame < frames; ++frame) {
+    const double step =
+        (drive.WorldFromCamera(frame).translation - drive.WorldFromCamera(frame - 1).translation)
+            .norm();
+    distance += step;
+    fastest = std::max(fastest, step * drive.fps());
+  }
+  std::ostringstream text;
+  text << "camera:\n  model: equirectangular\n  width: " << drive.camera().width()
+       << "\n  height: " << drive.camera().height() << "\n";
+  if (drive.cube_size() > 0)
+    text << "stitched_from: " << drive.cube_size() << "  # pixels, width of six cube faces\n";
+  if (drive.camera_height())
+    text << "camera_height: " << *drive.camera_height() << "  # metres above the road\n";
+  text << "fps: " << drive.fps() << "\nframes: " << frames << "\n"
+       << drive.Origin() << "path_length: " << distance
+       << "  # metres\nspeed:  # metres per second\n  mean: "
+       << (frames > 1 ? distance * drive.fps() / (frames - 1) : 0.0) << "\n  maximum: " << fastest
+       << "\n";
+  return text.str();
+}
+
+}  // namespace
+
+void RenderIntoFolder(const Drive& drive, const std::filesystem::path& folder,
+                      const FolderOptions& options, const std::function<void(int, int)>& progress) {
+  std::vector<std::string> kinds = {SequenceWriter::kColour, SequenceWriter::kRange};
+  if (options.masks) kinds.insert(kinds.end(), {kObjects, kMoving});
+  const SequenceWriter writer(folder, Description(drive), kinds);
+  std::vector<StampedPose> poses;
+  for (int frame = 0; frame < drive.frames(); ++frame)
+    poses.push_back({frame / drive.fps(), drive.WorldFromCamera(frame)});
+  WriteTrajectory(folder / "groundtruth.txt", poses);
+
+  int rendered = 0;
+  for (int frame = 0; frame < drive.frames(); ++frame) {
+    const bool has_geometry = frame % options.depth_every == 0;
+    const bool needs_masks = has_geometry && options.masks &&
+                             !(writer.Has(kObjects, frame) && writer.Has(kMoving, frame));
+    const bool needs_range = has_geometry && !writer.Has(SequenceWriter::kRange, frame);
+    const bool needs_colour = !writer.Has(SequenceWriter::kColour, frame);
+    if (needs_colour || needs_range || needs_masks) {
+      const FrameScene scene = drive.SceneAt(frame);
+      if (needs_colour) writer.WriteColour(frame, drive.Colour(scene, frame));
+      if (needs_range || needs_masks) {
+        const GeometryImage geometry = drive.Geometry(scene, frame);
+        if (needs_range) writer.WriteRange(frame, geometry.range);
+        if (needs_masks) {
+          writer.WriteMask(kObjects, frame, geometry.object);
+          writer.WriteMask(kMoving, frame, geometry.object >= scene.first_moving_id());
+        }
+      }
+      ++rendered;
+    }
+    progress(frame + 1, rendered);
+  }
+  writer.WriteContactSheet(drive.frames());
+}
+
+}  // namespace orb360::town
