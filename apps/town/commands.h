@@ -9,5 +9,6 @@ namespace orb360::town {
 void AddRenderCommand(CLI::App* app);
 void AddStitchCommand(CLI::App* app);
 void AddDescribeCommand(CLI::App* app);
+void AddPathCommand(CLI::App* app);
 
 }  // namespace orb360::town

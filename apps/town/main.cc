@@ -7,11 +7,12 @@
 #include "slam/check.h"
 
 int main(int argc, char** argv) {
-  CLI::App app("Renders panoramic drives through procedural towns, with exact depth and poses.");
+  CLI::App app("Renders panoramic drives through towns, with exact depth and poses.");
   app.require_subcommand(1);
   orb360::town::AddRenderCommand(&app);
   orb360::town::AddStitchCommand(&app);
   orb360::town::AddDescribeCommand(&app);
+  orb360::town::AddPathCommand(&app);
   try {
     CLI11_PARSE(app, argc, argv);
   } catch (const orb360::UserError& error) {

@@ -1,4 +1,6 @@
+#include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -8,15 +10,18 @@
 
 #include "apps/town/commands.h"
 #include "apps/town/progress_bar.h"
+#include "apps/town/sequence/imported_drive.h"
 #include "apps/town/sequence/named_town.h"
 #include "apps/town/sequence/render_folder.h"
 #include "apps/town/sequence/town_drive.h"
+#include "slam/check.h"
 
 namespace orb360::town {
 namespace {
 
 struct Arguments {
   std::string town;
+  ImportedSpec imported;
   std::filesystem::path out;
   std::optional<int> frames;
   int width = 1024;
@@ -33,21 +38,51 @@ struct Arguments {
   int threads = 0;
 };
 
-void Render(const Arguments& arguments) {
+constexpr double kDegree = std::numbers::pi / 180;
+
+std::unique_ptr<Drive> MakeTownDrive(const Arguments& arguments, Recording recording) {
   TownSpec spec = FindTown(arguments.town);
   if (arguments.light) spec.light = *arguments.light;
   if (arguments.traffic) spec.traffic = *arguments.traffic;
-  if (arguments.threads > 0) omp_set_num_threads(arguments.threads);
-  constexpr double kDegree = std::numbers::pi / 180;
   spec.mount = {arguments.camera_height, arguments.pitch_degrees * kDegree,
                 arguments.roll_degrees * kDegree, arguments.shaking};
-  const TownDrive drive(spec,
-                        {EquirectangularCamera(arguments.width, arguments.width / 2), arguments.fps,
-                         arguments.frames.value_or(spec.frames), arguments.cube});
+  recording.frames = arguments.frames.value_or(spec.frames);
+  return std::make_unique<TownDrive>(spec, recording);
+}
+
+std::unique_ptr<Drive> MakeImportedDrive(const Arguments& arguments, Recording recording) {
+  ImportedSpec spec = arguments.imported;
+  if (spec.path.empty()) throw UserError("--scene needs a --path through it");
+  if (arguments.light) spec.light = *arguments.light;
+  const CameraPath path = ReadCameraPath(spec.path);
+  const int whole = static_cast<int>((path.end() - path.begin()) * recording.fps) + 1;
+  recording.frames = arguments.frames.value_or(whole);
+  auto drive = std::make_unique<ImportedDrive>(spec, path, recording);
+  if (!drive->missing_textures().empty()) {
+    std::string problems;
+    for (const std::string& problem : drive->missing_textures()) {
+      problems += problems.empty() ? "" : "; ";
+      problems += problem;
+    }
+    std::fprintf(stderr, "town: warning: grey stands for %zu textures: %s\n",
+                 drive->missing_textures().size(), problems.c_str());
+  }
+  return drive;
+}
+
+void Render(const Arguments& arguments) {
+  if (arguments.town.empty() == arguments.imported.scene.empty())
+    throw UserError("render takes either --town or --scene (see town render --help)");
+  if (arguments.threads > 0) omp_set_num_threads(arguments.threads);
+  Recording recording{EquirectangularCamera(arguments.width, arguments.width / 2), arguments.fps};
+  recording.cube_size = arguments.cube;
+  const std::unique_ptr<Drive> drive = arguments.town.empty()
+                                           ? MakeImportedDrive(arguments, recording)
+                                           : MakeTownDrive(arguments, recording);
   ProgressBar bar;
   const FolderOptions options{arguments.depth_every, arguments.masks};
-  RenderIntoFolder(drive, arguments.out, options,
-                   [&](int done, int rendered) { bar.Show(done, rendered, drive.frames()); });
+  RenderIntoFolder(*drive, arguments.out, options,
+                   [&](int done, int rendered) { bar.Show(done, rendered, drive->frames()); });
 }
 
 }  // namespace
@@ -55,14 +90,28 @@ void Render(const Arguments& arguments) {
 void AddRenderCommand(CLI::App* app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app->add_subcommand("render", "Render a sequence into a folder");
-  command->add_option("--town", arguments->town, "Town1 ... Town5, Loop, or a seed")->required();
+  ImportedSpec& imported = arguments->imported;
+  command->add_option("--town", arguments->town, "Town1 ... Town5, Loop, or a seed");
+  command->add_option("--scene", imported.scene,
+                      "Instead of a town: a file of textured meshes (OBJ, glTF, AC3D, ...)");
+  command->add_option(
+      "--path", imported.path,
+      "The camera's path through the scene: lines `time x y z [qx qy qz qw]`, z up, "
+      "in metres");
+  command->add_option("--scale", imported.options.scale, "Metres that a unit of the scene is")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-6, 1e6));
+  command->add_option("--up", imported.options.up, "Axis of the scene's file that points up")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, UpAxis>{{"y", UpAxis::kY}, {"z", UpAxis::kZ}}))
+      ->default_str("y");
   command
       ->add_option("--out", arguments->out,
                    "Folder to write; an interrupted rendering there is resumed")
       ->required();
   command
       ->add_option("--frames", arguments->frames,
-                   "Number of frames [the town's own; 600 for a seed]")
+                   "Number of frames [the town's own; 600 for a seed; the whole path]")
       ->check(CLI::Range(1, 1000000));
   command
       ->add_option("--width", arguments->width,

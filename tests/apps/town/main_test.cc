@@ -33,7 +33,7 @@ TEST(TownCommand, AnswersBadInputWithOneLine) {
   EXPECT_EQ(light.output, "town: unknown light 'dusk': use noon, morning, sunset or overcast\n");
   EXPECT_NE(RunTown("render --town 1 --out x --frames 0").status, 0);
   EXPECT_NE(RunTown("render --town 1 --out x --traffic 2").status, 0);
-  EXPECT_THAT(RunTown("render --out x").output, testing::HasSubstr("--town is required"));
+  EXPECT_THAT(RunTown("render --out x").output, testing::HasSubstr("either --town or --scene"));
 }
 
 }  // namespace

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/town/import/source_scene.h"
+#include "apps/town/world/scenery.h"
+
+namespace orb360::town {
+
+enum class UpAxis { kY, kZ };
+
+struct ImportOptions {
+  UpAxis up = UpAxis::kY;  ///< of the file; y becomes z, and z becomes -y
+  double scale = 1;        ///< metres that a unit of the file is
+};
+
+/// Reads a file of meshes: AC3D with an own reader, all else with Assimp. Throws UserError.
+SourceScene ReadMeshFile(const std::filesystem::path& path);
+
+/// The meshes as a scenery, z up, in metres. Textures (PNG, JPEG, SGI and what else OpenCV reads)
+/// are looked for in `folder`; where one is transparent the surface is absent. Grey stands for
+/// those that cannot be read, which `missing` names, each once, with the reason.
+Scenery MakeScenery(const SourceScene& source, const std::filesystem::path& folder,
+                    const ImportOptions& options, std::vector<std::string>* missing);
+
+}  // namespace orb360::town

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace orb360::town {
+
+/// What a file of meshes says of a surface.
+struct SourceMaterial {
+  Eigen::Vector3f colour = Eigen::Vector3f::Ones();  ///< linear factor on the texture
+  std::string texture;  ///< file, relative to the mesh's folder; empty for none
+};
+
+/// Triangles of one material, in the axes and the unit of the file.
+struct SourceMesh {
+  std::string name;
+  size_t material = 0;
+  std::vector<Eigen::Vector3f> positions;
+  std::vector<Eigen::Vector3f> normals;  ///< unit, one for each position, or none
+  /// One for each position, or none; v upward, in tiles.
+  std::vector<Eigen::Vector2f> texture_coordinates;
+  std::vector<std::array<uint32_t, 3>> triangles;
+};
+
+/// The contents of a file of meshes.
+struct SourceScene {
+  std::vector<SourceMaterial> materials;
+  std::vector<SourceMesh> meshes;
+};
+
+}  // namespace orb360::town

@@ -1,0 +1,31 @@
+#include "apps/town/sequence/imported_drive.h"
+
+#include <iomanip>
+#include <sstream>
+
+namespace orb360::town {
+
+ImportedDrive::ImportedDrive(const ImportedSpec& spec, const CameraPath& path,
+                             const Recording& recording)
+    : Drive(recording),
+      spec_(spec),
+      path_(path),
+      scenery_(
+          MakeScenery(ReadMeshFile(spec.scene), spec.scene.parent_path(), spec.options, &missing_)),
+      stage_(&scenery_, MakeLight(spec.light, 0), 0) {
+  std::vector<Rigid3> poses;
+  for (int frame = 0; frame < frames(); ++frame) poses.push_back(WorldFromCamera(frame));
+  RequireFreePath(stage_.scene(), poses);
+  camera_height_ = HeightAboveGround(stage_.scene(), poses);
+}
+
+std::string ImportedDrive::Origin() const {
+  std::ostringstream text;
+  text << "scene: " << std::quoted(spec_.scene.filename().string())
+       << "\npath: " << std::quoted(spec_.path.filename().string()) << "\nlight: " << spec_.light
+       << "\nscale: " << spec_.options.scale
+       << "\nup: " << (spec_.options.up == UpAxis::kY ? "y" : "z") << "\n";
+  return text.str();
+}
+
+}  // namespace orb360::town

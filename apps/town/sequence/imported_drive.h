@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/town/import/camera_path.h"
+#include "apps/town/import/import_scenery.h"
+#include "apps/town/sequence/drive.h"
+
+namespace orb360::town {
+
+/// A scene from a file, and a path through it.
+struct ImportedSpec {
+  std::filesystem::path scene;
+  std::filesystem::path path;
+  std::string light = "noon";
+  ImportOptions options;
+};
+
+/// A camera's way through an imported scene, in which nothing moves.
+class ImportedDrive : public Drive {
+ public:
+  /// Without a number of frames, those of the whole path at the given rate. Throws UserError for
+  /// files that cannot be used and a path that goes through a wall.
+  ImportedDrive(const ImportedSpec& spec, const CameraPath& path, const Recording& recording);
+
+  Rigid3 WorldFromCamera(int frame) const override {
+    return path_.At(path_.begin() + frame / fps());
+  }
+  std::optional<double> camera_height() const override { return camera_height_; }
+  std::string Origin() const override;
+  /// Textures that could not be read, and why.
+  const std::vector<std::string>& missing_textures() const { return missing_; }
+
+ protected:
+  const Stage& stage() const override { return stage_; }
+  std::vector<Instance> MovingAt(int) const override { return {}; }
+
+ private:
+  ImportedSpec spec_;
+  CameraPath path_;
+  std::vector<std::string> missing_;
+  Scenery scenery_;
+  Stage stage_;
+  std::optional<double> camera_height_;
+};
+
+}  // namespace orb360::town
