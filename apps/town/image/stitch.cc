@@ -34,11 +34,12 @@ cv::Point NearestPixel(const CubePoint& point, int size) {
 }
 
 /// Faces with a border of what the neighbouring faces show there.
-CubeImages<cv::Vec3b> AddBorders(const CubeImages<cv::Vec3b>& faces) {
+template <typename Pixel>
+CubeImages<Pixel> AddBorders(const CubeImages<Pixel>& faces) {
   const int size = SizeOf(faces);
-  CubeImages<cv::Vec3b> result;
+  CubeImages<Pixel> result;
   for (int face = 0; face < kCubeFaces; ++face) {
-    cv::Mat3b& wide = result[static_cast<size_t>(face)];
+    cv::Mat_<Pixel>& wide = result[static_cast<size_t>(face)];
     cv::copyMakeBorder(faces[static_cast<size_t>(face)], wide, kBorder, kBorder, kBorder, kBorder,
                        cv::BORDER_REPLICATE);
     const Eigen::Quaterniond camera_from_face = CameraFromFace(face);
@@ -59,16 +60,23 @@ CubeImages<cv::Vec3b> AddBorders(const CubeImages<cv::Vec3b>& faces) {
 }
 
 /// Bilinear sample of a face with borders.
-cv::Vec3d Sample(const cv::Mat3b& wide, const CubePoint& point) {
+template <typename Pixel>
+cv::Vec3f Sample(const cv::Mat_<Pixel>& wide, const CubePoint& point) {
   const cv::Point2d p = ToPixel(point, wide.rows - 2 * kBorder);
   const double x = p.x - 0.5 + kBorder;
   const double y = p.y - 0.5 + kBorder;
   const int x0 = std::clamp(static_cast<int>(x), 0, wide.cols - 2);
   const int y0 = std::clamp(static_cast<int>(y), 0, wide.rows - 2);
-  const double wx = x - x0;
-  const double wy = y - y0;
-  return (1 - wy) * ((1 - wx) * cv::Vec3d(wide(y0, x0)) + wx * cv::Vec3d(wide(y0, x0 + 1))) +
-         wy * ((1 - wx) * cv::Vec3d(wide(y0 + 1, x0)) + wx * cv::Vec3d(wide(y0 + 1, x0 + 1)));
+  const auto wx = static_cast<float>(x - x0);
+  const auto wy = static_cast<float>(y - y0);
+  const Pixel* upper = wide[y0] + x0;
+  const Pixel* lower = wide[y0 + 1] + x0;
+  cv::Vec3f result;
+  for (int channel = 0; channel < 3; ++channel) {
+    result[channel] = (1 - wy) * ((1 - wx) * upper[0][channel] + wx * upper[1][channel]) +
+                      wy * ((1 - wx) * lower[0][channel] + wx * lower[1][channel]);
+  }
+  return result;
 }
 
 /// Bearings of a grid with `per_pixel` places to either side of a pixel, in its middle if there is
@@ -96,52 +104,71 @@ class BearingGrid {
 
 /// z at a point of a face: see StitchRange.
 double SampleDepth(const cv::Mat1f& depth, const CubePoint& point) {
-  constexpr double kEdge = 1.05;  // ratio of depths at which a surface ends
   const int size = depth.rows;
+  const cv::Point pixel = NearestPixel(point, size);
+  const float nearest = depth(pixel);
+  if (nearest <= 0) return 0;
+  // The slope of 1/z to that side on which it changes less; 0 where it bends both ways. At the
+  // border of the face both sides are taken one pixel further in.
+  const auto slope = [&](const cv::Point& middle, const cv::Point& step) {
+    const float before = depth(middle - step);
+    const float here = depth(middle);
+    const float after = depth(middle + step);
+    if (before <= 0 || here <= 0 || after <= 0) return 0.0;
+    const double a = 1.0 / here - 1.0 / before;
+    const double b = 1.0 / after - 1.0 / here;
+    if (a * b <= 0) return 0.0;
+    return std::abs(a) < std::abs(b) ? a : b;
+  };
   const cv::Point2d p = ToPixel(point, size);
-  const float nearest = depth(NearestPixel(point, size));
-  const double x = std::clamp(p.x - 0.5, 0.0, size - 1.0);
-  const double y = std::clamp(p.y - 0.5, 0.0, size - 1.0);
-  const int x0 = std::min(static_cast<int>(x), size - 2);
-  const int y0 = std::min(static_cast<int>(y), size - 2);
-  const double z00 = depth(y0, x0);
-  const double z01 = depth(y0, x0 + 1);
-  const double z10 = depth(y0 + 1, x0);
-  const double z11 = depth(y0 + 1, x0 + 1);
-  const double least = std::min({z00, z01, z10, z11});
-  if (least <= 0 || std::max({z00, z01, z10, z11}) > kEdge * least) return nearest;
-  // Half a pixel beyond the outermost centres it extrapolates, so that planes stay planes up to
-  // the border.
-  const double wx = p.x - 0.5 - x0;
-  const double wy = p.y - 0.5 - y0;
-  return 1 / ((1 - wy) * ((1 - wx) / z00 + wx / z01) + wy * ((1 - wx) / z10 + wx / z11));
+  const double across = slope({std::clamp(pixel.x, 1, size - 2), pixel.y}, {1, 0});
+  const double down = slope({pixel.x, std::clamp(pixel.y, 1, size - 2)}, {0, 1});
+  return 1 / (1.0 / nearest + across * (p.x - 0.5 - pixel.x) + down * (p.y - 0.5 - pixel.y));
 }
 
-}  // namespace
+/// How many samples along each side of a pixel leave no gaps: they may lie 2 pixels of a face
+/// apart, the width of a bilinear sample, at the face's corners, where its pixels are smallest.
+int SamplesAcross(int face_size, const EquirectangularCamera& camera) {
+  constexpr double kStretch = 2.12;  // pixels a radian at a corner, over those at the centre
+  const double footprint = kStretch * 0.5 * face_size * camera.AngleOfPixels(1);
+  return std::max(2, static_cast<int>(std::ceil(footprint / 2)));
+}
 
-cv::Mat3b StitchColour(const CubeImages<cv::Vec3b>& faces, const EquirectangularCamera& camera) {
-  const CubeImages<cv::Vec3b> wide = AddBorders(faces);
-  const BearingGrid grid(camera, 2);
-  cv::Mat3b panorama(camera.height(), camera.width());
+template <typename Pixel>
+cv::Mat_<Pixel> Stitch(const CubeImages<Pixel>& faces, const EquirectangularCamera& camera) {
+  const CubeImages<Pixel> wide = AddBorders(faces);
+  const int samples = SamplesAcross(SizeOf(faces), camera);
+  const float weight = 1.0F / static_cast<float>(samples * samples);
+  const BearingGrid grid(camera, samples);
+  cv::Mat_<Pixel> panorama(camera.height(), camera.width());
 #pragma omp parallel for schedule(dynamic, 4)
   for (int row = 0; row < panorama.rows; ++row) {
     for (int column = 0; column < panorama.cols; ++column) {
-      cv::Vec3d sum(0, 0, 0);
-      for (const int y : {2 * row, 2 * row + 1}) {
-        for (const int x : {2 * column, 2 * column + 1}) {
+      cv::Vec3f sum(0, 0, 0);
+      for (int y = row * samples; y < (row + 1) * samples; ++y) {
+        for (int x = column * samples; x < (column + 1) * samples; ++x) {
           const CubePoint point = MeetCube(grid.At(x, y));
           sum += Sample(wide[static_cast<size_t>(point.face)], point);
         }
       }
-      for (int channel = 0; channel < 3; ++channel)
-        panorama(row, column)[channel] = static_cast<uint8_t>(0.25 * sum[channel] + 0.5);
+      panorama(row, column) = Pixel(sum * weight);  // rounds
     }
   }
   return panorama;
 }
 
+}  // namespace
+
+cv::Mat3b StitchColour(const CubeImages<cv::Vec3b>& faces, const EquirectangularCamera& camera) {
+  return Stitch(faces, camera);
+}
+
+cv::Mat3f StitchRadiance(const CubeImages<cv::Vec3f>& faces, const EquirectangularCamera& camera) {
+  return Stitch(faces, camera);
+}
+
 cv::Mat1f StitchRange(const CubeImages<float>& depth, const EquirectangularCamera& camera) {
-  ORB360_CHECK(SizeOf(depth) >= 2);
+  ORB360_CHECK(SizeOf(depth) >= 3);
   const BearingGrid grid(camera, 1);
   cv::Mat1f range(camera.height(), camera.width());
 #pragma omp parallel for schedule(dynamic, 4)

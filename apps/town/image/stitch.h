@@ -13,13 +13,15 @@ namespace orb360::town {
 template <typename Pixel>
 using CubeImages = std::array<cv::Mat_<Pixel>, kCubeFaces>;
 
-/// The panorama that six pictures show: the mean of four bilinear samples a pixel, across the
-/// borders of the faces.
+/// The panorama that six pictures show: the mean of bilinear samples, four a pixel or as many more
+/// as the faces are finer than it, across the borders of the faces.
 cv::Mat3b StitchColour(const CubeImages<cv::Vec3b>& faces, const EquirectangularCamera& camera);
+cv::Mat3f StitchRadiance(const CubeImages<cv::Vec3f>& faces, const EquirectangularCamera& camera);
 
 /// The range along the panorama's rays, metres, from depth along each face's optical axis (z,
-/// metres; 0 where there is none). Within a surface the inverse of z is interpolated, which is
-/// exact for planes; where the samples around differ by more than a twentieth, it is the nearest's.
+/// metres; 0 where there is none; faces of 3 pixels or more). It is that of the nearest sample,
+/// moved along the sample's own surface: the inverse of z is linear over a plane, and its slope is
+/// taken from the side on which it changes less. So planes are exact, and surfaces never blend.
 cv::Mat1f StitchRange(const CubeImages<float>& depth, const EquirectangularCamera& camera);
 
 /// Depth along the optical axis in metres from the 24-bit encoding of driving simulators: red is

@@ -193,11 +193,12 @@ class PacketRenderer {
   size_t patch_count_ = 0;
 };
 
-cv::Mat3b Colour(const FrameScene& scene, const Shader& shader, const RayDirections& directions,
-                 const Vector3f& origin, double pixel_angle) {
+/// A picture made of the pixels that `encode` makes of radiance.
+template <typename Encode>
+auto Picture(const FrameScene& scene, const Shader& shader, const RayDirections& directions,
+             const Vector3f& origin, double pixel_angle, const Encode& encode) {
   const auto sample_angle = static_cast<float>(pixel_angle / std::sqrt(kSamples));
-  const ToneCurve tone;
-  cv::Mat3b image(directions.height(), directions.width());
+  cv::Mat_<decltype(encode(Vector3f()))> image(directions.height(), directions.width());
 #pragma omp parallel
   {
     PacketRenderer packet(scene, shader, directions, origin, sample_angle);
@@ -208,7 +209,7 @@ cv::Mat3b Colour(const FrameScene& scene, const Shader& shader, const RayDirecti
         const int first = std::min(column, image.cols - kPixels);
         packet.Render(first, row, &colours);
         for (int i = 0; i < kPixels; ++i)
-          image(row, first + i) = tone.Encode(colours[static_cast<size_t>(i)]);
+          image(row, first + i) = encode(colours[static_cast<size_t>(i)]);
       }
     }
   }
@@ -247,13 +248,44 @@ RayDirections FaceDirections(int face, int size, const Rigid3& world_from_camera
                                    pattern);
 }
 
+cv::Vec3f BlueGreenRed(const Vector3f& radiance) {
+  return {radiance.z(), radiance.y(), radiance.x()};
+}
+
+template <typename Encode>
+auto PanoramaPicture(const FrameScene& scene, const Shader& shader,
+                     const EquirectangularCamera& camera, const Rigid3& world_from_camera,
+                     const Encode& encode) {
+  return Picture(scene, shader,
+                 RayDirections::OfPanorama(camera, world_from_camera.rotation, kPattern),
+                 world_from_camera.translation.cast<float>(), camera.AngleOfPixels(1), encode);
+}
+
+template <typename Pixel, typename Encode>
+CubeImages<Pixel> CubePictures(const FrameScene& scene, const Shader& shader, int size,
+                               const Rigid3& world_from_camera, const Encode& encode) {
+  CubeImages<Pixel> faces;
+  for (int face = 0; face < kCubeFaces; ++face) {
+    // The angle of a pixel in the middle of a side, between those of the centre and the corners.
+    faces[static_cast<size_t>(face)] =
+        Picture(scene, shader, FaceDirections(face, size, world_from_camera, kPattern),
+                world_from_camera.translation.cast<float>(), std::numbers::pi / 2 / size, encode);
+  }
+  return faces;
+}
+
 }  // namespace
 
 cv::Mat3b RenderColour(const FrameScene& scene, const Shader& shader,
                        const EquirectangularCamera& camera, const Rigid3& world_from_camera) {
-  return Colour(scene, shader,
-                RayDirections::OfPanorama(camera, world_from_camera.rotation, kPattern),
-                world_from_camera.translation.cast<float>(), camera.AngleOfPixels(1));
+  const ToneCurve tone;
+  return PanoramaPicture(scene, shader, camera, world_from_camera,
+                         [&](const Vector3f& radiance) { return tone.Encode(radiance); });
+}
+
+cv::Mat3f RenderRadiance(const FrameScene& scene, const Shader& shader,
+                         const EquirectangularCamera& camera, const Rigid3& world_from_camera) {
+  return PanoramaPicture(scene, shader, camera, world_from_camera, BlueGreenRed);
 }
 
 GeometryImage RenderGeometry(const FrameScene& scene, const EquirectangularCamera& camera,
@@ -264,14 +296,14 @@ GeometryImage RenderGeometry(const FrameScene& scene, const EquirectangularCamer
 
 CubeImages<cv::Vec3b> RenderCubeColour(const FrameScene& scene, const Shader& shader, int size,
                                        const Rigid3& world_from_camera) {
-  CubeImages<cv::Vec3b> faces;
-  for (int face = 0; face < kCubeFaces; ++face) {
-    // The angle of a pixel in the middle of a side, between those of the centre and the corners.
-    faces[static_cast<size_t>(face)] =
-        Colour(scene, shader, FaceDirections(face, size, world_from_camera, kPattern),
-               world_from_camera.translation.cast<float>(), std::numbers::pi / 2 / size);
-  }
-  return faces;
+  const ToneCurve tone;
+  return CubePictures<cv::Vec3b>(scene, shader, size, world_from_camera,
+                                 [&](const Vector3f& radiance) { return tone.Encode(radiance); });
+}
+
+CubeImages<cv::Vec3f> RenderCubeRadiance(const FrameScene& scene, const Shader& shader, int size,
+                                         const Rigid3& world_from_camera) {
+  return CubePictures<cv::Vec3f>(scene, shader, size, world_from_camera, BlueGreenRed);
 }
 
 CubeImages<float> RenderCubeDepth(const FrameScene& scene, int size,

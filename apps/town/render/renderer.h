@@ -15,6 +15,10 @@ namespace orb360::town {
 cv::Mat3b RenderColour(const FrameScene& scene, const Shader& shader,
                        const EquirectangularCamera& camera, const Rigid3& world_from_camera);
 
+/// The same before the tone curve: linear radiance, blue, green, red.
+cv::Mat3f RenderRadiance(const FrameScene& scene, const Shader& shader,
+                         const EquirectangularCamera& camera, const Rigid3& world_from_camera);
+
 /// What the rays through the pixels' centres meet.
 struct GeometryImage {
   cv::Mat1f range;   ///< metres along the ray, 0 where it meets nothing
@@ -26,6 +30,8 @@ GeometryImage RenderGeometry(const FrameScene& scene, const EquirectangularCamer
 /// As above by the six faces of a cube, `size` pixels wide and high.
 CubeImages<cv::Vec3b> RenderCubeColour(const FrameScene& scene, const Shader& shader, int size,
                                        const Rigid3& world_from_camera);
+CubeImages<cv::Vec3f> RenderCubeRadiance(const FrameScene& scene, const Shader& shader, int size,
+                                         const Rigid3& world_from_camera);
 /// Metres along each face's optical axis, 0 where nothing is met.
 CubeImages<float> RenderCubeDepth(const FrameScene& scene, int size,
                                   const Rigid3& world_from_camera);
