@@ -10,7 +10,7 @@ struct AutoExposure {
   double step = 1.0 / 3;  ///< stops (factors of 2) between exposures
   double limit = 2;       ///< stops that the exposure may be raised or lowered
   double period = 0.5;    ///< seconds from one metering to the next
-  double key = 0.25;      ///< metered radiance (see MeteredRadiance) that needs no correction
+  double key = 0.29;      ///< metered radiance (see MeteredRadiance) that needs no correction
 };
 
 /// What moves while the shutter is open is smeared.
