@@ -32,6 +32,10 @@ void AddStitchCommand(CLI::App* app) {
       ->capture_default_str()
       ->check(CLI::Range(1e-3, 1e6));
   command
+      ->add_option("--camera-height", options.camera_height,
+                   "Metres of the camera above the road, if known")
+      ->check(CLI::Range(0.01, 1000.0));
+  command
       ->add_option("--farthest-depth", options.farthest_depth,
                    "Metres that the largest number of 24-bit depth stands for")
       ->capture_default_str()

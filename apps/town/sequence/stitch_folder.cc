@@ -1,9 +1,15 @@
 #include "apps/town/sequence/stitch_folder.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <opencv2/imgcodecs.hpp>
@@ -11,131 +17,205 @@
 #include "apps/town/image/stitch.h"
 #include "apps/town/sequence/sequence_writer.h"
 #include "slam/check.h"
+#include "slam/io/atomic_file.h"
+#include "slam/io/dataset.h"
+#include "slam/io/folder_source.h"
+#include "slam/io/image_file.h"
+#include "slam/io/number_text.h"
+#include "slam/io/trajectory.h"
 
 namespace orb360::town {
 namespace {
 
-/// The images of a folder by their names without extension, so in their order.
-std::map<std::string, std::filesystem::path> ListImages(const std::filesystem::path& folder) {
-  std::map<std::string, std::filesystem::path> images;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string extension = entry.path().extension().string();
-    if (extension == ".png" || extension == ".jpg" || extension == ".jpeg")
-      images[entry.path().stem().string()] = entry.path();
-  }
-  return images;
+constexpr const char* kDepthPrefix = "depth_";
+
+struct NaturalOrder {
+  bool operator()(const std::string& a, const std::string& b) const { return NaturalLess(a, b); }
+};
+/// The files of the faces of each frame, by the name without extension.
+using FaceFiles = std::array<std::filesystem::path, kCubeFaces>;
+using FrameFiles = std::map<std::string, FaceFiles, NaturalOrder>;
+
+std::filesystem::path FaceFolder(const std::filesystem::path& recording, const std::string& prefix,
+                                 size_t face) {
+  return recording / (prefix + std::string(kCubeFaceNames[face]));
 }
 
-/// For each frame the files of the faces.
-using FaceFiles = std::vector<std::array<std::filesystem::path, kCubeFaces>>;
-
-/// The images in the folders prefix + face name. Those of the first face say which frames there
-/// are, `names` (if any) which there must be.
-FaceFiles ListFaces(const std::filesystem::path& recording, const std::string& prefix,
-                    std::vector<std::string>* names) {
-  FaceFiles files;
+/// The images in the folders prefix + face name. Every face must have the same.
+FrameFiles ListFrames(const std::filesystem::path& recording, const std::string& prefix) {
+  FrameFiles frames;
   for (size_t face = 0; face < kCubeFaces; ++face) {
-    const std::filesystem::path folder = recording / (prefix + std::string(kCubeFaceNames[face]));
+    const std::filesystem::path folder = FaceFolder(recording, prefix, face);
     if (!std::filesystem::is_directory(folder)) {
       throw UserError(folder.string() +
                       ": no such folder; a recording has front, right, back, left, up and down");
     }
-    const auto images = ListImages(folder);
-    if (images.empty()) throw UserError(folder.string() + ": holds no PNG or JPEG image");
-    if (names->empty()) {
-      for (const auto& [name, path] : images) names->push_back(name);
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      if (IsImageFileName(entry.path())) frames[entry.path().stem().string()][face] = entry.path();
     }
-    files.resize(names->size());
-    for (size_t frame = 0; frame < names->size(); ++frame) {
-      const auto image = images.find((*names)[frame]);
-      if (image == images.end()) {
-        throw UserError(folder.string() + ": frame '" + (*names)[frame] +
+  }
+  if (frames.empty())
+    throw UserError(FaceFolder(recording, prefix, 0).string() + ": holds no images");
+  for (const auto& [name, files] : frames) {
+    for (size_t face = 0; face < kCubeFaces; ++face) {
+      if (files[face].empty()) {
+        throw UserError(FaceFolder(recording, prefix, face).string() + ": frame '" + name +
                         "' is missing, which other faces have");
       }
-      files[frame][face] = image->second;
     }
   }
-  return files;
+  return frames;
 }
 
-/// Reads a face and checks that it is square and of the right size (0: any).
-cv::Mat ReadFace(const std::filesystem::path& path, int flags, int size) {
-  cv::Mat image = cv::imread(path.string(), flags);
-  if (image.empty()) throw UserError(path.string() + ": cannot be read as an image");
-  if (image.rows != image.cols || image.rows < 2 || (size != 0 && image.rows != size)) {
-    std::ostringstream message;
-    message << path.string() << ": is " << image.cols << "x" << image.rows
-            << ", but faces are square";
-    if (size != 0) message << " and the others " << size << "x" << size;
-    throw UserError(message.str());
+/// The number that a name ends in.
+std::optional<int64_t> NumberOf(const std::string& name) {
+  return ParseNumber<int64_t>(
+      std::string_view(name).substr(name.find_last_not_of("0123456789") + 1));
+}
+
+/// Frames have no times but those of their order, so none may be left out.
+void RequireEvenNumbers(const std::filesystem::path& recording, const FrameFiles& frames) {
+  std::optional<int64_t> step;
+  for (auto last = frames.begin(), next = std::next(last); next != frames.end(); ++last, ++next) {
+    const std::optional<int64_t> from = NumberOf(last->first);
+    const std::optional<int64_t> to = NumberOf(next->first);
+    if (!from || !to) return;
+    if (step && *to - *from != *step) {
+      throw UserError(recording.string() + ": frame '" + last->first + "' is followed by '" +
+                      next->first + "', but those before are numbered in steps of " +
+                      std::to_string(*step) + "; frames must be evenly spaced in time");
+    }
+    step = *to - *from;
   }
-  return image;
 }
 
-cv::Mat3b StitchColourFiles(const FaceFiles::value_type& files,
-                            const EquirectangularCamera& camera) {
+/// Checks that the ground truth is of the frames' times and copies it.
+void CopyGroundTruth(const std::filesystem::path& from, const std::filesystem::path& to,
+                     double duration) {
+  const std::vector<StampedPose> poses = ReadTrajectory(from);
+  const auto [first, last] = std::ranges::minmax(poses, {}, &StampedPose::timestamp);
+  if (last.timestamp < 0 || first.timestamp > duration) {
+    throw UserError(from.string() + ": is of " + ToText(first.timestamp) + " to " +
+                    ToText(last.timestamp) + " s, but the frames of 0 to " + ToText(duration) +
+                    " s; the first frame's time must be 0");
+  }
+  std::ifstream file(from, std::ios::binary);
+  std::stringstream content;
+  content << file.rdbuf();
+  WriteFileAtomically(to, content.str());
+}
+
+void RequireFaceSize(const std::filesystem::path& path, const cv::Mat& image, int size) {
+  if (image.rows == image.cols && image.rows >= 3 && (size == 0 || image.rows == size)) return;
+  std::ostringstream message;
+  message << path.string() << ": is " << image.cols << "x" << image.rows
+          << ", but faces are square";
+  if (size != 0) message << " and the others " << size << "x" << size;
+  throw UserError(message.str());
+}
+
+cv::Mat3b StitchColourFiles(const FaceFiles& files, const EquirectangularCamera& camera) {
   CubeImages<cv::Vec3b> faces;
-  for (size_t face = 0; face < kCubeFaces; ++face)
-    faces[face] = ReadFace(files[face], cv::IMREAD_COLOR, faces[0].rows);
+  for (size_t face = 0; face < kCubeFaces; ++face) {
+    const LoadedImage loaded = LoadImage(files[face]);
+    if (loaded.image.empty()) throw UserError(files[face].string() + ": " + loaded.problem);
+    RequireFaceSize(files[face], loaded.image, faces[0].rows);
+    faces[face] = loaded.image;
+  }
   return StitchColour(faces, camera);
 }
 
-cv::Mat1f DecodeDepth(const cv::Mat& image, const std::filesystem::path& path, double farthest) {
-  if (image.type() == CV_16UC1) {
+/// True for a picture in more than one shade of grey: depth for the eye, not 24-bit numbers.
+bool IsGrey(const cv::Mat& image) {
+  std::vector<cv::Mat> channels;
+  cv::split(image, channels);
+  double least = 0;
+  double most = 0;
+  cv::minMaxLoc(channels[0], &least, &most);
+  return least < most && cv::norm(channels[0], channels[1], cv::NORM_INF) == 0 &&
+         cv::norm(channels[0], channels[2], cv::NORM_INF) == 0;
+}
+
+cv::Mat1f ReadDepth(const std::filesystem::path& path, double farthest) {
+  const cv::Mat image =
+      path.extension() == ".png" ? cv::imread(path.string(), cv::IMREAD_UNCHANGED) : cv::Mat();
+  if (image.type() == CV_16UC1 && !image.empty()) {
     cv::Mat1f depth;
     image.convertTo(depth, CV_32F, 1.0 / 256);
     return depth;
   }
-  if (image.depth() == CV_8U && image.channels() >= 3) return DecodeDepth24(image, farthest);
-  throw UserError(
-      path.string() +
-      ": depth is a 16-bit image of one channel (metres * 256) or an 8-bit colour image "
-      "(24-bit encoding)");
+  if (image.depth() == CV_8U && image.channels() >= 3 && !IsGrey(image))
+    return DecodeDepth24(image, farthest);
+  throw UserError(path.string() +
+                  ": is not depth, which is a PNG of 16 bits and one channel (metres * 256) or of "
+                  "colours that are 24-bit numbers");
 }
 
-cv::Mat1f StitchRangeFiles(const FaceFiles::value_type& files, double farthest,
+cv::Mat1f StitchRangeFiles(const FaceFiles& files, double farthest,
                            const EquirectangularCamera& camera) {
   CubeImages<float> faces;
   for (size_t face = 0; face < kCubeFaces; ++face) {
-    const cv::Mat image = ReadFace(files[face], cv::IMREAD_UNCHANGED, faces[0].rows);
-    faces[face] = DecodeDepth(image, files[face], farthest);
+    const cv::Mat1f depth = ReadDepth(files[face], farthest);
+    RequireFaceSize(files[face], depth, faces[0].rows);
+    faces[face] = depth;
   }
   return StitchRange(faces, camera);
+}
+
+bool HasDepth(const std::filesystem::path& recording) {
+  for (size_t face = 0; face < kCubeFaces; ++face) {
+    if (std::filesystem::exists(FaceFolder(recording, kDepthPrefix, face))) return true;
+  }
+  return false;
+}
+
+std::string Description(const StitchOptions& options, const EquirectangularCamera& camera,
+                        size_t frames, bool has_depth) {
+  std::ostringstream text;
+  text << "camera:\n  model: equirectangular\n  width: " << camera.width()
+       << "\n  height: " << camera.height() << "\n";
+  if (options.camera_height)
+    text << "camera_height: " << *options.camera_height << "  # metres above the road\n";
+  text << "fps: " << options.fps << "\nframes: " << frames << "\n";
+  if (has_depth) {
+    text << "farthest_depth: " << options.farthest_depth
+         << "  # metres, of 24-bit depth it was made from\n";
+  }
+  return text.str();
 }
 
 }  // namespace
 
 void StitchFolder(const std::filesystem::path& recording, const std::filesystem::path& folder,
                   const StitchOptions& options, const std::function<void(int, int)>& progress) {
-  std::vector<std::string> names;
-  const FaceFiles colour = ListFaces(recording, "", &names);
-  const std::string depth_prefix = "depth_";
-  const bool has_depth =
-      std::filesystem::exists(recording / (depth_prefix + std::string(kCubeFaceNames[0])));
-  const FaceFiles depth = has_depth ? ListFaces(recording, depth_prefix, &names) : FaceFiles();
+  const FrameFiles frames = ListFrames(recording, "");
+  RequireEvenNumbers(recording, frames);
+  const FrameFiles depth = HasDepth(recording) ? ListFrames(recording, kDepthPrefix) : FrameFiles();
+  for (const auto& [name, files] : depth) {
+    if (!frames.contains(name)) throw UserError(files[0].string() + ": has no picture");
+  }
 
   const EquirectangularCamera camera(options.width, options.width / 2);
-  std::ostringstream description;
-  description << "camera:\n  model: equirectangular\n  width: " << camera.width()
-              << "\n  height: " << camera.height() << "\nfps: " << options.fps
-              << "\nframes: " << names.size() << "\n";
   std::vector<std::string> kinds = {SequenceWriter::kColour};
-  if (has_depth) kinds.emplace_back(SequenceWriter::kRange);
-  const SequenceWriter writer(folder, description.str(), kinds);
-  const std::filesystem::path truth = recording / "groundtruth.txt";
+  if (!depth.empty()) kinds.emplace_back(SequenceWriter::kRange);
+  const SequenceWriter writer(folder, Description(options, camera, frames.size(), !depth.empty()),
+                              kinds);
+  const std::filesystem::path truth = recording / Dataset::kGroundTruthName;
   if (std::filesystem::exists(truth)) {
-    std::filesystem::copy_file(truth, folder / "groundtruth.txt",
-                               std::filesystem::copy_options::overwrite_existing);
+    CopyGroundTruth(truth, folder / Dataset::kGroundTruthName,
+                    static_cast<double>(frames.size() - 1) / options.fps);
   }
-  const int all = static_cast<int>(names.size());
-  for (int frame = 0; frame < all; ++frame) {
-    const auto index = static_cast<size_t>(frame);
+  const int all = static_cast<int>(frames.size());
+  int frame = 0;
+  for (const auto& [name, files] : frames) {
     if (!writer.Has(SequenceWriter::kColour, frame))
-      writer.WriteColour(frame, StitchColourFiles(colour[index], camera));
-    if (has_depth && !writer.Has(SequenceWriter::kRange, frame)) {
-      writer.WriteRange(frame, StitchRangeFiles(depth[index], options.farthest_depth, camera));
+      writer.WriteColour(frame, StitchColourFiles(files, camera));
+    const auto with_depth = depth.find(name);
+    if (with_depth != depth.end() && !writer.Has(SequenceWriter::kRange, frame)) {
+      writer.WriteRange(frame,
+                        StitchRangeFiles(with_depth->second, options.farthest_depth, camera));
     }
-    progress(frame + 1, all);
+    progress(++frame, all);
   }
   writer.WriteContactSheet(all);
 }

@@ -2,22 +2,25 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 namespace orb360::town {
 
 struct StitchOptions {
-  int width = 2048;              ///< of the panoramas, pixels
-  double fps = 20;               ///< of the recording
+  int width = 2048;                                    ///< of the panoramas, pixels
+  double fps = 20;                                     ///< of the recording
+  std::optional<double> camera_height = std::nullopt;  ///< metres above the road, if known
   double farthest_depth = 1000;  ///< metres that the largest number of the 24-bit encoding means
 };
 
 /// Turns a recording by six cameras (see CubeFace) into a sequence folder of panoramas. `recording`
 /// holds a folder of images for each face (front/, right/, back/, left/, up/, down/) with the same
-/// names in each, and optionally depth along the optical axis under the same names in
-/// depth_front/ ... depth_down/: 16-bit PNG of metres * 256, or 8-bit colour PNG in the 24-bit
-/// encoding (see DecodeDepth24); and groundtruth.txt (TUM), which is copied. Panoramas that are
-/// there already are kept. `progress` is called after each frame with the number done and the
-/// number in all. Throws UserError.
+/// names in each; for all or some of the frames, depth along the optical axis under the same names
+/// in depth_front/ ... depth_down/: 16-bit PNG of metres * 256, or 8-bit colour PNG in the 24-bit
+/// encoding (see DecodeDepth24); and groundtruth.txt (TUM, time 0 at the first frame), which is
+/// copied. Frames are in the order of the numbers in their names. Panoramas that are there already
+/// are kept. `progress` is called after each frame with the number done and the number in all.
+/// Throws UserError.
 void StitchFolder(const std::filesystem::path& recording, const std::filesystem::path& folder,
                   const StitchOptions& options,
                   const std::function<void(int done, int all)>& progress);

@@ -34,10 +34,13 @@ class StitchFolderTest : public testing::Test {
     for (const char* name : {"000017", "000018"}) {
       for (int face = 0; face < kCubeFaces; ++face) WriteFace(face, name);
     }
-    std::ofstream(Recording() / "groundtruth.txt") << "0 1 2 3 0 0 0 1\n";
+    WriteTruth("0 1 2 3 0 0 0 1\n");
   }
   ~StitchFolderTest() override { std::filesystem::remove_all(folder_); }
 
+  void WriteTruth(const std::string& text) const {
+    std::ofstream(Recording() / "groundtruth.txt") << text;
+  }
   std::filesystem::path Recording() const { return folder_ / "recording"; }
   std::filesystem::path Out() const { return folder_ / "out"; }
   std::filesystem::path Face(const std::string& prefix, int face, const std::string& name) const {
@@ -108,6 +111,35 @@ TEST_F(StitchFolderTest, KeepsWhatIsThere) {
   EXPECT_TRUE(std::filesystem::exists(Out() / "rgb/000001.jpg"));
 }
 
+TEST_F(StitchFolderTest, RefusesARecordingWithAGap) {
+  for (int face = 0; face < kCubeFaces; ++face) WriteFace(face, "000020");
+  EXPECT_THAT(Problem(), HasSubstr("frame '000018' is followed by '000020', but those before"));
+}
+
+TEST_F(StitchFolderTest, TakesFramesInTheOrderOfTheirNumbers) {
+  for (const char* folder : {"", "depth_"}) {
+    for (int face = 0; face < kCubeFaces; ++face) {
+      std::filesystem::rename(Face(folder, face, "000017"), Face(folder, face, "9"));
+      std::filesystem::rename(Face(folder, face, "000018"), Face(folder, face, "10"));
+    }
+  }
+  for (int face = 0; face < kCubeFaces; ++face) {
+    cv::imwrite(Face("", face, "10").string(), cv::Mat3b(kSize, kSize, cv::Vec3b(0, 0, 0)));
+  }
+  Stitch();
+  EXPECT_EQ(cv::norm(cv::imread((Out() / "rgb/000001.jpg").string()), cv::NORM_INF), 0);
+  EXPECT_GT(cv::norm(cv::imread((Out() / "rgb/000000.jpg").string()), cv::NORM_INF), 0);
+}
+
+TEST_F(StitchFolderTest, NeedsDepthForSomeFramesOnly) {
+  for (int face = 0; face < kCubeFaces; ++face)
+    std::filesystem::remove(Face("depth_", face, "000017"));
+  EXPECT_EQ(Stitch({.width = 128, .fps = 10, .camera_height = 1.5}), 2);
+  EXPECT_FALSE(std::filesystem::exists(Out() / "depth/000000.png"));
+  EXPECT_TRUE(std::filesystem::exists(Out() / "depth/000001.png"));
+  EXPECT_EQ(OpenDataset(Out()).camera_height, 1.5);
+}
+
 TEST_F(StitchFolderTest, NamesWhatIsWrong) {
   std::filesystem::remove(Face("", kBack, "000018"));
   EXPECT_THAT(Problem(), HasSubstr("back: frame '000018' is missing"));
@@ -115,8 +147,23 @@ TEST_F(StitchFolderTest, NamesWhatIsWrong) {
   cv::imwrite(Face("", kUp, "000017").string(), cv::Mat3b(16, 16, cv::Vec3b(0, 0, 0)));
   EXPECT_THAT(Problem(), HasSubstr("000017.png: is 16x16, but faces are square and the others"));
   WriteFace(kUp, "000017");
+  std::filesystem::resize_file(Face("", kDown, "000017"), 60);
+  EXPECT_THAT(Problem(), HasSubstr("down/000017.png: is cut off"));
+  WriteFace(kDown, "000017");
   std::ofstream(Face("depth_", kDown, "000017")) << "no image";
-  EXPECT_THAT(Problem(), HasSubstr("000017.png: cannot be read as an image"));
+  EXPECT_THAT(Problem(), HasSubstr("000017.png: is not depth"));
+  // Depth to look at: a ramp of grey.
+  cv::Mat3b grey(kSize, kSize, cv::Vec3b(7, 7, 7));
+  grey(3, 4) = {8, 8, 8};
+  cv::imwrite(Face("depth_", kDown, "000017").string(), grey);
+  EXPECT_THAT(Problem(), HasSubstr("000017.png: is not depth"));
+  WriteFace(kDown, "000017");
+  WriteTruth("1234.5 1 2 3 0 0 0 1\n");
+  EXPECT_THAT(Problem(), HasSubstr("is of 1234.5 to 1234.5 s, but the frames of 0 to 0.1 s"));
+  WriteTruth("0 1 2 3 0 0 0\n");
+  EXPECT_THAT(Problem(), HasSubstr("groundtruth.txt:1"));
+  std::filesystem::remove_all(Recording() / "depth_front");
+  EXPECT_THAT(Problem(), HasSubstr("depth_front: no such folder"));
   std::filesystem::remove_all(Recording() / "left");
   EXPECT_THAT(Problem(), HasSubstr("left: no such folder"));
 }
