@@ -164,6 +164,31 @@ TEST(StitchRange, NeverMixesWhatIsNearWithWhatIsFarOrNothing) {
   }
 }
 
+TEST(StitchRange, FollowsTheNearestSurfaceAtTheEdgeOfASlopingOne) {
+  // Terraces around the camera, 1.2 and 1.6 m below it.
+  const auto terrace = [](double height, const Eigen::Vector3d& ray) { return -height / ray.z(); };
+  const cv::Mat1f range =
+      StitchRange(PaintFaces<float>([&](const Eigen::Vector3d& ray) {
+                    if (ray.z() >= 0) return 0.0F;
+                    return static_cast<float>(terrace(std::sin(20 * ray.z()) > 0 ? 1.2 : 1.6, ray));
+                  }),
+                  kCamera);
+  int exact = 0;
+  int steep = 0;
+  for (int row = 0; row < range.rows; ++row) {
+    for (int column = 0; column < range.cols; ++column) {
+      const Eigen::Vector3d bearing = kCamera.Bearing({column + 0.5, row + 0.5});
+      if (bearing.z() > -0.3) continue;
+      const double error = std::min(std::abs(range(row, column) / terrace(1.2, bearing) - 1),
+                                    std::abs(range(row, column) / terrace(1.6, bearing) - 1));
+      ASSERT_LT(error, 0.04) << row << ' ' << column;  // half a pixel of slope
+      ++steep;
+      exact += error < 1e-4 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(exact, 0.9 * steep);
+}
+
 TEST(DecodeDepth24, ReadsTheBytesFromRedToBlue) {
   cv::Mat3b image(1, 3);
   image(0, 0) = {0, 0, 1};    // blue, green, red
