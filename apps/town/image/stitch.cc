@@ -79,27 +79,45 @@ cv::Vec3f Sample(const cv::Mat_<Pixel>& wide, const CubePoint& point) {
   return result;
 }
 
-/// Bearings of a grid with `per_pixel` places to either side of a pixel, in its middle if there is
-/// one: from tables over the columns and the rows.
-class BearingGrid {
+/// Where the directions through a grid of `per_pixel` by `per_pixel` places in each pixel meet the
+/// cube (as MeetCube), from tables over the columns and the rows: on a side, the place to the right
+/// depends on the column alone, and the height above the horizon is a product.
+class CubeGrid {
  public:
-  BearingGrid(const EquirectangularCamera& camera, int per_pixel) {
-    for (int i = 0; i < camera.width() * per_pixel; ++i)
-      horizontal_.push_back(camera.Bearing({(i + 0.5) / per_pixel, camera.cy()}));
+  CubeGrid(const EquirectangularCamera& camera, int per_pixel) {
+    for (int i = 0; i < camera.width() * per_pixel; ++i) {
+      const Eigen::Vector3d bearing = camera.Bearing({(i + 0.5) / per_pixel, camera.cy()});
+      columns_.push_back({MeetCube(bearing), bearing.x(), bearing.y(),
+                          1 / std::max(std::abs(bearing.x()), std::abs(bearing.y()))});
+    }
     for (int i = 0; i < camera.height() * per_pixel; ++i) {
       const Eigen::Vector3d bearing = camera.Bearing({camera.cx(), (i + 0.5) / per_pixel});
-      latitude_.emplace_back(-bearing.x(), bearing.z());
+      rows_.push_back({bearing.z() / -bearing.x(), -bearing.x() / std::abs(bearing.z())});
     }
   }
-  Eigen::Vector3d At(int column, int row) const {
-    const Eigen::Vector3d& horizontal = horizontal_[static_cast<size_t>(column)];
-    const Eigen::Vector2d& latitude = latitude_[static_cast<size_t>(row)];
-    return {latitude.x() * horizontal.x(), latitude.x() * horizontal.y(), latitude.y()};
+  CubePoint At(int column, int row) const {
+    const Column& across = columns_[static_cast<size_t>(column)];
+    const Row& down = rows_[static_cast<size_t>(row)];
+    const double up = down.tangent * across.secant;
+    if (std::abs(up) <= 1) return {across.horizon.face, across.horizon.right, up};
+    const double right = down.cotangent * across.y;
+    return up > 0 ? CubePoint{kUp, right, down.cotangent * across.x}
+                  : CubePoint{kDown, right, -down.cotangent * across.x};
   }
 
  private:
-  std::vector<Eigen::Vector3d> horizontal_;
-  std::vector<Eigen::Vector2d> latitude_;  // cosine, sine
+  struct Column {
+    CubePoint horizon;  // where its place on the horizon meets the cube
+    double x;           // of the bearing there
+    double y;
+    double secant;  // of the angle from the axis of that face
+  };
+  struct Row {
+    double tangent;    // of the latitude
+    double cotangent;  // of its size
+  };
+  std::vector<Column> columns_;
+  std::vector<Row> rows_;
 };
 
 /// z at a point of a face: see StitchRange.
@@ -139,7 +157,7 @@ cv::Mat_<Pixel> Stitch(const CubeImages<Pixel>& faces, const EquirectangularCame
   const CubeImages<Pixel> wide = AddBorders(faces);
   const int samples = SamplesAcross(SizeOf(faces), camera);
   const float weight = 1.0F / static_cast<float>(samples * samples);
-  const BearingGrid grid(camera, samples);
+  const CubeGrid grid(camera, samples);
   cv::Mat_<Pixel> panorama(camera.height(), camera.width());
 #pragma omp parallel for schedule(dynamic, 4)
   for (int row = 0; row < panorama.rows; ++row) {
@@ -147,7 +165,7 @@ cv::Mat_<Pixel> Stitch(const CubeImages<Pixel>& faces, const EquirectangularCame
       cv::Vec3f sum(0, 0, 0);
       for (int y = row * samples; y < (row + 1) * samples; ++y) {
         for (int x = column * samples; x < (column + 1) * samples; ++x) {
-          const CubePoint point = MeetCube(grid.At(x, y));
+          const CubePoint point = grid.At(x, y);
           sum += Sample(wide[static_cast<size_t>(point.face)], point);
         }
       }
@@ -169,12 +187,12 @@ cv::Mat3f StitchRadiance(const CubeImages<cv::Vec3f>& faces, const Equirectangul
 
 cv::Mat1f StitchRange(const CubeImages<float>& depth, const EquirectangularCamera& camera) {
   ORB360_CHECK(SizeOf(depth) >= 3);
-  const BearingGrid grid(camera, 1);
+  const CubeGrid grid(camera, 1);
   cv::Mat1f range(camera.height(), camera.width());
 #pragma omp parallel for schedule(dynamic, 4)
   for (int row = 0; row < range.rows; ++row) {
     for (int column = 0; column < range.cols; ++column) {
-      const CubePoint point = MeetCube(grid.At(column, row));
+      const CubePoint point = grid.At(column, row);
       const double z = SampleDepth(depth[static_cast<size_t>(point.face)], point);
       range(row, column) =
           static_cast<float>(z * std::sqrt(1 + point.right * point.right + point.up * point.up));
