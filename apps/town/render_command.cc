@@ -34,11 +34,26 @@ struct Arguments {
   double roll_degrees = 0;
   std::optional<double> camera_height;
   double shaking = 1;
-  int cube = 0;
+  std::optional<int> cube;
+  std::optional<double> shutter;
+  std::optional<int> jpeg_quality;
+  bool auto_exposure = false;
+  bool dual_lens = false;
+  bool noise = false;
   int threads = 0;
 };
 
 constexpr double kDegree = std::numbers::pi / 180;
+
+SensorOptions SensorOf(const Arguments& arguments) {
+  SensorOptions sensor;
+  if (arguments.auto_exposure) sensor.auto_exposure = AutoExposure();
+  if (arguments.shutter) sensor.motion_blur = MotionBlur{.shutter = *arguments.shutter};
+  if (arguments.dual_lens) sensor.dual_lens = DualLens();
+  if (arguments.noise) sensor.noise = SensorNoise();
+  sensor.jpeg_quality = arguments.jpeg_quality;
+  return sensor;
+}
 
 std::unique_ptr<Drive> MakeTownDrive(const Arguments& arguments, Recording recording) {
   TownSpec spec = FindTown(arguments.town);
@@ -47,6 +62,7 @@ std::unique_ptr<Drive> MakeTownDrive(const Arguments& arguments, Recording recor
   spec.mount = {arguments.camera_height, arguments.pitch_degrees * kDegree,
                 arguments.roll_degrees * kDegree, arguments.shaking};
   recording.frames = arguments.frames.value_or(spec.frames);
+  recording.sensor.seed = spec.seed;
   return std::make_unique<TownDrive>(spec, recording);
 }
 
@@ -75,7 +91,8 @@ void Render(const Arguments& arguments) {
     throw UserError("render takes either --town or --scene (see town render --help)");
   if (arguments.threads > 0) omp_set_num_threads(arguments.threads);
   Recording recording{EquirectangularCamera(arguments.width, arguments.width / 2), arguments.fps};
-  recording.cube_size = arguments.cube;
+  recording.cube_size = arguments.cube.value_or(0);
+  recording.sensor = SensorOf(arguments);
   const std::unique_ptr<Drive> drive = arguments.town.empty()
                                            ? MakeImportedDrive(arguments, recording)
                                            : MakeTownDrive(arguments, recording);
@@ -120,9 +137,8 @@ void AddRenderCommand(CLI::App* app) {
       ->check(CLI::Range(32, 16384));
   command
       ->add_option("--cube", arguments->cube,
-                   "Stitch the panorama from six faces, so many pixels wide; 0: render it directly")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 8192));
+                   "Stitch the panorama from six faces, so many pixels wide")
+      ->check(CLI::Range(16, 8192));
   command->add_option("--fps", arguments->fps, "Frames per second")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 1000.0));
@@ -157,6 +173,19 @@ void AddRenderCommand(CLI::App* app) {
                    "Factor on vibration, and on leaning when braking and in bends")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10.0));
+  command->add_flag("--auto-exposure", arguments->auto_exposure,
+                    "Expose for the light, in steps of a third of a stop");
+  command
+      ->add_option("--motion-blur", arguments->shutter,
+                   "Seconds that the shutter is open; rendering takes four times as long")
+      ->check(CLI::Range(1e-5, 1.0));
+  command->add_flag("--dual-lens", arguments->dual_lens,
+                    "Show seams as of two fisheye lenses back to back");
+  command->add_flag("--noise", arguments->noise, "Add the noise of a small sensor");
+  command
+      ->add_option("--jpeg-quality", arguments->jpeg_quality,
+                   "Compress pictures as a camera does, before they are stored at 95")
+      ->check(CLI::Range(1, 100));
   command->add_option("--threads", arguments->threads, "Threads to use; 0: all cores")
       ->capture_default_str()
       ->check(CLI::Range(0, 256));

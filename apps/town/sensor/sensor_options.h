@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 namespace orb360::town {
 
@@ -42,6 +43,13 @@ struct SensorOptions {
   std::optional<SensorNoise> noise;
   std::optional<int> jpeg_quality;  ///< 1 to 100
   uint64_t seed = 0;                ///< of the noise
+
+  bool HasEffects() const {
+    return auto_exposure || motion_blur || dual_lens || noise || jpeg_quality;
+  }
 };
+
+/// The effects that are on with all their parameters, as lines of YAML; empty without any.
+std::string Describe(const SensorOptions& options);
 
 }  // namespace orb360::town

@@ -6,6 +6,7 @@
 
 #include "apps/town/render/renderer.h"
 #include "apps/town/render/stage.h"
+#include "apps/town/sensor/sensor_options.h"
 #include "slam/geometry/camera.h"
 #include "slam/geometry/rigid3.h"
 
@@ -17,6 +18,7 @@ struct Recording {
   double fps = 20;
   int frames = 600;
   int cube_size = 0;  ///< stitch pictures from six faces of that width; 0: render them directly
+  SensorOptions sensor = {};
 };
 
 /// A camera's way through a scenery that can be rendered at any frame, in any order.
@@ -32,22 +34,32 @@ class Drive {
   int frames() const { return recording_.frames; }
   int cube_size() const { return recording_.cube_size; }
 
-  virtual Rigid3 WorldFromCamera(int frame) const = 0;
+  const SensorOptions& sensor() const { return recording_.sensor; }
+
+  Rigid3 WorldFromCamera(int frame) const { return PoseAt(frame / fps()); }
   /// Metres above the road, where there is a road.
   virtual std::optional<double> camera_height() const = 0;
   /// What it was made from: lines of YAML.
   virtual std::string Origin() const = 0;
 
-  FrameScene SceneAt(int frame) const { return stage().With(MovingAt(frame)); }
+  FrameScene SceneAt(int frame) const { return stage().With(MovingAt(frame / fps())); }
+  /// What the camera takes of the scene at a frame.
   cv::Mat3b Colour(const FrameScene& scene, int frame) const;
   /// Along the rays of the panorama, however its colours are made.
   GeometryImage Geometry(const FrameScene& scene, int frame) const;
 
  protected:
   virtual const Stage& stage() const = 0;
-  virtual std::vector<Instance> MovingAt(int frame) const = 0;
+  /// Seconds from the first frame; the shutter may open shortly before it and close shortly after
+  /// the last.
+  virtual Rigid3 PoseAt(double seconds) const = 0;
+  virtual std::vector<Instance> MovingAt(double seconds) const = 0;
 
  private:
+  cv::Mat3f RadianceAt(double seconds) const;
+  /// A small panorama to expose for.
+  cv::Mat3f MeteredAt(double seconds) const;
+
   Recording recording_;
 };
 

@@ -25,9 +25,6 @@ class ImportedDrive : public Drive {
   /// files that cannot be used and a path that goes through a wall.
   ImportedDrive(const ImportedSpec& spec, const CameraPath& path, const Recording& recording);
 
-  Rigid3 WorldFromCamera(int frame) const override {
-    return path_.At(path_.begin() + frame / fps());
-  }
   std::optional<double> camera_height() const override { return camera_height_; }
   std::string Origin() const override;
   /// Textures that could not be read, and why.
@@ -35,7 +32,8 @@ class ImportedDrive : public Drive {
 
  protected:
   const Stage& stage() const override { return stage_; }
-  std::vector<Instance> MovingAt(int) const override { return {}; }
+  Rigid3 PoseAt(double seconds) const override { return path_.At(path_.begin() + seconds); }
+  std::vector<Instance> MovingAt(double) const override { return {}; }
 
  private:
   ImportedSpec spec_;

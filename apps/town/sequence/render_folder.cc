@@ -33,7 +33,7 @@ std::string Description(const Drive& drive) {
   if (drive.camera_height())
     text << "camera_height: " << *drive.camera_height() << "  # metres above the road\n";
   text << "fps: " << drive.fps() << "\nframes: " << frames << "\n"
-       << drive.Origin() << "path_length: " << distance
+       << drive.Origin() << Describe(drive.sensor()) << "path_length: " << distance
        << "  # metres\nspeed:  # metres per second\n  mean: "
        << (frames > 1 ? distance * drive.fps() / (frames - 1) : 0.0) << "\n  maximum: " << fastest
        << "\n";

@@ -42,11 +42,9 @@ TownDrive::TownDrive(const TownSpec& spec, const Recording& recording)
                 .until = recording.frames / recording.fps}),
       motion_(MotionOf(spec)) {}
 
-Rigid3 TownDrive::WorldFromCamera(int frame) const {
-  return CameraPose(lap_, motion_, frame / fps());
-}
+Rigid3 TownDrive::PoseAt(double seconds) const { return CameraPose(lap_, motion_, seconds); }
 
-std::vector<Instance> TownDrive::MovingAt(int frame) const { return traffic_.At(frame / fps()); }
+std::vector<Instance> TownDrive::MovingAt(double seconds) const { return traffic_.At(seconds); }
 
 std::string TownDrive::Origin() const {
   std::ostringstream text;

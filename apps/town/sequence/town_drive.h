@@ -21,13 +21,13 @@ class TownDrive : public Drive {
   const Town& town() const { return town_; }
   const Lap& lap() const { return lap_; }
 
-  Rigid3 WorldFromCamera(int frame) const override;
   std::optional<double> camera_height() const override { return motion_.height; }
   std::string Origin() const override;
 
  protected:
   const Stage& stage() const override { return stage_; }
-  std::vector<Instance> MovingAt(int frame) const override;
+  Rigid3 PoseAt(double seconds) const override;
+  std::vector<Instance> MovingAt(double seconds) const override;
 
  private:
   TownSpec spec_;

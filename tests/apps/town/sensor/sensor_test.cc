@@ -201,6 +201,15 @@ TEST(StitchedFromTwoLenses, WithAllParametersZeroChangesNothing) {
   EXPECT_LT(Difference(StitchedFromTwoLenses(options, Bearings()), Bearings()), 1e-4);
 }
 
+TEST(SensorOptions, SayWhichEffectsAreOn) {
+  SensorOptions options;
+  EXPECT_FALSE(options.HasEffects());
+  EXPECT_EQ(Describe(options), "");
+  options.motion_blur = MotionBlur{.shutter = 0.008, .moments = 3};
+  EXPECT_TRUE(options.HasEffects());
+  EXPECT_EQ(Describe(options), "sensor:\n  motion_blur: {shutter: 0.008, moments: 3}\n");
+}
+
 TEST(TakePicture, CompressesAsTheQualitySays) {
   const RadianceAt picture = [](double) {
     cv::Mat3f image = Constant(0.2F);

@@ -73,6 +73,24 @@ TEST_F(DriveSlow, GivesTheSameBytesForAnyNumberOfThreadsAndFromASecondBuild) {
   omp_set_num_threads(threads);
 }
 
+TEST_F(DriveSlow, SensorEffectsOfAFrameDependOnNothingRenderedBefore) {
+  Recording recording{EquirectangularCamera(256, 128), 20, 4};
+  recording.sensor.auto_exposure = AutoExposure();
+  recording.sensor.motion_blur = MotionBlur();
+  recording.sensor.dual_lens = DualLens();
+  recording.sensor.noise = SensorNoise();
+  recording.sensor.jpeg_quality = 80;
+  recording.cube_size = 96;
+  const TownDrive drive(SmallTown(), recording);
+  const cv::Mat3b alone = drive.Colour(drive.SceneAt(2), 2);
+  const cv::Mat3b first = drive.Colour(drive.SceneAt(0), 0);  // the shutter opens before time 0
+  EXPECT_FALSE(SameBytes(alone, first));
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(1);
+  EXPECT_TRUE(SameBytes(alone, drive.Colour(drive.SceneAt(2), 2)));
+  omp_set_num_threads(threads);
+}
+
 TEST_F(DriveSlow, PoseAndRangeAgreeBetweenFrames) {
   // A point seen in one frame and carried into another by the poses must be met there at its
   // distance, unless something stands in front of it.
