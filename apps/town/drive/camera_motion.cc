@@ -37,20 +37,19 @@ double Heading(const RoadPose& pose) { return std::atan2(pose.forward.y(), pose.
 
 }  // namespace
 
-Rigid3 CameraPose(const Lap& lap, const CameraMotionOptions& options, double time) {
+Rigid3 CameraPose(const Ride& ride, const CameraMotionOptions& options, double time) {
   const Random random(options.seed);
-  const Lap::State now = lap.At(time);
-  const RoadPose road = lap.PoseAt(now.station);
+  const double speed = ride.SpeedAt(time);
+  const RoadPose road = ride.PoseAt(time);
   // The body leans by 0.006 rad for each m/s² of the mean acceleration over the last moments.
   constexpr double kMemory = 0.6;  // seconds
   constexpr double kLean = 0.006;  // radians per metre per second squared
-  const Lap::State before = lap.At(time - kMemory);
-  const double acceleration = (now.speed - before.speed) / kMemory;
+  const double acceleration = (speed - ride.SpeedAt(time - kMemory)) / kMemory;
   const double turn =
-      std::remainder(Heading(road) - Heading(lap.PoseAt(before.station)), 2 * std::numbers::pi);
-  const double lateral = now.speed * turn / kMemory;  // to the left
+      std::remainder(Heading(road) - Heading(ride.PoseAt(time - kMemory)), 2 * std::numbers::pi);
+  const double lateral = speed * turn / kMemory;  // to the left
   // Vibration grows with speed and is full at 10 m/s.
-  const double shaking = options.shaking * std::min(1.0, now.speed / 10);
+  const double shaking = options.shaking * std::min(1.0, speed / 10);
   const double yaw = Heading(road) + 0.002 * shaking * Shake(random.Fork(1), 0.1, 0.8).At(time);
   const double nose_up = road.slope + options.shaking * kLean * acceleration +
                          0.0022 * shaking * Shake(random.Fork(2), 0.8, 5).At(time);

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "apps/town/drive/lap.h"
+#include "apps/town/drive/ride.h"
 #include "slam/geometry/rigid3.h"
 
 namespace orb360::town {
@@ -18,6 +18,10 @@ struct CameraMotionOptions {
 
 /// The pose world_from_camera (camera -X forward, +Y right, +Z up) at a time, of a camera on the
 /// roof of a car that drives a lap.
-Rigid3 CameraPose(const Lap& lap, const CameraMotionOptions& options, double time);
+Rigid3 CameraPose(const Ride& ride, const CameraMotionOptions& options, double time);
+/// As above, on the lap's line.
+inline Rigid3 CameraPose(const Lap& lap, const CameraMotionOptions& options, double time) {
+  return CameraPose(Ride{.lap = &lap}, options, time);
+}
 
 }  // namespace orb360::town

@@ -12,7 +12,6 @@ namespace {
 constexpr double kStep = 0.25;                // metres between the points of the driven line
 constexpr double kLateralAcceleration = 4.0;  // metres per second squared, in bends
 constexpr double kBraking = 2.8;              // metres per second squared
-constexpr double kStopShare = 0.15;           // of the junctions, where the driver waits
 constexpr double kAccelerating = 2.4;
 
 /// A stretch of one street between two junctions, as driven.
@@ -33,11 +32,19 @@ Leg FindLeg(const StreetPlan& plan, size_t from, size_t to) {
   return {};
 }
 
-Vector2d LanePoint(const StreetPlan& plan, const Leg& leg, double station) {
-  const StreetPoint p = plan.streets[leg.street].At(station);
+/// A point of the driven line: its place in the plan, and as z the metres to the kerb on the right,
+/// or to the cars parked there.
+using LinePoint = Eigen::Vector3d;
+
+LinePoint LanePoint(const StreetPlan& plan, const Leg& leg, double station) {
+  const Street& street = plan.streets[leg.street];
+  const StreetPoint p = street.At(station);
   const double direction = leg.to > leg.from ? 1 : -1;
   const Vector2d right(direction * p.tangent.y(), -direction * p.tangent.x());
-  return p.position + plan.streets[leg.street].LaneOffset(p.half_width) * right;
+  const double offset = street.LaneOffset(p.half_width);
+  const Vector2d position = p.position + offset * right;
+  return {position.x(), position.y(),
+          p.half_width - (street.parking ? kParkingWidth : 0.0) - offset};
 }
 
 Vector2d LaneDirection(const StreetPlan& plan, const Leg& leg, double station) {
@@ -45,13 +52,13 @@ Vector2d LaneDirection(const StreetPlan& plan, const Leg& leg, double station) {
 }
 
 /// Points every kStep metres along a polyline, closed into a ring.
-std::vector<Vector2d> Resample(const std::vector<Vector2d>& ring) {
-  std::vector<Vector2d> result;
+std::vector<LinePoint> Resample(const std::vector<LinePoint>& ring) {
+  std::vector<LinePoint> result;
   double carried = 0;  // metres since the last point
   for (size_t i = 0; i < ring.size(); ++i) {
-    const Vector2d& a = ring[i];
-    const Vector2d& b = ring[(i + 1) % ring.size()];
-    const double length = (b - a).norm();
+    const LinePoint& a = ring[i];
+    const LinePoint& b = ring[(i + 1) % ring.size()];
+    const double length = (b - a).head<2>().norm();
     if (length < 1e-9) continue;
     double s = kStep - carried;
     for (; s <= length; s += kStep) result.emplace_back(a + s / length * (b - a));
@@ -61,13 +68,13 @@ std::vector<Vector2d> Resample(const std::vector<Vector2d>& ring) {
 }
 
 /// The driven line as a ring: lanes joined at the junctions by curves.
-std::vector<Vector2d> DrivenLine(const StreetPlan& plan, std::span<const size_t> tour,
-                                 std::vector<size_t>* junction_points) {
+std::vector<LinePoint> DrivenLine(const StreetPlan& plan, std::span<const size_t> tour,
+                                  std::vector<size_t>* junction_points) {
   constexpr double kApproach = 11;  // metres from the junction at which a turn begins and ends
   std::vector<Leg> legs;
   for (size_t i = 0; i < tour.size(); ++i)
     legs.push_back(FindLeg(plan, tour[i], tour[(i + 1) % tour.size()]));
-  std::vector<Vector2d> ring;
+  std::vector<LinePoint> ring;
   for (size_t i = 0; i < legs.size(); ++i) {
     const Leg& leg = legs[i];
     const Leg& next = legs[(i + 1) % legs.size()];
@@ -83,11 +90,13 @@ std::vector<Vector2d> DrivenLine(const StreetPlan& plan, std::span<const size_t>
     junction_points->push_back(ring.size());
     if (straight_on) continue;
     const double exit = next.from + next_direction * kApproach;
-    const Vector2d p0 = LanePoint(plan, leg, end);
-    const Vector2d p3 = LanePoint(plan, next, exit);
-    const double reach = 0.45 * (p3 - p0).norm();
-    const Vector2d p1 = p0 + reach * LaneDirection(plan, leg, end);
-    const Vector2d p2 = p3 - reach * LaneDirection(plan, next, exit);
+    const LinePoint p0 = LanePoint(plan, leg, end);
+    const LinePoint p3 = LanePoint(plan, next, exit);
+    const double reach = 0.45 * (p3 - p0).head<2>().norm();
+    LinePoint p1 = p0;
+    LinePoint p2 = p3;
+    p1.head<2>() += reach * LaneDirection(plan, leg, end);
+    p2.head<2>() -= reach * LaneDirection(plan, next, exit);
     for (int k = 0; k < 40; ++k) {
       const double t = k / 40.0;
       const double q = 1 - t;
@@ -139,14 +148,17 @@ Lap::Lap(const StreetPlan& plan, std::span<const size_t> tour, const LapOptions&
     : plan_(&plan) {
   Random random(options.seed);
   std::vector<size_t> junction_points;
-  const std::vector<Vector2d> line = DrivenLine(plan, tour, &junction_points);
-  points_ = SmoothRing(Resample(line), 7);
+  const std::vector<LinePoint> line = DrivenLine(plan, tour, &junction_points);
+  for (const LinePoint& p : SmoothRing(Resample(line), 7)) {
+    points_.emplace_back(p.head<2>());
+    room_.push_back(std::min(p.z(), -plan.DistanceToRoad(p.head<2>())));
+  }
   const size_t n = points_.size();
   speeds_ = WishedSpeeds(points_, options, random);
   dwell_.assign(n, 0);
   for (const size_t junction : junction_points) {
-    if (!random.Chance(kStopShare)) continue;
-    const Vector2d& p = line[junction % line.size()];
+    if (!random.Chance(options.stop_share)) continue;
+    const Vector2d p = line[junction % line.size()].head<2>();
     const auto nearest =
         std::min_element(points_.begin(), points_.end(), [&](const Vector2d& a, const Vector2d& b) {
           return (a - p).squaredNorm() < (b - p).squaredNorm();
@@ -192,29 +204,55 @@ Lap::State Lap::At(double time) const {
   return {std::fmod(station + advance, length()), std::max(0.0, v0 + acceleration * elapsed)};
 }
 
-Vector2d Lap::Point(double station) const {
+double Lap::TimeAt(double station) const {
+  const double x = (station - length() * std::floor(station / length())) / kStep;
+  const size_t i = static_cast<size_t>(x) % points_.size();
+  const double end = i + 1 < arrivals_.size() ? arrivals_[i + 1] : duration_;
+  const double leaves = arrivals_[i] + dwell_[i];
+  return leaves + (x - std::floor(x)) * (end - leaves);
+}
+
+double Lap::RoomOnRight(double station) const {
+  const double wrapped = station - length() * std::floor(station / length());
+  return room_[static_cast<size_t>(wrapped / kStep) % room_.size()];
+}
+
+Vector2d Lap::Point(double station, double left) const {
   const double wrapped = station - length() * std::floor(station / length());
   const double x = wrapped / kStep;
   const auto whole = static_cast<size_t>(x);
   const double t = x - static_cast<double>(whole);
   const size_t n = points_.size();
-  return (1 - t) * points_[whole % n] + t * points_[(whole + 1) % n];
+  const Vector2d& a = points_[whole % n];
+  const Vector2d& b = points_[(whole + 1) % n];
+  const Vector2d on_line = (1 - t) * a + t * b;
+  if (left == 0) return on_line;
+  // The normal changes with the direction over a metre, so that it turns steadily.
+  const auto chord = [&](size_t i) -> Vector2d {
+    return points_[(i + 2) % n] - points_[(i + n - 2) % n];
+  };
+  const Vector2d forward = ((1 - t) * chord(whole % n) + t * chord((whole + 1) % n)).normalized();
+  return on_line + left * Vector2d(-forward.y(), forward.x());
 }
 
-RoadPose Lap::PoseAt(double station) const {
-  constexpr double kHalfWheelbase = 1.4;  // metres
-  constexpr double kHalfTrack = 0.8;
+RoadPlace Lap::PlaceAt(double station, const Lateral& left) const {
+  const Vector2d front = Point(station + kHalfWheelbase, left.front);
+  const Vector2d rear = Point(station - kHalfWheelbase, left.rear);
+  return {Point(station, left.middle), (front - rear).normalized()};
+}
+
+RoadPose Lap::PoseAt(double station, const Lateral& left) const {
+  constexpr double kHalfTrack = 0.8;  // metres
   RoadPose pose;
-  pose.position = Point(station);
-  const Vector2d front = Point(station + kHalfWheelbase);
-  const Vector2d rear = Point(station - kHalfWheelbase);
-  pose.forward = (front - rear).normalized();
-  const Vector2d left(-pose.forward.y(), pose.forward.x());
-  pose.height = plan_->Height(pose.position);
-  pose.slope = std::atan2(plan_->Height(front) - plan_->Height(rear), (front - rear).norm());
-  pose.bank = std::atan2(plan_->Height(pose.position + kHalfTrack * left) -
-                             plan_->Height(pose.position - kHalfTrack * left),
-                         2 * kHalfTrack);
+  static_cast<RoadPlace&>(pose) = PlaceAt(station, left);
+  const Vector2d leftward(-pose.forward.y(), pose.forward.x());
+  const auto height = [&](double forward, double to_left) {
+    return plan_->Height(pose.position + forward * pose.forward + to_left * leftward);
+  };
+  pose.height = height(0, 0);
+  pose.slope =
+      std::atan2(height(kHalfWheelbase, 0) - height(-kHalfWheelbase, 0), 2 * kHalfWheelbase);
+  pose.bank = std::atan2(height(0, kHalfTrack) - height(0, -kHalfTrack), 2 * kHalfTrack);
   return pose;
 }
 

@@ -1,87 +1,165 @@
 #include "apps/town/drive/traffic.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "apps/town/drive/traffic_planner.h"
 #include "apps/town/image/random.h"
+#include "apps/town/world/cyclist.h"
 #include "apps/town/world/ground.h"
 #include "apps/town/world/pedestrian.h"
 #include "apps/town/world/vehicle.h"
 
 namespace orb360::town {
+namespace {
 
-Traffic::Traffic(const Town& town, const Lap& own_lap, const Lap& oncoming_lap,
-                 const TrafficOptions& options)
-    : town_(&town) {
-  if (options.density <= 0) return;
-  cars_.push_back({&own_lap, 0, 0, {}});  // the camera's, while the others are drawn
-  AddCars(own_lap, options, Hash(options.seed ^ 1));
-  AddCars(oncoming_lap, options, Hash(options.seed ^ 2));
-  cars_.erase(cars_.begin());
-  Random random(Hash(options.seed ^ 3));
-  for (size_t i = 0; i < town.plan.streets.size(); ++i) {
-    const Street& street = town.plan.streets[i];
-    constexpr double kMetresPerPedestrian = 14;  // on either side, at density 1
-    const int count =
-        static_cast<int>(std::lround(2 * options.density * street.Length() / kMetresPerPedestrian));
-    for (int k = 0; k < count; ++k) {
-      Pedestrian pedestrian;
-      pedestrian.street = i;
-      pedestrian.side = random.Chance(0.5) ? 1 : -1;
-      pedestrian.from_kerb = random.Uniform(1.0, std::max(1.1, street.pavement - 0.4));
-      pedestrian.start = random.Uniform(0, street.Length());
-      pedestrian.speed = (random.Chance(0.5) ? 1 : -1) * random.Uniform(0.9, 1.7);
-      pedestrian.first_model = town.pedestrians[static_cast<size_t>(
-          random.Int(static_cast<int>(town.pedestrians.size())))];
-      pedestrian.tint = {1, 1, 1, 1};
-      pedestrians_.push_back(pedestrian);
-    }
-  }
+/// How often one tries to fit something in before leaving it out.
+constexpr int kTries = 12;
+
+/// Whether a lap runs straight on, far from junctions, about a station.
+bool IsOpenRoad(const StreetPlan& plan, const Lap& lap, double station) {
+  constexpr double kAbout = 14;  // metres
+  const RoadPose here = lap.PoseAt(station);
+  if (lap.PoseAt(station - kAbout).forward.dot(lap.PoseAt(station + kAbout).forward) < 0.95)
+    return false;
+  return std::none_of(plan.junctions.begin(), plan.junctions.end(), [&](const Junction& junction) {
+    return (junction.position - here.position).norm() < kAbout;
+  });
 }
 
-void Traffic::AddCars(const Lap& lap, const TrafficOptions& options, uint64_t seed) {
-  Random random(seed);
-  // Shorter headways would let the next car run into one that waits at a junction.
-  constexpr double kHeadway = 6.5;  // seconds
-  const int slots = static_cast<int>(lap.duration() / kHeadway);
-  for (int slot = 0; slot < slots; ++slot) {
-    const double offset = lap.duration() / slots * slot + random.Uniform(0, 0.6);
-    const bool is_taken = random.Chance(options.density);
-    const int kind = random.Chance(0.15) ? 3 : random.Int(3);
-    const Car car{&lap, offset, town_->vehicles[static_cast<size_t>(kind)], DrawPaint(random)};
-    if (!is_taken) continue;
-    if (std::none_of(cars_.begin(), cars_.end(),
-                     [&](const Car& other) { return Collide(car, other, options); }))
-      cars_.push_back(car);
-  }
-}
+/// Draws vehicles and fits them in.
+class Dispatcher {
+ public:
+  Dispatcher(const Town& town, const TrafficOptions& options, TrafficPlanner* planner)
+      : town_(&town), density_(options.density), planner_(planner), random_(options.seed) {}
 
-bool Traffic::Collide(const Car& a, const Car& b, const TrafficOptions& options) const {
-  // A car is three discs in a row, with some air around them.
-  constexpr double kRadius = 1.15;                          // metres
-  constexpr std::array<double, 3> kDiscs = {-1.7, 0, 1.7};  // metres along the car
-  constexpr double kStep = 0.2;                             // seconds
-  constexpr double kFarApart = 2 * (kRadius + kDiscs.back());
-  for (double time = options.from; time <= options.until; time += kStep) {
-    const RoadPose p = a.lap->PoseAt(a.lap->At(time + a.offset).station);
-    const RoadPose q = b.lap->PoseAt(b.lap->At(time + b.offset).station);
-    if ((p.position - q.position).norm() > kFarApart) continue;
-    for (const double x : kDiscs) {
-      for (const double y : kDiscs) {
-        if ((p.position + x * p.forward - q.position - y * q.forward).norm() < 2 * kRadius)
-          return true;
+  /// As many as `every` seconds of the drive and the density ask for, each at the camera's car at
+  /// some moment on an open road.
+  void Encounter(const Lap& lap, Pace pace, double every) {
+    const double seconds = planner_->moments().until - planner_->moments().from;
+    const int slots = static_cast<int>(std::lround(seconds / every + 0.5));
+    for (int slot = 0; slot < slots; ++slot) {
+      if (!random_.Chance(density_)) continue;
+      for (int i = 0; i < kTries; ++i) {
+        Mover mover = Draw(lap, pace);
+        const double time = random_.Uniform(planner_->moments().from, planner_->moments().until);
+        const double distance = planner_->own().DistanceAt(time);
+        if (!IsOpenRoad(town_->plan, lap, distance)) continue;
+        mover.ride.ahead = lap.TimeAt(distance) - time;
+        if (pace == Pace::kStanding) mover.ride.standing_at = distance;
+        if (planner_->Add(std::move(mover))) break;
       }
     }
   }
-  return false;
+
+  /// A stream over the lap, one every `headway` seconds at density 1.
+  void Stream(const Lap& lap, Pace pace, double headway) {
+    const int slots = static_cast<int>(lap.duration() / headway);
+    const double phase = random_.Uniform(0, headway);
+    for (int slot = 0; slot < slots; ++slot) {
+      if (!random_.Chance(density_)) continue;
+      for (int i = 0; i < kTries; ++i) {
+        Mover mover = Draw(lap, pace);
+        mover.ride.ahead = lap.duration() / slots * slot + phase +
+                           (i == 0 ? 0 : random_.Uniform(-1, 1) * headway);
+        if (planner_->Add(std::move(mover))) break;
+      }
+    }
+  }
+
+  void Walk(size_t street, std::vector<Walker>* walkers) {
+    constexpr double kMetresPerPedestrian = 14;  // on either side, at density 1
+    const double length = town_->plan.streets[street].Length();
+    const int count = static_cast<int>(std::lround(2 * density_ * length / kMetresPerPedestrian));
+    for (int k = 0; k < count; ++k) {
+      for (int i = 0; i < kTries; ++i) {
+        const Walker walker = DrawWalker(town_->plan, street, random_);
+        if (!planner_->IsSafe(walker)) continue;
+        walkers->push_back(walker);
+        break;
+      }
+    }
+  }
+
+ private:
+  Mover Draw(const Lap& lap, Pace pace) {
+    Mover mover;
+    mover.ride.lap = &lap;
+    mover.pace = pace;
+    mover.tint = DrawPaint(random_);
+    if (pace == Pace::kCycling) {
+      mover.ride.from_kerb = random_.Uniform(0.5, 0.75);
+      mover.footprint = {kBicycleLength, kHandlebarWidth};
+      mover.model = town_->cyclists[static_cast<size_t>(
+          random_.Int(static_cast<int>(town_->cyclists.size())))];
+      return mover;
+    }
+    const bool is_van = pace == Pace::kStanding || pace == Pace::kSlow ||
+                        (pace == Pace::kNormal && random_.Chance(0.15));
+    const auto kind = is_van ? VehicleKind::kVan : static_cast<VehicleKind>(random_.Int(3));
+    mover.footprint = {VehicleLength(kind), VehicleWidth(kind)};
+    mover.model = town_->vehicles[static_cast<size_t>(kind)];
+    if (pace == Pace::kStanding) mover.ride.from_kerb = 0.5 * mover.footprint.width + 0.1;
+    return mover;
+  }
+
+  const Town* town_;
+  double density_;
+  TrafficPlanner* planner_;
+  Random random_;
+};
+
+}  // namespace
+
+Traffic::Traffic(const Town& town, const Lap& own_lap, const TrafficOptions& options)
+    : town_(&town), own_{.lap = &own_lap} {
+  if (options.density <= 0) return;
+  const StreetPlan& plan = town.plan;
+  TrafficPlanner planner(plan, own_lap, {options.from, options.until});
+  Dispatcher dispatcher(town, options, &planner);
+  uint64_t number = 0;
+  const auto add_lap = [&](const std::vector<size_t>& tour, const LapOptions& style) -> const Lap& {
+    LapOptions lap_options = style;
+    lap_options.seed = Random(options.seed).Fork(++number).Next();
+    return laps_.emplace_back(plan, tour, lap_options);
+  };
+  const LapOptions normal;
+  const LapOptions cycling{.minimum_speed = 3.6, .maximum_speed = 5.2, .stop_share = 0.05};
+  const LapOptions slow{.minimum_speed = 4, .maximum_speed = 6, .stop_share = 0.1};
+  const LapOptions fast{.minimum_speed = 11, .maximum_speed = 14, .stop_share = 0};
+  dispatcher.Encounter(own_lap, Pace::kStanding, 40);
+  dispatcher.Encounter(add_lap(plan.tour, cycling), Pace::kCycling, 16);
+  dispatcher.Encounter(add_lap(plan.tour, slow), Pace::kSlow, 50);
+  dispatcher.Encounter(add_lap(plan.tour, fast), Pace::kFast, 35);
+  constexpr double kHeadway = 5.5;  // seconds
+  dispatcher.Stream(own_lap, Pace::kNormal, kHeadway);
+  const std::vector<size_t> reversed(plan.tour.rbegin(), plan.tour.rend());
+  dispatcher.Stream(add_lap(reversed, normal), Pace::kNormal, kHeadway);
+  for (const std::vector<size_t>& tour : plan.other_tours)
+    dispatcher.Stream(add_lap(tour, normal), Pace::kNormal, kHeadway);
+  dispatcher.Stream(add_lap(reversed, cycling), Pace::kCycling, 6 * kHeadway);
+  for (const std::vector<size_t>& tour : plan.other_tours)
+    dispatcher.Stream(add_lap(tour, cycling), Pace::kCycling, 8 * kHeadway);
+  for (size_t i = 0; i < plan.streets.size(); ++i) dispatcher.Walk(i, &walkers_);
+  Random random = Random(options.seed).Fork(0);
+  for (size_t i = 0; i < walkers_.size(); ++i) {
+    walker_models_.push_back(town.pedestrians[static_cast<size_t>(
+        random.Int(static_cast<int>(town.pedestrians.size())))]);
+  }
+  own_ = planner.own();
+  movers_ = planner.Others();
 }
 
-Instance Traffic::Place(const Car& car, double time) const {
-  const RoadPose pose = car.lap->PoseAt(car.lap->At(time + car.offset).station);
+Instance Traffic::Place(const Mover& mover, double time) const {
+  const RoadPose pose = mover.ride.PoseAt(time);
   Instance instance;
-  instance.model = car.model;
-  instance.tint = car.tint;
+  instance.model = mover.model;
+  if (mover.pace == Pace::kCycling) {
+    const double turns = mover.ride.DistanceAt(time) / kMetresPerPedalTurn;
+    instance.model +=
+        static_cast<uint32_t>((turns - std::floor(turns)) * kPedalPhases) % kPedalPhases;
+  }
+  instance.tint = mover.tint;
   instance.openness = 0.7F;
   instance.world_from_model =
       Eigen::Translation3f(
@@ -93,38 +171,29 @@ Instance Traffic::Place(const Car& car, double time) const {
   return instance;
 }
 
-Instance Traffic::Place(const Pedestrian& pedestrian, double time) const {
-  const Street& street = town_->plan.streets[pedestrian.street];
-  const double walked = pedestrian.speed * time;
-  const double length = street.Length();
-  const double station =
-      pedestrian.start + walked - length * std::floor((pedestrian.start + walked) / length);
-  const StreetPoint p = street.At(station);
-  const Vector2d outward = pedestrian.side * Vector2d(-p.tangent.y(), p.tangent.x());
-  const Vector2d position = p.position + (p.half_width + pedestrian.from_kerb) * outward;
-  const Vector2d forward = pedestrian.speed > 0 ? p.tangent : Vector2d(-p.tangent);
+Instance Traffic::Place(size_t walker, double time) const {
+  const Walker::State state = walkers_[walker].At(town_->plan, time);
   const double kerb =
-      std::clamp(town_->plan.DistanceToRoad(position) / 0.2, 0.0, 1.0) * kKerbHeight;
-  const double stride = std::abs(walked) / kStrideLength;
+      std::clamp(town_->plan.DistanceToRoad(state.position) / 0.2, 0.0, 1.0) * kKerbHeight;
+  const double stride = std::abs(state.walked) / kStrideLength;
   const auto phase =
       static_cast<uint32_t>((stride - std::floor(stride)) * kWalkPhases) % kWalkPhases;
   Instance instance;
-  instance.model = pedestrian.first_model + phase;
-  instance.tint = pedestrian.tint;
+  instance.model = walker_models_[walker] + phase;
   instance.openness = 0.8F;
   instance.world_from_model =
-      Eigen::Translation3f(
-          Eigen::Vector3d(position.x(), position.y(), town_->plan.Height(position) + kerb)
-              .cast<float>()) *
-      Eigen::AngleAxisf(static_cast<float>(std::atan2(forward.y(), forward.x())),
+      Eigen::Translation3f(Eigen::Vector3d(state.position.x(), state.position.y(),
+                                           town_->plan.Height(state.position) + kerb)
+                               .cast<float>()) *
+      Eigen::AngleAxisf(static_cast<float>(std::atan2(state.forward.y(), state.forward.x())),
                         Vector3f::UnitZ());
   return instance;
 }
 
 std::vector<Instance> Traffic::At(double time) const {
   std::vector<Instance> instances;
-  for (const Car& car : cars_) instances.push_back(Place(car, time));
-  for (const Pedestrian& pedestrian : pedestrians_) instances.push_back(Place(pedestrian, time));
+  for (const Mover& mover : movers_) instances.push_back(Place(mover, time));
+  for (size_t i = 0; i < walkers_.size(); ++i) instances.push_back(Place(i, time));
   return instances;
 }
 

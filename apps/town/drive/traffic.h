@@ -1,9 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "apps/town/drive/lap.h"
+#include "apps/town/drive/ride.h"
+#include "apps/town/drive/track.h"
+#include "apps/town/drive/walker.h"
 #include "apps/town/world/town.h"
 
 namespace orb360::town {
@@ -11,47 +15,49 @@ namespace orb360::town {
 struct TrafficOptions {
   uint64_t seed = 0;
   double density = 0;  ///< 0 none to 1 dense
-  double from = 0;     ///< seconds; the time in which no two cars may meet
+  double from = 0;     ///< seconds; the time in which nothing may meet
   double until = 0;
 };
 
-/// What moves in a town: cars before and behind the camera's car and oncoming ones, all on laps of
-/// the tour, and pedestrians on the pavements. A pure function of time. Cars that would run into
-/// one another where the tour meets itself are left out.
+/// Who drives, the slower first: one passes those of a lower rank.
+enum class Pace : uint8_t { kStanding, kCycling, kSlow, kNormal, kFast };
+
+/// A vehicle in traffic.
+struct Mover {
+  Ride ride;
+  Pace pace = Pace::kNormal;
+  Footprint footprint;
+  uint32_t model = 0;  ///< of a cyclist the first of kPedalPhases
+  Rgba tint;
+};
+
+/// What moves in a town besides the camera's car: cars and vans before and behind it, oncoming ones
+/// and ones on other streets, cyclists and slow vans that it passes, vans that stand in the lane,
+/// cars that overtake it; and pedestrians on the pavements. A pure function of time. Whatever would
+/// run into something else between `from` and `until` is left out.
 class Traffic {
  public:
-  /// `own_lap` is the lap the camera's car drives at time offset 0. All references are kept.
-  Traffic(const Town& town, const Lap& own_lap, const Lap& oncoming_lap,
-          const TrafficOptions& options);
+  /// `own_lap` is what the camera's car drives. It and the town are kept by reference.
+  Traffic(const Town& town, const Lap& own_lap, const TrafficOptions& options);
+
+  /// The way of the camera's car, with the passes that the others ask for.
+  const Ride& own() const { return own_; }
+  const std::vector<Mover>& movers() const { return movers_; }
+  const std::vector<Walker>& walkers() const { return walkers_; }
 
   /// Everything that moves, always in the same order, at a time in seconds.
   std::vector<Instance> At(double time) const;
 
  private:
-  struct Car {
-    const Lap* lap;
-    double offset;  ///< seconds ahead on the lap
-    uint32_t model;
-    Rgba tint;
-  };
-  struct Pedestrian {
-    size_t street;
-    double side;       ///< +1 left of increasing station, -1 right
-    double from_kerb;  ///< metres
-    double start;      ///< station at time 0
-    double speed;      ///< metres per second, negative towards decreasing station
-    uint32_t first_model;
-    Rgba tint;
-  };
-
-  void AddCars(const Lap& lap, const TrafficOptions& options, uint64_t seed);
-  bool Collide(const Car& a, const Car& b, const TrafficOptions& options) const;
-  Instance Place(const Car& car, double time) const;
-  Instance Place(const Pedestrian& pedestrian, double time) const;
+  Instance Place(const Mover& mover, double time) const;
+  Instance Place(size_t walker, double time) const;
 
   const Town* town_;
-  std::vector<Car> cars_;
-  std::vector<Pedestrian> pedestrians_;
+  std::deque<Lap> laps_;  // pointed at by rides
+  Ride own_;
+  std::vector<Mover> movers_;
+  std::vector<Walker> walkers_;
+  std::vector<uint32_t> walker_models_;
 };
 
 }  // namespace orb360::town

@@ -8,13 +8,9 @@ namespace orb360::town {
 namespace {
 
 /// Parts of a seed, so that what one part draws leaves the others as they are.
-enum SeedPart : uint64_t { kCameraHeight = 50, kLap, kOncomingLap, kTraffic, kShaking };
+enum SeedPart : uint64_t { kCameraHeight = 50, kLap, kTraffic = 53, kShaking };
 
 uint64_t SeedOf(const TownSpec& spec, SeedPart part) { return Random(spec.seed).Fork(part).Next(); }
-
-std::vector<size_t> Reversed(const std::vector<size_t>& tour) {
-  return {tour.rbegin(), tour.rend()};
-}
 
 CameraMotionOptions MotionOf(const TownSpec& spec) {
   const double height = Random(SeedOf(spec, kCameraHeight)).Uniform(1.8, 2.2);
@@ -35,14 +31,15 @@ TownDrive::TownDrive(const TownSpec& spec, const Recording& recording)
       town_(BuildTown(spec.seed, spec.plan)),
       stage_(&town_.scenery, MakeLight(spec.light, spec.seed), spec.seed),
       lap_(town_.plan, town_.plan.tour, LapOf(spec)),
-      oncoming_lap_(town_.plan, Reversed(town_.plan.tour), {.seed = SeedOf(spec, kOncomingLap)}),
-      traffic_(town_, lap_, oncoming_lap_,
+      traffic_(town_, lap_,
                {.seed = SeedOf(spec, kTraffic),
                 .density = spec.traffic,
                 .until = recording.frames / recording.fps}),
       motion_(MotionOf(spec)) {}
 
-Rigid3 TownDrive::PoseAt(double seconds) const { return CameraPose(lap_, motion_, seconds); }
+Rigid3 TownDrive::PoseAt(double seconds) const {
+  return CameraPose(traffic_.own(), motion_, seconds);
+}
 
 std::vector<Instance> TownDrive::MovingAt(double seconds) const { return traffic_.At(seconds); }
 

@@ -34,7 +34,6 @@ class TownDrive : public Drive {
   Town town_;
   Stage stage_;
   Lap lap_;
-  Lap oncoming_lap_;
   Traffic traffic_;
   CameraMotionOptions motion_;
 };

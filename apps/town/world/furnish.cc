@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/town/world/cyclist.h"
 #include "apps/town/world/furniture.h"
 #include "apps/town/world/ground.h"
 #include "apps/town/world/pedestrian.h"
@@ -39,6 +40,13 @@ Models MakeModels(const Random& random, const Materials& m, Town* town) {
     for (uint32_t phase = 0; phase < kWalkPhases; ++phase) {
       const uint32_t model = add(MakePedestrian(phase, m, random.Fork(60 + i)));
       if (phase == 0) town->pedestrians.push_back(model);
+    }
+  }
+  constexpr uint64_t kCyclists = 4;
+  for (uint64_t i = 0; i < kCyclists; ++i) {
+    for (uint32_t phase = 0; phase < kPedalPhases; ++phase) {
+      const uint32_t model = add(MakeCyclist(phase, m, random.Fork(80 + i)));
+      if (phase == 0) town->cyclists.push_back(model);
     }
   }
   models.traffic_light = add(MakeTrafficLight(m));

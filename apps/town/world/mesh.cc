@@ -151,4 +151,28 @@ void MeshBuilder::AddTube(MaterialId material, const Vector3f& a, const Vector3f
   }
 }
 
+void MeshBuilder::AddEllipsoid(MaterialId material, const Vector3f& centre, const Vector3f& radii) {
+  constexpr int kRings = 8;
+  constexpr int kSides = 12;
+  constexpr float kPi = std::numbers::pi_v<float>;
+  const auto first = static_cast<uint32_t>(mesh_.positions.size());
+  for (int i = 0; i <= kRings; ++i) {
+    const float latitude = kPi * (static_cast<float>(i) / kRings - 0.5F);
+    for (int k = 0; k <= kSides; ++k) {
+      const float longitude = 2 * kPi * static_cast<float>(k) / kSides;
+      const Vector3f d(std::cos(latitude) * std::cos(longitude),
+                       std::cos(latitude) * std::sin(longitude), std::sin(latitude));
+      AddVertex(centre + d.cwiseProduct(radii), d.cwiseQuotient(radii).normalized(),
+                0.3F * longitude, 0.3F * latitude);
+    }
+  }
+  for (uint32_t i = 0; i < kRings; ++i) {
+    for (uint32_t k = 0; k < kSides; ++k) {
+      const uint32_t a = first + i * (kSides + 1) + k;
+      AddTriangle(material, a, a + 1, a + kSides + 2);
+      AddTriangle(material, a, a + kSides + 2, a + kSides + 1);
+    }
+  }
+}
+
 }  // namespace orb360::town

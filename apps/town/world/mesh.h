@@ -91,6 +91,9 @@ class MeshBuilder {
   void AddTube(MaterialId material, const Vector3f& a, const Vector3f& b, float radius_a,
                float radius_b, int sides);
 
+  /// An ellipsoid along the axes with smooth normals.
+  void AddEllipsoid(MaterialId material, const Vector3f& centre, const Vector3f& radii);
+
   /// Adds a vertex; `normal` must have unit length.
   uint32_t AddVertex(const Vector3f& position, const Vector3f& normal, float u, float v);
   void AddTriangle(MaterialId material, uint32_t a, uint32_t b, uint32_t c);

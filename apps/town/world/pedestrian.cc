@@ -4,35 +4,6 @@
 #include <numbers>
 
 namespace orb360::town {
-namespace {
-
-/// An ellipsoid with smooth normals.
-void AddEllipsoid(MeshBuilder& b, MaterialId material, const Vector3f& centre,
-                  const Vector3f& radii) {
-  constexpr int kRings = 8;
-  constexpr int kSides = 12;
-  constexpr float kPi = std::numbers::pi_v<float>;
-  const auto first = static_cast<uint32_t>(b.mesh().positions.size());
-  for (int i = 0; i <= kRings; ++i) {
-    const float latitude = kPi * (static_cast<float>(i) / kRings - 0.5F);
-    for (int k = 0; k <= kSides; ++k) {
-      const float longitude = 2 * kPi * static_cast<float>(k) / kSides;
-      const Vector3f d(std::cos(latitude) * std::cos(longitude),
-                       std::cos(latitude) * std::sin(longitude), std::sin(latitude));
-      b.AddVertex(centre + d.cwiseProduct(radii), d.cwiseQuotient(radii).normalized(),
-                  0.3F * longitude, 0.3F * latitude);
-    }
-  }
-  for (uint32_t i = 0; i < kRings; ++i) {
-    for (uint32_t k = 0; k < kSides; ++k) {
-      const uint32_t a = first + i * (kSides + 1) + k;
-      b.AddTriangle(material, a, a + 1, a + kSides + 2);
-      b.AddTriangle(material, a, a + kSides + 2, a + kSides + 1);
-    }
-  }
-}
-
-}  // namespace
 
 Mesh MakePedestrian(uint32_t phase, const Materials& materials, Random random) {
   MeshBuilder b(materials);
@@ -67,25 +38,24 @@ Mesh MakePedestrian(uint32_t phase, const Materials& materials, Random random) {
     const Vector3f foot = limb(trousers, scale * Vector3f(0, 0.09F * side, 0.9F), angle, bend,
                                0.44F * scale, 0.42F * scale, 0.085F * scale);
     b.set_tint({0.03F, 0.025F, 0.02F, 1});
-    AddEllipsoid(b, cloth, foot + scale * Vector3f(0.06F, 0, -0.01F),
-                 scale * Vector3f(0.13F, 0.045F, 0.045F));
+    b.AddEllipsoid(cloth, foot + scale * Vector3f(0.06F, 0, -0.01F),
+                   scale * Vector3f(0.13F, 0.045F, 0.045F));
     const Vector3f hand = limb(coat, scale * Vector3f(0, 0.21F * side, 1.4F), -0.8F * angle, -0.3F,
                                0.3F * scale, 0.26F * scale, 0.055F * scale);
     b.set_tint(skin);
-    AddEllipsoid(b, cloth, hand, scale * Vector3f(0.045F, 0.03F, 0.055F));
+    b.AddEllipsoid(cloth, hand, scale * Vector3f(0.045F, 0.03F, 0.055F));
   }
   b.set_tint(coat);
-  AddEllipsoid(b, cloth, scale * Vector3f(0, 0, 1.18F), scale * Vector3f(0.13F, 0.2F, 0.34F));
+  b.AddEllipsoid(cloth, scale * Vector3f(0, 0, 1.18F), scale * Vector3f(0.13F, 0.2F, 0.34F));
   b.set_tint(trousers);
-  AddEllipsoid(b, cloth, scale * Vector3f(0, 0, 0.9F), scale * Vector3f(0.12F, 0.17F, 0.14F));
+  b.AddEllipsoid(cloth, scale * Vector3f(0, 0, 0.9F), scale * Vector3f(0.12F, 0.17F, 0.14F));
   b.set_tint(skin);
   b.AddTube(cloth, scale * Vector3f(0, 0, 1.42F), scale * Vector3f(0.01F, 0, 1.55F), 0.05F * scale,
             0.05F * scale, 8);
-  AddEllipsoid(b, cloth, scale * Vector3f(0.02F, 0, 1.62F),
-               scale * Vector3f(0.095F, 0.075F, 0.12F));
+  b.AddEllipsoid(cloth, scale * Vector3f(0.02F, 0, 1.62F), scale * Vector3f(0.095F, 0.075F, 0.12F));
   b.set_tint(hair);
-  AddEllipsoid(b, cloth, scale * Vector3f(-0.015F, 0, 1.65F),
-               scale * Vector3f(0.095F, 0.085F, 0.11F));
+  b.AddEllipsoid(cloth, scale * Vector3f(-0.015F, 0, 1.65F),
+                 scale * Vector3f(0.095F, 0.085F, 0.11F));
   return std::move(b.mesh());
 }
 

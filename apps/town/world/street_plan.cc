@@ -185,6 +185,7 @@ StreetPlan PlanStreets(const PlanOptions& options) {
     add_street(nodes);
   }
   plan.tour = PlanTour({columns, rows, options.tour_blocks}, random.Fork(1));
+  plan.other_tours = PlanOtherTours(plan.tour, columns, rows, random.Fork(2));
   return plan;
 }
 

@@ -53,7 +53,9 @@ struct StreetPlan {
   std::vector<Street> streets;
   std::vector<Junction> junctions;
   std::vector<size_t> tour;  ///< junctions in order, a closed cycle; neighbours share a street
-  double hill_phase = 0;     ///< shifts the terrain
+  /// Further closed cycles, each over some street that the tour does not use: cross traffic.
+  std::vector<std::vector<size_t>> other_tours;
+  double hill_phase = 0;  ///< shifts the terrain
 
   /// Height of the terrain in metres.
   double Height(const Vector2d& p) const;

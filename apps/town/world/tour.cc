@@ -28,11 +28,17 @@ bool TurnsRound(const std::vector<size_t>& walk) {
   return false;
 }
 
-/// Whether a closed walk uses some street in both directions.
-bool ComesBack(const std::vector<size_t>& walk) {
+/// The pairs of neighbouring junctions of a closed walk, in the order they are driven.
+std::set<std::pair<size_t, size_t>> LegsOf(const std::vector<size_t>& walk) {
   const size_t n = walk.size();
   std::set<std::pair<size_t, size_t>> legs;
   for (size_t i = 0; i < n; ++i) legs.emplace(walk[i], walk[(i + 1) % n]);
+  return legs;
+}
+
+/// Whether a closed walk uses some street in both directions.
+bool ComesBack(const std::vector<size_t>& walk) {
+  const std::set<std::pair<size_t, size_t>> legs = LegsOf(walk);
   return std::any_of(legs.begin(), legs.end(), [&](const auto& leg) {
     return legs.contains({leg.second, leg.first});
   });
@@ -105,6 +111,32 @@ std::vector<size_t> PlanTour(const TourOptions& options, Random random) {
   for (uint64_t i = 0; i < kTries && !ComesBack(walk); ++i)
     walk = CircleBlocks(options, random.Fork(i));
   return walk;
+}
+
+std::vector<std::vector<size_t>> PlanOtherTours(const std::vector<size_t>& tour, int columns,
+                                                int rows, Random random) {
+  const std::set<std::pair<size_t, size_t>> used = LegsOf(tour);
+  std::set<std::vector<size_t>> tours;
+  const int tries = 2 * (columns - 1) * (rows - 1);
+  for (int i = 0; i < tries; ++i) {
+    const int width = 1 + random.Int(std::min(2, columns - 1));
+    const int height = 1 + random.Int(std::min(2, rows - 1));
+    const int column = random.Int(columns - width);
+    const int row = random.Int(rows - height);
+    const bool clockwise = random.Chance(0.5);
+    std::vector<size_t> circle;
+    const auto add = [&](int c, int r) {
+      circle.push_back(static_cast<size_t>((row + r) * columns + column + c));
+    };
+    for (int k = 0; k < width; ++k) add(k, 0);
+    for (int k = 0; k < height; ++k) add(width, k);
+    for (int k = width; k > 0; --k) add(k, height);
+    for (int k = height; k > 0; --k) add(0, k);
+    if (clockwise) std::reverse(circle.begin(), circle.end());
+    const std::set<std::pair<size_t, size_t>> legs = LegsOf(circle);
+    if (!std::includes(used.begin(), used.end(), legs.begin(), legs.end())) tours.insert(circle);
+  }
+  return {tours.begin(), tours.end()};
 }
 
 }  // namespace orb360::town

@@ -19,4 +19,9 @@ struct TourOptions {
 /// blocks are circled in a longer walk that also repeats a side in the same direction soon.
 std::vector<size_t> PlanTour(const TourOptions& options, Random random);
 
+/// Circles around one to four blocks of the same lattice, each over some side that `tour` does not
+/// use in its direction: for traffic that crosses the tour.
+std::vector<std::vector<size_t>> PlanOtherTours(const std::vector<size_t>& tour, int columns,
+                                                int rows, Random random);
+
 }  // namespace orb360::town

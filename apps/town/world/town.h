@@ -14,6 +14,7 @@ struct Town {
   StreetPlan plan;
   std::vector<uint32_t> vehicles;     ///< the models by VehicleKind
   std::vector<uint32_t> pedestrians;  ///< the first of kWalkPhases models of each person
+  std::vector<uint32_t> cyclists;     ///< the first of kPedalPhases models of each person
 };
 
 /// The streets of the town of a seed; the plan's own seed is drawn from it.

@@ -237,6 +237,8 @@ void AddDetails(MeshBuilder& b, const Shape& s) {
 
 float VehicleLength(VehicleKind kind) { return kShapes[static_cast<size_t>(kind)].length; }
 
+float VehicleWidth(VehicleKind kind) { return kShapes[static_cast<size_t>(kind)].width; }
+
 Mesh MakeVehicle(VehicleKind kind, const Materials& materials) {
   MeshBuilder b(materials);
   const Shape& s = kShapes[static_cast<size_t>(kind)];

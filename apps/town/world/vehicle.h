@@ -10,6 +10,8 @@ inline constexpr int kVehicleKinds = 4;
 
 /// Length over all in metres.
 float VehicleLength(VehicleKind kind);
+/// Width over all but the mirrors in metres.
+float VehicleWidth(VehicleKind kind);
 
 /// A car on its wheels: x forward, y left, z up from the road, the origin below its middle. Its
 /// body takes the tint of the instance.
