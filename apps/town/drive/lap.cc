@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "apps/town/image/random.h"
 #include "slam/check.h"
@@ -67,41 +68,85 @@ std::vector<LinePoint> Resample(const std::vector<LinePoint>& ring) {
   return result;
 }
 
+/// A cubic curve between two points with given directions (unit vectors), without its end.
+void AddCurve(const LinePoint& from, const Vector2d& from_direction, const LinePoint& to,
+              const Vector2d& to_direction, std::vector<LinePoint>* ring) {
+  constexpr int kPieces = 40;
+  const double reach = 0.45 * (to - from).head<2>().norm();
+  LinePoint p1 = from;
+  LinePoint p2 = to;
+  p1.head<2>() += reach * from_direction;
+  p2.head<2>() -= reach * to_direction;
+  for (int k = 0; k < kPieces; ++k) {
+    const double t = static_cast<double>(k) / kPieces;
+    const double q = 1 - t;
+    ring->emplace_back(q * q * q * from + 3 * q * q * t * p1 + 3 * q * t * t * p2 + t * t * t * to);
+  }
+}
+
+/// From one street round the island, counter-clockwise, into another, without the last point.
+void AddRound(const Roundabout& roundabout, const LinePoint& from, const Vector2d& from_direction,
+              const LinePoint& to, const Vector2d& to_direction, std::vector<LinePoint>* ring) {
+  constexpr double kFlare = 0.7;  // radians between a street and where it joins the circle, at most
+  const double radius = 0.5 * (roundabout.island_radius + roundabout.outer_radius);
+  const auto angle_of = [&](const LinePoint& p) {
+    return std::atan2(p.y() - roundabout.centre.y(), p.x() - roundabout.centre.x());
+  };
+  const auto direction_at = [](double angle) -> Vector2d {
+    return {-std::sin(angle), std::cos(angle)};
+  };
+  const auto on_circle = [&](double angle) -> LinePoint {
+    const Vector2d p = roundabout.centre + radius * Vector2d(std::cos(angle), std::sin(angle));
+    return {p.x(), p.y(), roundabout.outer_radius - radius};
+  };
+  const double entry = angle_of(from);
+  double turn = angle_of(to) - entry;
+  turn -= 2 * std::numbers::pi * std::floor(turn / (2 * std::numbers::pi));
+  const double flare = std::min(kFlare, 0.4 * turn);
+  const double first = entry + flare;
+  const double last = entry + turn - flare;
+  AddCurve(from, from_direction, on_circle(first), direction_at(first), ring);
+  const int pieces = std::max(1, static_cast<int>(radius * (last - first) / 0.5));
+  for (int k = 0; k < pieces; ++k)
+    ring->push_back(on_circle(std::lerp(first, last, static_cast<double>(k) / pieces)));
+  AddCurve(on_circle(last), direction_at(last), to, to_direction, ring);
+}
+
 /// The driven line as a ring: lanes joined at the junctions by curves.
 std::vector<LinePoint> DrivenLine(const StreetPlan& plan, std::span<const size_t> tour,
                                   std::vector<size_t>* junction_points) {
-  constexpr double kApproach = 11;  // metres from the junction at which a turn begins and ends
+  constexpr double kApproach = 11;      // metres from the junction at which a turn begins and ends
+  constexpr double kRoundApproach = 7;  // metres from a roundabout's carriageway, likewise
+  const size_t n = tour.size();
   std::vector<Leg> legs;
-  for (size_t i = 0; i < tour.size(); ++i)
-    legs.push_back(FindLeg(plan, tour[i], tour[(i + 1) % tour.size()]));
+  for (size_t i = 0; i < n; ++i) legs.push_back(FindLeg(plan, tour[i], tour[(i + 1) % n]));
+  // Metres before and behind the junction where a leg begins that are driven on a curve.
+  const auto trim = [&](size_t i) {
+    const Roundabout* roundabout = plan.RoundaboutAt(tour[i % n]);
+    if (roundabout != nullptr) return roundabout->outer_radius + kRoundApproach;
+    return legs[(i + n - 1) % n].street == legs[i % n].street ? 0.0 : kApproach;
+  };
   std::vector<LinePoint> ring;
-  for (size_t i = 0; i < legs.size(); ++i) {
+  for (size_t i = 0; i < n; ++i) {
     const Leg& leg = legs[i];
-    const Leg& next = legs[(i + 1) % legs.size()];
+    const Leg& next = legs[(i + 1) % n];
     const double direction = leg.to > leg.from ? 1 : -1;
     const double next_direction = next.to > next.from ? 1 : -1;
-    const bool straight_on = leg.street == next.street;
-    const double trim = straight_on ? 0 : kApproach;
-    const bool came_straight = legs[(i + legs.size() - 1) % legs.size()].street == leg.street;
-    const double begin = leg.from + direction * (came_straight ? 0 : kApproach);
-    const double end = leg.to - direction * trim;
-    for (double s = begin; direction * (end - s) > 0; s += direction * 0.5)
+    const double end = leg.to - direction * trim(i + 1);
+    for (double s = leg.from + direction * trim(i); direction * (end - s) > 0; s += direction * 0.5)
       ring.push_back(LanePoint(plan, leg, s));
     junction_points->push_back(ring.size());
-    if (straight_on) continue;
-    const double exit = next.from + next_direction * kApproach;
-    const LinePoint p0 = LanePoint(plan, leg, end);
-    const LinePoint p3 = LanePoint(plan, next, exit);
-    const double reach = 0.45 * (p3 - p0).head<2>().norm();
-    LinePoint p1 = p0;
-    LinePoint p2 = p3;
-    p1.head<2>() += reach * LaneDirection(plan, leg, end);
-    p2.head<2>() -= reach * LaneDirection(plan, next, exit);
-    for (int k = 0; k < 40; ++k) {
-      const double t = k / 40.0;
-      const double q = 1 - t;
-      ring.emplace_back(q * q * q * p0 + 3 * q * q * t * p1 + 3 * q * t * t * p2 + t * t * t * p3);
-    }
+    if (trim(i + 1) == 0) continue;
+    const double exit = next.from + next_direction * trim(i + 1);
+    const LinePoint from = LanePoint(plan, leg, end);
+    const LinePoint to = LanePoint(plan, next, exit);
+    const Vector2d from_direction = LaneDirection(plan, leg, end);
+    const Vector2d to_direction = LaneDirection(plan, next, exit);
+    const Roundabout* roundabout = plan.RoundaboutAt(tour[(i + 1) % n]);
+    if (roundabout != nullptr)
+      AddRound(*roundabout, from, from_direction, to, to_direction, &ring);
+    else
+      AddCurve(from, from_direction, to, to_direction, &ring);
   }
   return ring;
 }

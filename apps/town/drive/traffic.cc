@@ -60,8 +60,8 @@ class Dispatcher {
       if (!random_.Chance(density_)) continue;
       for (int i = 0; i < kTries; ++i) {
         Mover mover = Draw(lap, pace);
-        mover.ride.ahead = lap.duration() / slots * slot + phase +
-                           (i == 0 ? 0 : random_.Uniform(-1, 1) * headway);
+        mover.ride.ahead =
+            lap.duration() / slots * slot + phase + (i == 0 ? 0 : random_.Uniform(-1, 1) * headway);
         if (planner_->Add(std::move(mover))) break;
       }
     }

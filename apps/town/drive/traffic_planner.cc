@@ -45,23 +45,24 @@ TrafficPlanner::Tracks TrafficPlanner::TracksUpTo(Pace pace, const Mover* except
 bool TrafficPlanner::Wait(Mover* mover, const Track& track, const Tracks& heeded,
                           int meeting) const {
   constexpr double kBefore = 0.4;  // seconds between the end of a delay and what it is for
-  constexpr int kLookAhead = 20;   // moments: 2 s
   const double end = moments_.At(meeting) - kBefore;
-  const double free_since =
-      mover->ride.delays.empty() ? moments_.from : mover->ride.delays.back().end;
-  for (const double lost : {1.0, 2.0, 3.5, 5.0, 7.0, 10.0}) {
-    const double duration = 1.55 * lost + 3;
-    if (end - duration < free_since) return false;
-    mover->ride.delays.push_back({end - duration, end, lost});
-    const int first = static_cast<int>((end - duration - moments_.from) / Moments::kStep);
-    const int last = std::min(meeting + kLookAhead, moments_.Count());
-    Track changed = track;
-    Retrack(mover->ride, moments_, first, last, &changed);
-    if (std::none_of(heeded.begin(), heeded.end(), [&](const Track* other) {
-          return FirstMeeting(changed, *other, first, last).has_value();
-        }))
-      return true;
-    mover->ride.delays.pop_back();
+  // The first delay may have begun before anything is looked at.
+  const double free_since = mover->ride.delays.empty() ? end - 1e3 : mover->ride.delays.back().end;
+  Track changed = track;
+  for (const int look_ahead : {70, 20}) {  // moments without a meeting after this one
+    for (const double lost : {1.0, 2.0, 3.5, 5.0, 7.0, 10.0}) {
+      const double begin = end - 1.55 * lost - 2.5;
+      if (begin < free_since) break;
+      mover->ride.delays.push_back({begin, end, lost});
+      const int first = std::max(0, static_cast<int>((begin - moments_.from) / Moments::kStep));
+      const int last = std::min(meeting + look_ahead, moments_.Count());
+      Retrack(mover->ride, moments_, first, last, &changed);
+      if (std::none_of(heeded.begin(), heeded.end(), [&](const Track* other) {
+            return FirstMeeting(changed, *other, first, last).has_value();
+          }))
+        return true;
+      mover->ride.delays.pop_back();
+    }
   }
   return false;
 }

@@ -12,7 +12,9 @@ struct Walker {
   size_t street = 0;
   double side = 1;       ///< +1 left of increasing station, -1 right
   double from_kerb = 1;  ///< metres
-  double start = 0;      ///< station at time 0
+  double from = 0;       ///< station where they turn round
+  double to = 1;         ///< likewise, at the other end
+  double start = 0;      ///< metres behind `from` at time 0
   double speed = 1.3;    ///< metres per second, negative where first walking to lower stations
 
   struct State {

@@ -195,9 +195,9 @@ void AddRoadMarkings(const StreetPlan& plan, MeshBuilder& builder) {
         const double stop = direction > 0 ? start + 4 : start - 1.4;
         if (stop < 1 || stop + 1 > street.Length()) continue;
         if (direction > 0)
-          AddStrip(plan, street, stop, stop + 0.4, 0.15, edge, builder);
+          AddStrip(plan, street, stop, stop + 0.4, street.median + 0.15, edge, builder);
         else
-          AddStrip(plan, street, stop, stop + 0.4, -edge, -0.15, builder);
+          AddStrip(plan, street, stop, stop + 0.4, -edge, -street.median - 0.15, builder);
       }
     }
   }

@@ -41,12 +41,16 @@ bool Overlap(const Rectangle& a, const Rectangle& b, double slack) {
   return !separated(a, b) && !separated(b, a);
 }
 
-/// Whether the whole outline keeps `margin` metres from the carriageways.
+/// Whether the whole outline keeps `margin` metres from the carriageways, and out of parks.
 bool ClearOfRoads(const StreetPlan& plan, const Rectangle& r, double margin) {
+  const auto is_in_park = [&](const Vector2d& p) {
+    return std::any_of(plan.parks.begin(), plan.parks.end(),
+                       [&](const Park& park) { return park.Contains(p); });
+  };
   for (double share = 0; share <= 1.001; share += 0.125) {
     for (const Vector2d& p : {r.At(share * r.width, 0), r.At(share * r.width, r.depth),
                               r.At(0, share * r.depth), r.At(r.width, share * r.depth)}) {
-      if (plan.DistanceToRoad(p) < margin) return false;
+      if (plan.DistanceToRoad(p) < margin || is_in_park(p)) return false;
     }
   }
   return true;
@@ -88,6 +92,11 @@ std::vector<Lot> LayOutLots(const StreetPlan& plan, Random& random) {
     return std::none_of(taken.begin(), taken.end(),
                         [&](const Rectangle& other) { return Overlap(lot, other, 0.4); });
   };
+  for (const Bridge& bridge : plan.bridges) {
+    const Vector2d across(-bridge.along.y(), bridge.along.x());
+    taken.push_back({bridge.centre - bridge.reach * across - bridge.half_width * bridge.along,
+                     bridge.along, across, 2 * bridge.half_width, 2 * bridge.reach});
+  }
   for (const Street& street : plan.streets) {
     for (const bool at_start : {true, false}) {
       const Rectangle lot = AcrossTheEnd(street, at_start, random);

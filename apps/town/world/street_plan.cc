@@ -5,12 +5,16 @@
 #include <cmath>
 
 #include "apps/town/image/random.h"
+#include "apps/town/world/places.h"
 #include "apps/town/world/tour.h"
 
 namespace orb360::town {
 namespace {
 
-constexpr double kSampleSpacing = 1.0;  // metres between the points of a centreline
+constexpr double kSampleSpacing = 1.0;    // metres between the points of a centreline
+constexpr double kAvenueSpacing = 45;     // metres between streets from which on one is an avenue
+constexpr double kAvenueHalfWidth = 8.4;  // metres: median, lane and parked cars
+constexpr double kMedian = 1.6;           // metres, half of the avenue's median
 
 /// Centripetal-free uniform Catmull-Rom: passes through p1 at t = 0 and p2 at t = 1.
 Vector2d CatmullRom(const Vector2d& p0, const Vector2d& p1, const Vector2d& p2, const Vector2d& p3,
@@ -99,9 +103,33 @@ double StreetPlan::Height(const Vector2d& p) const {
          2.0 * std::sin((p.x() + p.y()) / 95.0 + 2.3 * hill_phase);
 }
 
+double Island::Distance(const Vector2d& p) const {
+  double nearest = (p - spine.front()).norm();
+  for (size_t i = 0; i + 1 < spine.size(); ++i) {
+    const Vector2d ab = spine[i + 1] - spine[i];
+    const double t = std::clamp((p - spine[i]).dot(ab) / ab.squaredNorm(), 0.0, 1.0);
+    nearest = std::min(nearest, (p - spine[i] - t * ab).norm());
+  }
+  return nearest - radius;
+}
+
+bool Park::Contains(const Vector2d& p) const {
+  // Counts the sides that a ray towards +x crosses.
+  bool inside = false;
+  for (size_t i = 0; i < outline.size(); ++i) {
+    const Vector2d& a = outline[i];
+    const Vector2d& b = outline[(i + 1) % outline.size()];
+    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+    if (a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()) > p.x()) inside = !inside;
+  }
+  return inside;
+}
+
 double StreetPlan::DistanceToOtherRoads(const Vector2d& p, size_t except) const {
   constexpr double kCornerBlend = 7.0;  // metres: gives kerb radii of about 5 m
   double distance = 1e30;
+  for (const Roundabout& roundabout : roundabouts)
+    distance = std::min(distance, (p - roundabout.centre).norm() - roundabout.outer_radius);
   for (size_t i = 0; i < streets.size(); ++i) {
     if (i == except) continue;
     const double other = DistanceToStreet(streets[i], p, distance + kCornerBlend);
@@ -111,10 +139,37 @@ double StreetPlan::DistanceToOtherRoads(const Vector2d& p, size_t except) const 
 }
 
 double StreetPlan::DistanceToRoad(const Vector2d& p) const {
-  return DistanceToOtherRoads(p, streets.size());
+  double distance = DistanceToOtherRoads(p, streets.size());
+  if (distance > 0) return distance;
+  for (const Island& island : islands) {
+    // The spine's ends bound the distance to all of it.
+    const double bound = 0.5 * ((p - island.spine.front()).norm() +
+                                (p - island.spine.back()).norm() - island.length) -
+                         island.radius;
+    if (-bound > distance) distance = std::max(distance, -island.Distance(p));
+  }
+  return distance;
+}
+
+const Roundabout* StreetPlan::RoundaboutAt(size_t junction) const {
+  const auto found = std::find_if(roundabouts.begin(), roundabouts.end(),
+                                  [&](const Roundabout& r) { return r.junction == junction; });
+  return found == roundabouts.end() ? nullptr : &*found;
+}
+
+bool StreetPlan::IsUnderBridge(size_t street, double station, double margin) const {
+  return std::any_of(bridges.begin(), bridges.end(), [&](const Bridge& bridge) {
+    return bridge.street == street &&
+           std::abs(bridge.station - station) < bridge.half_width + margin;
+  });
 }
 
 double StreetPlan::PavementAt(const Vector2d& p) const {
+  constexpr double kIslandEdge = 0.4;  // metres
+  constexpr double kAbout = 1.5;       // metres: ground is laid in cells that reach across kerbs
+  for (const Island& island : islands) {
+    if (island.Distance(p) < kAbout) return kIslandEdge;
+  }
   double best = 1e30;
   double pavement = 3;
   for (const Street& street : streets) {
@@ -145,6 +200,9 @@ StreetPlan PlanStreets(const PlanOptions& options) {
           {{x + random.Uniform(-jitter, jitter), y + random.Uniform(-jitter, jitter)}, {}});
     }
   }
+  const size_t avenue = options.spacing >= kAvenueSpacing
+                            ? static_cast<size_t>(random.Fork(3).Int(rows + columns))
+                            : static_cast<size_t>(rows + columns);
   const auto add_street = [&](const std::vector<size_t>& nodes) {
     // Streets run on beyond the outer junctions, and bend between junctions.
     std::vector<Vector2d> knots;
@@ -164,11 +222,18 @@ StreetPlan PlanStreets(const PlanOptions& options) {
     knots.push_back(at(nodes.size() - 1) +
                     extent * (at(nodes.size() - 1) - at(nodes.size() - 2)).normalized());
     std::vector<double> stations;
-    Street street = MakeStreet(knots, random.Uniform(3.3, 6.9), random.Uniform(0.0, 0.3),
+    const bool is_avenue = plan.streets.size() == avenue;
+    const double half_width = random.Uniform(3.3, 6.9);
+    const double width_change = random.Uniform(0.0, 0.3);
+    Street street = MakeStreet(knots, is_avenue ? kAvenueHalfWidth : half_width, width_change,
                                random.Uniform(0, 6.28), &stations);
     street.pavement = random.Uniform(2.2, 4.2);
     street.parking = street.points.front().half_width > 5.2;
-    street.has_centre_line = random.Chance(0.8);
+    street.has_centre_line = random.Chance(0.8) && !is_avenue;
+    if (is_avenue) {
+      street.pavement = 4.5;
+      street.median = kMedian;
+    }
     for (size_t i = 0; i < nodes.size(); ++i) {
       plan.junctions[nodes[i]].arms.push_back({plan.streets.size(), stations[knot_of_node[i]]});
     }
@@ -186,6 +251,7 @@ StreetPlan PlanStreets(const PlanOptions& options) {
   }
   plan.tour = PlanTour({columns, rows, options.tour_blocks}, random.Fork(1));
   plan.other_tours = PlanOtherTours(plan.tour, columns, rows, random.Fork(2));
+  AddPlaces(columns, rows, options.spacing, random.Fork(4), &plan);
   return plan;
 }
 

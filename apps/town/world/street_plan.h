@@ -26,11 +26,12 @@ struct Street {
   double pavement = 3;  ///< width of the pavement on either side
   bool has_centre_line = true;
   bool parking = false;  ///< a row of parked cars on either side, kParkingWidth wide
+  double median = 0;     ///< half the width of the planted strip between the directions; 0: none
 
   /// Metres from the centreline to the middle of what is driven on either side: of the lane, but
   /// where it is very wide, nearer to the centre.
   double LaneOffset(double half_width) const {
-    return std::min(0.5 * (half_width - (parking ? kParkingWidth : 0.0)), 2.1);
+    return median + std::min(0.5 * (half_width - median - (parking ? kParkingWidth : 0.0)), 2.1);
   }
 
   double Length() const { return points.back().station; }
@@ -48,6 +49,44 @@ struct Junction {
   std::vector<Arm> arms;  ///< each street that passes through, once
 };
 
+/// Raised ground within the carriageway: all within `radius` of a line (or a single point).
+struct Island {
+  std::vector<Vector2d> spine;
+  double length = 0;  ///< of the spine, metres
+  double radius = 0;
+
+  /// Signed distance in metres to its kerb, negative on it.
+  double Distance(const Vector2d& p) const;
+};
+
+/// A junction whose traffic goes round an island, counter-clockwise.
+struct Roundabout {
+  size_t junction = 0;
+  Vector2d centre;
+  double island_radius = 0;
+  double outer_radius = 0;  ///< of the carriageway
+};
+
+/// A block without buildings, within the centrelines of the streets around it.
+struct Park {
+  std::vector<Vector2d> outline;  ///< counter-clockwise
+  std::vector<Vector2d> gates;    ///< points of the centrelines opposite its entrances
+  Vector2d centre;
+
+  bool Contains(const Vector2d& p) const;
+};
+
+/// A railway bridge over a street.
+struct Bridge {
+  size_t street = 0;
+  double station = 0;
+  Vector2d centre;
+  Vector2d along;           ///< unit, of the street below
+  double half_width = 0;    ///< metres along the street
+  double half_opening = 0;  ///< metres from the street's centreline to the walls below
+  double reach = 0;         ///< metres from the street's centreline to the ends of its walls
+};
+
 /// A town's streets and the tour of the camera over them. The z-axis is up; the plan lies in x, y.
 struct StreetPlan {
   std::vector<Street> streets;
@@ -55,6 +94,10 @@ struct StreetPlan {
   std::vector<size_t> tour;  ///< junctions in order, a closed cycle; neighbours share a street
   /// Further closed cycles, each over some street that the tour does not use: cross traffic.
   std::vector<std::vector<size_t>> other_tours;
+  std::vector<Roundabout> roundabouts;
+  std::vector<Island> islands;  ///< of roundabouts, and medians of avenues
+  std::vector<Park> parks;
+  std::vector<Bridge> bridges;
   double hill_phase = 0;  ///< shifts the terrain
 
   /// Height of the terrain in metres.
@@ -62,10 +105,14 @@ struct StreetPlan {
   /// Signed distance in metres to the edge of the carriageways, negative on them; streets that
   /// meet are blended so that kerbs go round corners in an arc.
   double DistanceToRoad(const Vector2d& p) const;
-  /// As above without one street: whether that street's markings end here.
+  /// As above without islands, and without one street: whether that street's markings end here.
   double DistanceToOtherRoads(const Vector2d& p, size_t except) const;
-  /// Width of the pavement of the street nearest to p.
+  /// Width of the pavement of the street nearest to p, or of an island's paved edge on it.
   double PavementAt(const Vector2d& p) const;
+  /// The roundabout at a junction, or null.
+  const Roundabout* RoundaboutAt(size_t junction) const;
+  /// Whether a place of a street lies under a bridge or less than `margin` metres from one.
+  bool IsUnderBridge(size_t street, double station, double margin) const;
 };
 
 struct PlanOptions {
@@ -76,7 +123,8 @@ struct PlanOptions {
   int tour_blocks = 3;  ///< blocks that the tour circles
 };
 
-/// Bent streets over a distorted lattice, with a tour over its junctions (see PlanTour).
+/// Bent streets over a distorted lattice, with a tour over its junctions (see PlanTour) and, where
+/// there is room, an avenue, a roundabout, a park and a bridge.
 StreetPlan PlanStreets(const PlanOptions& options);
 
 }  // namespace orb360::town

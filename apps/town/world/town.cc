@@ -6,6 +6,7 @@
 #include "apps/town/world/building.h"
 #include "apps/town/world/furnish.h"
 #include "apps/town/world/ground.h"
+#include "apps/town/world/landmarks.h"
 #include "apps/town/world/lots.h"
 
 namespace orb360::town {
@@ -23,6 +24,8 @@ Town BuildTown(uint64_t seed, PlanOptions plan) {
   MeshBuilder builder(materials);
   AddGround(town.plan, builder);
   AddRoadMarkings(town.plan, builder);
+  for (const Park& park : town.plan.parks) AddParkPaths(town.plan, park, builder);
+  for (const Bridge& bridge : town.plan.bridges) AddBridge(town.plan, bridge, builder);
   Random lots_random = random.Fork(3);
   uint64_t number = 100;
   for (const Lot& lot : LayOutLots(town.plan, lots_random)) {

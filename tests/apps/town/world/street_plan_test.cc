@@ -19,7 +19,8 @@ TEST(StreetPlan, CentrelinesLieInsideTheCarriagewayByHalfItsWidth) {
   const StreetPlan plan = PlanOf(3);
   for (const Street& street : plan.streets) {
     for (const StreetPoint& point : street.points) {
-      EXPECT_LE(plan.DistanceToRoad(point.position), -point.half_width + 0.05);
+      EXPECT_LE(plan.DistanceToOtherRoads(point.position, plan.streets.size()),
+                -point.half_width + 0.05);
     }
   }
 }
