@@ -48,6 +48,26 @@ TEST(FindTown, EvaluationPathsCloseALoopAndComeBackBothWays) {
   }
 }
 
+TEST(FindTown, EvaluationPathsStopAndTurnSharply) {
+  for (const char* name : {"Town1", "Town2", "Town3", "Town4", "Town5"}) {
+    const TownSpec spec = FindTown(name);
+    const StreetPlan plan = PlanTown(spec.seed, spec.plan);
+    const Lap lap(plan, plan.tour, LapOf(spec));
+    int standing = 0;
+    int turning = 0;
+    for (int frame = 0; frame < spec.frames; ++frame) {
+      const Lap::State now = lap.At(frame / 20.0);
+      EXPECT_LT(now.speed, 12.01) << name;
+      standing += now.speed < 0.1 ? 1 : 0;
+      const Vector2d forward = lap.PlaceAt(now.station).forward;
+      const Vector2d soon = lap.PlaceAt(lap.At(frame / 20.0 + 3).station).forward;
+      turning += forward.dot(soon) < 0.34 ? 1 : 0;  // by 70 degrees in 3 seconds
+    }
+    EXPECT_GE(standing, 10) << name;
+    EXPECT_GE(turning, 100) << name;
+  }
+}
+
 TEST(FindTown, RefusesOtherNames) {
   for (const char* name : {"", "Town6", "town1", "-3", "12x", "1e3", "1234567890123456789"})
     EXPECT_THROW(FindTown(name), UserError) << name;
