@@ -22,8 +22,9 @@ struct Arguments {
 void WritePath(const Arguments& arguments) {
   std::vector<Eigen::Vector3f> line = FindTorcsCentreline(ReadMeshFile(arguments.track));
   if (line.size() < 3) {
-    throw UserError(arguments.track.string() +
-                    ": has no pieces of road named TKMN and a number, as TORCS circuits have");
+    throw UserError(
+        arguments.track.string() +
+        ": has no ring of road in pieces named TKMN and a number, as TORCS circuits have");
   }
   line.push_back(line.front());
   std::ostringstream text;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -205,20 +207,30 @@ class Reader {
     mesh.name = object.name;
     mesh.material = FindMaterial(material, object.texture);
     const bool has_normals = object.normals.size() == object.positions.size();
-    for (const Corner& corner : corners) {
-      mesh.positions.push_back(world_from_object * object.positions[corner.vertex]);
-      mesh.texture_coordinates.push_back(corner.uv);
+    // Corners alike are one vertex; they stay in the order of the object's vertices, which tells
+    // something of roads (see torcs_track.h).
+    std::map<std::tuple<uint32_t, float, float>, uint32_t> indices;
+    const auto key = [](const Corner& corner) {
+      return std::tuple(corner.vertex, corner.uv.x(), corner.uv.y());
+    };
+    for (const Corner& corner : corners) indices[key(corner)] = 0;
+    for (auto& [corner, index] : indices) {
+      const auto [vertex, u, v] = corner;
+      index = static_cast<uint32_t>(mesh.positions.size());
+      mesh.positions.push_back(world_from_object * object.positions[vertex]);
+      mesh.texture_coordinates.emplace_back(u, v);
       if (!has_normals) continue;
-      const Eigen::Vector3f normal = world_from_object.linear() * object.normals[corner.vertex];
+      const Eigen::Vector3f normal = world_from_object.linear() * object.normals[vertex];
       mesh.normals.push_back(normal.stableNormalized());
     }
-    for (uint32_t i = 2; i < corners.size(); ++i) {
+    const auto at = [&](size_t i) { return indices.at(key(corners[i])); };
+    for (size_t i = 2; i < corners.size(); ++i) {
       if (kind == kPolygon) {
-        mesh.triangles.push_back({0, i - 1, i});
+        mesh.triangles.push_back({at(0), at(i - 1), at(i)});
       } else if (i % 2 == 0) {
-        mesh.triangles.push_back({i - 2, i - 1, i});
+        mesh.triangles.push_back({at(i - 2), at(i - 1), at(i)});
       } else {
-        mesh.triangles.push_back({i - 1, i - 2, i});  // every second one runs the other way round
+        mesh.triangles.push_back({at(i - 1), at(i - 2), at(i)});  // turns the other way round
       }
     }
     scene_.meshes.push_back(std::move(mesh));
