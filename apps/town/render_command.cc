@@ -122,6 +122,8 @@ void AddRenderCommand(CLI::App* app) {
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, UpAxis>{{"y", UpAxis::kY}, {"z", UpAxis::kZ}}))
       ->default_str("y");
+  command->add_option("--textures", imported.options.texture_folders,
+                      "Folders with textures besides that of the scene");
   command
       ->add_option("--out", arguments->out,
                    "Folder to write; an interrupted rendering there is resumed")

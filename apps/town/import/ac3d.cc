@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iomanip>
 #include <map>
 #include <sstream>
 #include <string>
@@ -75,6 +76,12 @@ class Reader {
     if (!(line >> value)) Refuse(std::string("expected ") + what);
     return value;
   }
+  /// How many of something follow.
+  int Count(std::istringstream& line, const char* what) const {
+    const int count = Number<int>(line, what);
+    if (count < 0) Refuse(std::string("expected ") + what + ", found " + std::to_string(count));
+    return count;
+  }
   /// A word, or several between quotation marks.
   static std::string Text(std::istringstream& line) {
     std::string text;
@@ -100,7 +107,9 @@ class Reader {
     colours_.push_back(colour.cwiseMin(1.0F).cwiseMax(0.0F));
   }
 
-  void ReadObject(const Eigen::Affine3f& world_from_parent) {
+  void ReadObject(const Eigen::Affine3f& world_from_parent, int depth = 0) {
+    constexpr int kDeepest = 200;  // groups in groups; a damaged file must not take all the stack
+    if (depth > kDeepest) Refuse("objects are nested too deeply");
     Object object;
     while (true) {
       std::istringstream line = NextLine();
@@ -108,20 +117,20 @@ class Reader {
       if (!(line >> word)) continue;
       if (word == "kids") {
         const Eigen::Affine3f world_from_object = world_from_parent * object.parent_from_object;
-        const int count = Number<int>(line, "a number of objects");
+        const int count = Count(line, "a number of objects");
         // Files of TORCS end before all the objects that they announce.
-        for (int i = 0; i < count && HasLine(); ++i) ReadChild(world_from_object);
+        for (int i = 0; i < count && HasLine(); ++i) ReadChild(world_from_object, depth + 1);
         return;
       }
       ReadProperty(word, line, world_from_parent, &object);
     }
   }
 
-  void ReadChild(const Eigen::Affine3f& world_from_parent) {
+  void ReadChild(const Eigen::Affine3f& world_from_parent, int depth) {
     std::istringstream line = NextLine();
     std::string word;
     if (!(line >> word) || word != "OBJECT") Refuse("expected an OBJECT");
-    ReadObject(world_from_parent);
+    ReadObject(world_from_parent, depth);
   }
 
   void ReadProperty(const std::string& word, std::istringstream& line,
@@ -130,7 +139,7 @@ class Reader {
       object->name = Text(line);
     } else if (word == "data") {
       // So many characters of comment follow, and the end of a line.
-      file_.ignore(Number<int>(line, "a length") + 1);
+      file_.ignore(Count(line, "a length") + 1);
       ++line_number_;
     } else if (word == "texture") {
       // Several in .acc files, with what each is for: the base is the first.
@@ -148,9 +157,9 @@ class Reader {
       for (int i = 0; i < 9; ++i)
         object->parent_from_object.linear()(i % 3, i / 3) = Number<float>(line, "nine numbers");
     } else if (word == "numvert") {
-      ReadVertices(Number<int>(line, "a number of vertices"), object);
+      ReadVertices(Count(line, "a number of vertices"), object);
     } else if (word == "numsurf") {
-      const int count = Number<int>(line, "a number of surfaces");
+      const int count = Count(line, "a number of surfaces");
       for (int i = 0; i < count; ++i)
         ReadSurface(*object, world_from_parent * object->parent_from_object);
     }
@@ -176,14 +185,17 @@ class Reader {
       std::string word;
       line >> word;
       if (word == "SURF") {
-        flags = static_cast<unsigned>(std::strtoul(Text(line).c_str(), nullptr, 0));
+        line >> std::setbase(0) >> flags;  // hexadecimal after 0x
+        if (!line) Refuse("expected the flags of a surface");
       } else if (word == "mat") {
         material = Number<size_t>(line, "the number of a material");
         if (material >= colours_.size()) Refuse("there is no such material");
       } else if (word == "refs") {
-        std::vector<Corner> corners(Number<size_t>(line, "a number of corners"));
-        for (Corner& corner : corners) {
+        const int count = Count(line, "a number of corners");
+        std::vector<Corner> corners;
+        for (int k = 0; k < count; ++k) {
           std::istringstream reference = NextLine();
+          Corner& corner = corners.emplace_back();
           corner.vertex = Number<uint32_t>(reference, "the number of a vertex");
           if (corner.vertex >= object.positions.size()) Refuse("there is no such vertex");
           for (int i = 0; i < 2; ++i) {

@@ -1,78 +1,42 @@
 #include "apps/town/import/import_scenery.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
-
 #include "apps/town/import/ac3d.h"
 #include "apps/town/import/assimp_scene.h"
-#include "apps/town/import/sgi_image.h"
+#include "apps/town/import/texture_file.h"
 #include "slam/check.h"
 
 namespace orb360::town {
 namespace {
 
-std::string LowerExtension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
-/// CV_8UC4, blue first.
-cv::Mat4b ReadTexture(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) throw UserError(path.string() + ": no such file");
-  const std::string extension = LowerExtension(path);
-  for (const char* sgi : {".rgb", ".rgba", ".sgi", ".bw"}) {
-    if (extension == sgi) return ReadSgiImage(path);
-  }
-  cv::Mat image = cv::imread(path.string(), cv::IMREAD_UNCHANGED);
-  if (image.empty()) throw UserError(path.string() + ": cannot be read as an image");
-  if (image.depth() == CV_16U) image.convertTo(image, CV_8U, 1.0 / 257);
-  cv::Mat4b result;
-  if (image.channels() == 1) cv::cvtColor(image, result, cv::COLOR_GRAY2BGRA);
-  if (image.channels() == 3) cv::cvtColor(image, result, cv::COLOR_BGR2BGRA);
-  if (image.channels() == 4) result = image;
-  if (result.empty())
-    throw UserError(path.string() + ": has a number of channels that is not read");
-  return result;
-}
-
-/// Sides become powers of two, as Texture needs them.
-Texture ToTexture(cv::Mat4b image, bool* has_holes) {
-  constexpr int kMaximumSide = 4096;
-  const auto power = [=](int side) {
-    return std::min(static_cast<int>(std::bit_ceil(static_cast<unsigned>(side))), kMaximumSide);
-  };
-  const cv::Size size(power(image.cols), power(image.rows));
-  if (size != image.size()) cv::resize(image, image, size, 0, 0, cv::INTER_LINEAR);
-  *has_holes = false;
-  std::vector<Rgba> texels;
-  texels.reserve(image.total());
-  for (int row = image.rows - 1; row >= 0; --row) {
-    for (int column = 0; column < image.cols; ++column) {
-      const cv::Vec4b& pixel = image(row, column);
-      Rgba texel = Srgb(pixel[2], pixel[1], pixel[0]);
-      texel.a = static_cast<float>(pixel[3]) / 255;
-      *has_holes |= texel.a < 0.5F;
-      texels.push_back(texel);
+/// The file of a texture: by the path that the mesh gives, or, where that is of its author's
+/// computer, by the name alone. Throws UserError if it is in none of the folders.
+std::filesystem::path FindTexture(std::string name,
+                                  const std::vector<std::filesystem::path>& folders) {
+  std::replace(name.begin(), name.end(), '\\', '/');
+  const std::filesystem::path path(name);
+  for (const std::filesystem::path& folder : folders) {
+    for (const std::filesystem::path& candidate : {folder / path, folder / path.filename()}) {
+      if (std::filesystem::is_regular_file(candidate)) return candidate;
     }
   }
-  return Texture(image.cols, image.rows, std::move(texels));
+  throw UserError((folders.front() / path).string() + ": no such file");
 }
 
 /// Adds the materials to the palette, in their order.
-void AddMaterials(const SourceScene& source, const std::filesystem::path& folder,
+void AddMaterials(const SourceScene& source, const std::vector<std::filesystem::path>& folders,
                   std::vector<std::string>* missing, Palette* palette) {
   struct Loaded {
     uint16_t texture;
     bool has_holes;
   };
+  if (source.materials.size() > std::numeric_limits<MaterialId>::max())
+    throw UserError("the mesh has more than 65535 materials: join some");
   std::map<std::string, Loaded> loaded;
   const auto plain = [](float level) { return Texture(1, 1, {Rgba{level, level, level, 1}}); };
   palette->textures.push_back(plain(1));  // for surfaces without a texture
@@ -82,14 +46,19 @@ void AddMaterials(const SourceScene& source, const std::filesystem::path& folder
     if (is_new) {
       bool has_holes = false;
       try {
-        palette->textures.push_back(ToTexture(ReadTexture(folder / material.texture), &has_holes));
+        ImageTexture image = material.image.empty()
+                                 ? ReadTexture(FindTexture(material.texture, folders))
+                                 : MakeTexture(material.image, material.texture);
+        has_holes = image.has_holes;
+        palette->textures.push_back(std::move(image.texture));
       } catch (const UserError& error) {
         missing->push_back(error.what());
         palette->textures.push_back(plain(0.4F));
       }
       entry->second = {static_cast<uint16_t>(palette->textures.size() - 1), has_holes};
     }
-    palette->all.push_back({.texture = entry->second.texture, .cutout = entry->second.has_holes});
+    palette->all.push_back({.texture = entry->second.texture,
+                            .cutout = entry->second.has_holes && !material.is_opaque});
   }
 }
 
@@ -135,14 +104,18 @@ void AddMesh(const SourceMesh& source, const Eigen::Vector3f& colour, const Impo
   const auto uv_of = [&](uint32_t i) -> Vector2f {
     return has_uv ? source.texture_coordinates[i] : Vector2f::Zero();
   };
+  // Texture keeps a texel's place in 32 bits: count tiles from those of the first vertex.
+  Vector2f whole_tiles = Vector2f::Zero();
+  if (!positions.empty()) whole_tiles = uv_of(0).array().floor();
   const auto first = static_cast<uint32_t>(mesh->vertices.size());
-  const auto tint = EncodeTint({colour.x(), colour.y(), colour.z(), 1});
+  const bool has_colours = source.colours.size() == positions.size();
   for (uint32_t i = 0; i < positions.size(); ++i) {
     Vertex vertex;
-    vertex.u = uv_of(i).x();
-    vertex.v = uv_of(i).y();
+    vertex.u = uv_of(i).x() - whole_tiles.x();
+    vertex.v = uv_of(i).y() - whole_tiles.y();
     vertex.normal = (normals[i] * 127).array().round().cast<int8_t>();
-    vertex.tint = tint;
+    const Vector3f factor = has_colours ? colour.cwiseProduct(source.colours[i]) : colour;
+    vertex.tint = EncodeTint({factor.x(), factor.y(), factor.z(), 1});
     mesh->positions.push_back(positions[i]);
     mesh->vertices.push_back(vertex);
   }
@@ -170,8 +143,12 @@ SourceScene ReadMeshFile(const std::filesystem::path& path) {
 
 Scenery MakeScenery(const SourceScene& source, const std::filesystem::path& folder,
                     const ImportOptions& options, std::vector<std::string>* missing) {
+  std::vector<std::filesystem::path> folders = {folder};
+  folders.insert(folders.end(), options.texture_folders.begin(), options.texture_folders.end());
+  // Beside tracks/CATEGORY/NAME, the folder of a circuit of TORCS.
+  folders.push_back(std::filesystem::absolute(folder) / "../../../data/textures");
   Scenery scenery;
-  AddMaterials(source, folder, missing, &scenery.palette);
+  AddMaterials(source, folders, missing, &scenery.palette);
   for (const SourceMesh& mesh : source.meshes)
     AddMesh(mesh, source.materials[mesh.material].colour, options, &scenery.fixed);
   scenery.fixed.PartitionCutouts(scenery.palette);

@@ -13,6 +13,7 @@ namespace orb360::town {
 namespace {
 
 constexpr size_t kHeaderSize = 512;
+constexpr size_t kLargestSide = 16384;  // pixels; a damaged size must not take all memory
 
 /// A file's bytes; numbers are big-endian. Reading beyond the end throws.
 class Bytes {
@@ -72,9 +73,12 @@ cv::Mat4b ReadSgiImage(const std::filesystem::path& path) {
   const size_t width = file.Number(6, 2);
   const size_t height = dimensions > 1 ? file.Number(8, 2) : 1;
   const size_t channels = dimensions > 2 ? file.Number(10, 2) : 1;
-  if (width == 0 || height == 0 || channels == 0 || channels > 4)
+  if (width == 0 || height == 0 || width > kLargestSide || height > kLargestSide || channels == 0 ||
+      channels > 4)
     file.Refuse("has a size or a number of channels that is not read");
 
+  // The bytes that the rows, or the tables of where they are, must have: before memory is taken.
+  file.From(kHeaderSize, channels * height * (is_packed ? 8 : width));
   std::vector<std::vector<uint8_t>> planes(channels, std::vector<uint8_t>(width * height));
   for (size_t channel = 0; channel < channels; ++channel) {
     for (size_t y = 0; y < height; ++y) {

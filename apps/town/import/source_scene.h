@@ -6,13 +6,16 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <opencv2/core.hpp>
 
 namespace orb360::town {
 
 /// What a file of meshes says of a surface.
 struct SourceMaterial {
   Eigen::Vector3f colour = Eigen::Vector3f::Ones();  ///< linear factor on the texture
-  std::string texture;  ///< file, relative to the mesh's folder; empty for none
+  std::string texture;     ///< file, relative to the mesh's folder; empty for none
+  cv::Mat image = {};      ///< the texture itself, where it is inside the file
+  bool is_opaque = false;  ///< whatever the texture's coverage says
 };
 
 /// Triangles of one material, in the axes and the unit of the file.
@@ -23,6 +26,7 @@ struct SourceMesh {
   std::vector<Eigen::Vector3f> normals;  ///< unit, one for each position, or none
   /// One for each position, or none; v upward, in tiles.
   std::vector<Eigen::Vector2f> texture_coordinates;
+  std::vector<Eigen::Vector3f> colours;  ///< linear factors, one for each position, or none
   std::vector<std::array<uint32_t, 3>> triangles;
 };
 

@@ -115,6 +115,90 @@ TEST_F(ImportTest, MissingTexturesAreNamedOnceAndGrey) {
   EXPECT_EQ(scenery.fixed.triangles.size(), 2U);
 }
 
+TEST_F(ImportTest, TexturesAreLookedForByNameInOtherFoldersToo) {
+  const cv::Mat3b red(2, 2, cv::Vec3b(0, 0, 255));
+  std::filesystem::create_directories(folder_ / "elsewhere");
+  cv::imwrite((folder_ / "elsewhere" / "floor.png").string(), red);
+  Write("floor.mtl", "newmtl floor\nmap_Kd C:\\art\\floor.png\n");
+  const std::filesystem::path file = Write("floor.obj", kObj);
+  EXPECT_FLOAT_EQ(Import(file, {.texture_folders = {folder_ / "elsewhere"}})
+                      .palette.textures.back()
+                      .Sample(0.5F, 0.5F, 0)
+                      .r,
+                  1);
+  EXPECT_TRUE(missing_.empty());
+  // Where TORCS keeps what its circuits share.
+  const std::filesystem::path track = folder_ / "tracks" / "road" / "track";
+  std::filesystem::create_directories(track);
+  std::filesystem::create_directories(folder_ / "data" / "textures");
+  cv::imwrite((folder_ / "data" / "textures" / "floor.png").string(), red);
+  MakeScenery(ReadMeshFile(file), track, {}, &missing_);
+  EXPECT_TRUE(missing_.empty());
+}
+
+TEST_F(ImportTest, NoFringeOfTheHiddenColourShowsAroundAHole) {
+  cv::Mat4b image(8, 8, cv::Vec4b(255, 255, 255, 0));  // white where nothing is
+  image.colRange(0, 4) = cv::Vec4b(0, 0, 0, 255);
+  cv::imwrite((folder_ / "leaf.png").string(), image);
+  Write("floor.mtl", "newmtl floor\nmap_Kd leaf.png\n");
+  const Scenery scenery = Import(Write("floor.obj", kObj));
+  const Texture& texture = scenery.palette.textures.back();
+  for (float u = 0; u < 1; u += 0.01F) EXPECT_LT(texture.Sample(u, 0.5F, 0).r, 0.01F) << u;
+}
+
+TEST_F(ImportTest, ABlackFactorOnATextureIsIgnoredAsManyProgramsWriteIt) {
+  cv::imwrite((folder_ / "floor.png").string(), cv::Mat3b(2, 2, cv::Vec3b(9, 9, 9)));
+  Write("floor.mtl", "newmtl floor\nKd 0 0 0\nmap_Kd floor.png\n");
+  EXPECT_EQ(Import(Write("floor.obj", kObj)).fixed.vertices[0].tint[0], 255);
+}
+
+/// A triangle of glTF with a texture inside the file, half of it transparent.
+std::string GltfWithImage(const std::filesystem::path& folder, const std::string& alpha_mode) {
+  std::string buffer;
+  for (const float x : {-1.0F, 0.0F, 1.0F, 1.0F,  0.0F, 1.0F, 0.0F,  0.0F, -1.0F,  // positions
+                        0.0F,  0.0F, 1.0F, 0.0F,  0.0F, 1.0F,                      // uv, v downward
+                        0.25F, 1.0F, 1.0F, 0.25F, 1.0F, 1.0F, 0.25F, 1.0F, 1.0F})  // colours
+    buffer.append(reinterpret_cast<const char*>(&x), sizeof x);
+  cv::Mat4b image(2, 2, cv::Vec4b(0, 0, 255, 255));
+  image.row(1) = cv::Vec4b(255, 0, 0, 0);
+  std::vector<uchar> png;
+  cv::imencode(".png", image, png);
+  buffer.append(png.begin(), png.end());
+  std::ofstream(folder / "all.bin", std::ios::binary) << buffer;
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1,"COLOR_0":2},
+                              "material":0}]}],
+    "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}},"alphaMode":")" +
+         alpha_mode + R"("}],
+    "textures":[{"source":0}],"images":[{"bufferView":3,"mimeType":"image/png"}],
+    "buffers":[{"uri":"all.bin","byteLength":)" +
+         std::to_string(buffer.size()) + R"(}],
+    "bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24},
+                   {"buffer":0,"byteOffset":60,"byteLength":36},
+                   {"buffer":0,"byteOffset":96,"byteLength":)" +
+         std::to_string(png.size()) + R"(}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",
+                  "min":[-1,0,-1],"max":[1,0,1]},
+                 {"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"},
+                 {"bufferView":2,"componentType":5126,"count":3,"type":"VEC3"}]})";
+}
+
+TEST_F(ImportTest, GltfBringsItsImagesAndColoursAndSaysWhatCoverageMeans) {
+  const Scenery masked = Import(Write("masked.gltf", GltfWithImage(folder_, "MASK")));
+  EXPECT_TRUE(missing_.empty());
+  ASSERT_EQ(masked.fixed.triangles.size(), 1U);
+  EXPECT_EQ(masked.fixed.opaque_count, 0U);
+  EXPECT_NEAR(std::pow(masked.fixed.vertices[0].tint[0] / 255.0, 2), 0.25, 0.01);
+  const Texture& texture =
+      masked.palette.textures[masked.palette[masked.fixed.triangles[0].material].texture];
+  // The image's upper row is the red one; glTF's (0, 0) is its upper left corner.
+  const Vertex& first = masked.fixed.vertices[0];
+  EXPECT_GT(texture.Sample(first.u + 0.25F, first.v - 0.25F, 0).r, 0.9F);
+  EXPECT_TRUE(texture.Covers(first.u + 0.25F, first.v - 0.25F));
+  const Scenery opaque = Import(Write("opaque.gltf", GltfWithImage(folder_, "OPAQUE")));
+  EXPECT_EQ(opaque.fixed.opaque_count, 1U);
+}
+
 TEST_F(ImportTest, GltfIsReadWithItsNodesTransforms) {
   // One triangle under a node that lowers it by two and makes it a hundred times as large.
   std::string buffer;
@@ -157,6 +241,15 @@ TEST_F(ImportTest, DamagedFilesAreRefusedWithTheirNameAndLine) {
   EXPECT_THAT(Problem(Write("a.acc", bad)), HasSubstr("a.acc: line 24: there is no such vertex"));
   EXPECT_THAT(Problem(Write("b.acc", good.substr(0, good.find("refs")))),
               HasSubstr("b.acc: line 19: the file ends too early"));
+  bad = good;
+  bad.replace(bad.find("refs 6"), 6, "refs -1");
+  EXPECT_THAT(Problem(Write("e.acc", bad)), HasSubstr("e.acc: line 20: expected a number of corn"));
+  bad = good;
+  bad.replace(bad.find("refs 6"), 6, "refs 2000000000");
+  EXPECT_THAT(Problem(Write("f.acc", bad)), HasSubstr("f.acc: line 27: expected the number of"));
+  bad = "AC3Db\n";
+  for (int i = 0; i < 100000; ++i) bad += "OBJECT group\nkids 1\n";
+  EXPECT_THAT(Problem(Write("g.acc", bad)), HasSubstr("nested too deeply"));
   EXPECT_THAT(Problem(Write("c.acc", "solid cube\n")), HasSubstr("is not an AC3D file"));
   EXPECT_THAT(Problem(Write("d.obj", "v 0 0 0\n")), HasSubstr("d.obj: "));
   EXPECT_THAT(Problem(folder_ / "none.obj"), HasSubstr("none.obj: no such file"));
