@@ -71,8 +71,13 @@ std::unique_ptr<Drive> MakeImportedDrive(const Arguments& arguments, Recording r
   if (spec.path.empty()) throw UserError("--scene needs a --path through it");
   if (arguments.light) spec.light = *arguments.light;
   const CameraPath path = ReadCameraPath(spec.path);
-  const int whole = static_cast<int>((path.end() - path.begin()) * recording.fps) + 1;
+  // A thousandth of a frame more: times in files are rounded.
+  const int whole = static_cast<int>((path.end() - path.begin()) * recording.fps + 1e-3) + 1;
   recording.frames = arguments.frames.value_or(whole);
+  if (recording.frames > whole) {
+    throw UserError(spec.path.string() + ": the path ends after " + std::to_string(whole) +
+                    " frames: ask for no more with --frames");
+  }
   auto drive = std::make_unique<ImportedDrive>(spec, path, recording);
   if (!drive->missing_textures().empty()) {
     std::string problems;

@@ -97,13 +97,16 @@ class Reader {
 
   void ReadMaterial(std::istringstream& line) {
     Text(line);  // its name
-    Eigen::Vector3f colour = Eigen::Vector3f::Zero();
+    Eigen::Vector3f diffuse = Eigen::Vector3f::Zero();
+    Eigen::Vector3f emitted = Eigen::Vector3f::Zero();
     std::string word;
     while (line >> word) {
-      // What shines by itself counts as reflecting more.
       if (word != "rgb" && word != "emis") continue;
-      for (int i = 0; i < 3; ++i) colour[i] += Number<float>(line, "three numbers of a colour");
+      Eigen::Vector3f& colour = word == "rgb" ? diffuse : emitted;
+      for (int i = 0; i < 3; ++i) colour[i] = Number<float>(line, "three numbers of a colour");
     }
+    // What only shines by itself counts as reflecting instead.
+    const Eigen::Vector3f colour = diffuse.isZero() ? emitted : diffuse;
     colours_.push_back(colour.cwiseMin(1.0F).cwiseMax(0.0F));
   }
 

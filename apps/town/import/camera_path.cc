@@ -47,10 +47,15 @@ CameraPath::CameraPath(std::vector<StampedPose> knots) : knots_(std::move(knots)
 }
 
 Eigen::Vector3d CameraPath::Velocity(size_t knot) const {
-  const StampedPose& before = knots_[knot == 0 ? 0 : knot - 1];
-  const StampedPose& after = knots_[std::min(knot + 1, knots_.size() - 1)];
-  return (after.world_from_camera.translation - before.world_from_camera.translation) /
-         (after.timestamp - before.timestamp);
+  const auto step = [&](size_t k) { return knots_[k + 1].timestamp - knots_[k].timestamp; };
+  const auto slope = [&](size_t k) -> Eigen::Vector3d {
+    return (knots_[k + 1].world_from_camera.translation - knots_[k].world_from_camera.translation) /
+           step(k);
+  };
+  if (knot == 0) return slope(0);
+  if (knot + 1 == knots_.size()) return slope(knot - 1);
+  return (step(knot) * slope(knot - 1) + step(knot - 1) * slope(knot)) /
+         (step(knot - 1) + step(knot));
 }
 
 Rigid3 CameraPath::At(double time) const {
@@ -73,12 +78,18 @@ Rigid3 CameraPath::At(double time) const {
 
 std::vector<StampedPose> LookAhead(const std::vector<double>& times,
                                    const std::vector<Eigen::Vector3d>& positions) {
-  std::vector<StampedPose> poses;
-  double heading = 0;
-  for (size_t i = 0; i < positions.size(); ++i) {
+  const auto heading_at = [&](size_t i) -> std::optional<double> {
     const Eigen::Vector3d way =
         positions[std::min(i + 1, positions.size() - 1)] - positions[i == 0 ? 0 : i - 1];
-    if (way.head<2>().norm() > 1e-6) heading = std::atan2(way.y(), way.x());
+    if (way.head<2>().norm() <= 1e-6) return std::nullopt;
+    return std::atan2(way.y(), way.x());
+  };
+  std::optional<double> first;
+  for (size_t i = 0; i < positions.size() && !first; ++i) first = heading_at(i);
+  double heading = first.value_or(0);
+  std::vector<StampedPose> poses;
+  for (size_t i = 0; i < positions.size(); ++i) {
+    heading = heading_at(i).value_or(heading);
     // A level camera that looks along world +x: camera (-X, +Y, +Z) is world (+x, -y, +z).
     const Eigen::Quaterniond rotation(
         Eigen::AngleAxisd(heading + std::numbers::pi, Eigen::Vector3d::UnitZ()));
@@ -121,18 +132,22 @@ CameraPath ReadCameraPath(const std::filesystem::path& file) {
   return CameraPath(std::move(poses));
 }
 
-void RequireFreePath(const RayScene& scene, const std::vector<Rigid3>& world_from_camera) {
-  for (size_t i = 1; i < world_from_camera.size(); ++i) {
-    const Vector3f from = world_from_camera[i - 1].translation.cast<float>();
-    const Vector3f step = world_from_camera[i].translation.cast<float>() - from;
-    // A little farther, so that a surface right where a frame is taken is met.
+void RequireFreePath(const RayScene& scene, const CameraPath& path, double end) {
+  constexpr double kStep = 0.05;  // seconds
+  Vector3f from = path.At(path.begin()).translation.cast<float>();
+  for (double time = path.begin(); time < end; time += kStep) {
+    const Vector3f to = path.At(std::min(time + kStep, end)).translation.cast<float>();
+    const Vector3f step = to - from;
+    // A little farther, so that a surface right where a step ends is met.
     constexpr float kFar = 1.01F;
-    if (step.norm() < 1e-6F || DistanceAlong(scene, from, step, kFar) >= kFar) continue;
-    std::ostringstream message;
-    message << "the path goes through a surface between frames " << i - 1 << " and " << i
-            << ", at (" << from.x() << ", " << from.y() << ", " << from.z()
-            << "): change the path, or its unit or axes (see --scale and --up)";
-    throw UserError(message.str());
+    if (step.norm() >= 1e-6F && DistanceAlong(scene, from, step, kFar) < kFar) {
+      std::ostringstream message;
+      message << "the path goes through a surface at time " << time << ", near (" << from.x()
+              << ", " << from.y() << ", " << from.z()
+              << "): change the path, or its unit or axes (see --scale and --up)";
+      throw UserError(message.str());
+    }
+    from = to;
   }
 }
 

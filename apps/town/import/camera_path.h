@@ -18,7 +18,8 @@ class CameraPath {
   double begin() const { return knots_.front().timestamp; }  ///< seconds
   double end() const { return knots_.back().timestamp; }
   /// world_from_camera at a time, clamped to the path: positions on cubics through the knots
-  /// (Hermite, with finite differences as tangents), rotations by spherical interpolation.
+  /// (Hermite; the velocity at a knot is that of the parabola through it and its neighbours, so
+  /// Catmull and Rom's for any spacing in time), rotations by spherical interpolation.
   Rigid3 At(double time) const;
 
  private:
@@ -32,13 +33,15 @@ class CameraPath {
 /// '#' begins a comment. Throws UserError with file and line.
 CameraPath ReadCameraPath(const std::filesystem::path& file);
 
-/// Level poses that look along the way from each place to the next.
+/// Level poses that look along the way from each place to the next; where the camera stands, where
+/// it looked before, and before it first moves, where it goes then.
 std::vector<StampedPose> LookAhead(const std::vector<double>& times,
                                    const std::vector<Eigen::Vector3d>& positions);
 
-/// Makes sure that no surface lies between the places of neighbouring frames. Throws UserError that
-/// names the frame and the place where one does.
-void RequireFreePath(const RayScene& scene, const std::vector<Rigid3>& world_from_camera);
+/// Makes sure that a path meets no surface until `end`, in seconds of its own time, looking ahead
+/// in steps so short that bends are followed however rare the frames are. Throws UserError that
+/// names the time and the place where it does.
+void RequireFreePath(const RayScene& scene, const CameraPath& path, double end);
 
 /// Median distance to the surface below, if it is nearly the same all along.
 std::optional<double> HeightAboveGround(const RayScene& scene,

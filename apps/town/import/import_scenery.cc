@@ -57,8 +57,11 @@ void AddMaterials(const SourceScene& source, const std::vector<std::filesystem::
       }
       entry->second = {static_cast<uint16_t>(palette->textures.size() - 1), has_holes};
     }
-    palette->all.push_back({.texture = entry->second.texture,
-                            .cutout = entry->second.has_holes && !material.is_opaque});
+    Material& added = palette->all.emplace_back();
+    added.texture = entry->second.texture;
+    added.cutout = entry->second.has_holes && !material.is_opaque;
+    // Leaves and nets, on flat faces: light comes through from either side.
+    if (added.cutout) added.finish = Finish::kFoliage;
   }
 }
 

@@ -15,7 +15,7 @@ ImportedDrive::ImportedDrive(const ImportedSpec& spec, const CameraPath& path,
       stage_(&scenery_, MakeLight(spec.light, 0), 0) {
   std::vector<Rigid3> poses;
   for (int frame = 0; frame < frames(); ++frame) poses.push_back(WorldFromCamera(frame));
-  RequireFreePath(stage_.scene(), poses);
+  RequireFreePath(stage_.scene(), path_, path_.begin() + (frames() - 1) / fps());
   camera_height_ = HeightAboveGround(stage_.scene(), poses);
 }
 

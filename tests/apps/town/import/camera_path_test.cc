@@ -69,6 +69,25 @@ TEST_F(CameraPathTest, FollowsACircleGivenByFewPlaces) {
   }
 }
 
+TEST_F(CameraPathTest, FollowsAThrownBallExactlyHoweverUnevenlyItIsGiven) {
+  const auto ball = [](double t) { return Eigen::Vector3d(3 * t, 1 - t, 8 * t - 4.9 * t * t); };
+  std::vector<StampedPose> knots;
+  for (const double t : {0.0, 0.4, 0.5, 1.1, 1.2, 2.0, 2.3})
+    knots.push_back({t, {Eigen::Quaterniond::Identity(), ball(t)}});
+  const CameraPath path(knots);
+  for (double t = 0.4; t < 2.0; t += 0.01)
+    EXPECT_TRUE(path.At(t).translation.isApprox(ball(t), 1e-9)) << t;
+}
+
+TEST_F(CameraPathTest, LooksWhereItWillGoBeforeItStarts) {
+  const CameraPath path = Read("0 0 0 2\n1 0 0 2\n2 0 0 2\n3 0 5 2\n4 0 5 2\n5 0 5 2\n");
+  for (double t = 0; t <= 5; t += 0.1) {
+    EXPECT_TRUE(
+        (path.At(t).rotation * -Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitY(), 1e-9))
+        << t;
+  }
+}
+
 TEST_F(CameraPathTest, ReadsPosesWithRotationsAsTrajectoriesAreWritten) {
   const CameraPath path = Read("0 1 2 3 0 0 0 1\n1 1 2 4 0 0 0 1\n");
   // An optical camera in the world's axes looks along +z: -x of ours.
@@ -110,15 +129,24 @@ std::vector<Rigid3> Walk(double y) {
   return poses;
 }
 
-TEST(RequireFreePath, StopsAtAWallAndSaysWhere) {
+CameraPath Timed(const std::vector<Rigid3>& poses, double step) {
+  std::vector<StampedPose> knots;
+  for (size_t i = 0; i < poses.size(); ++i)
+    knots.push_back({step * static_cast<double>(i), poses[i]});
+  return CameraPath(knots);
+}
+
+TEST(RequireFreePath, StopsAtAWallAndSaysWhenAndWhere) {
   const FloorAndWall world;
   const RayScene scene = world.Scene();
-  EXPECT_NO_THROW(RequireFreePath(scene, Walk(3)));
+  EXPECT_NO_THROW(RequireFreePath(scene, Timed(Walk(3), 0.1), 9.9));
+  const CameraPath through = Timed(Walk(0.5), 0.1);  // at the wall after five seconds
+  EXPECT_NO_THROW(RequireFreePath(scene, through, 4.9));
   try {
-    RequireFreePath(scene, Walk(0.5));
+    RequireFreePath(scene, through, 9.9);
     FAIL() << "went through the wall";
   } catch (const UserError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("through a surface between frames"));
+    EXPECT_THAT(error.what(), HasSubstr("through a surface at time 4.9"));
     EXPECT_THAT(error.what(), HasSubstr("0.5, 1.7)"));
   }
 }

@@ -87,6 +87,10 @@ TEST_F(SgiImageTest, NoTruncatedOrAlteredFileIsReadBeyondItsEnd) {
   std::string packed = Header(true, 1) + std::string(16, '\x7f');  // rows far beyond the end
   Write(packed);
   EXPECT_THROW(Read(), UserError);
+  packed = Header(true, 4) + std::string(16, '\0');
+  packed.replace(6, 4, "\xff\xff\xff\xff");  // 65535 x 65535 pixels
+  Write(packed);
+  EXPECT_THROW(Read(), UserError);
   packed = good;
   packed[0] = 7;
   Write(packed);
