@@ -7,12 +7,14 @@
 
 namespace orb360 {
 
-/// Larger windows and more iterations took longer without lowering the error of trajectories.
+/// The scale of a street drive drifts the less the larger the window is: 340 frames from four places
+/// of Town2 at 1024x512 drift by 1.2 % with windows of 6 and 8, 0.8 % with 10 and 16, 0.7 % with 20
+/// and 30, which take longest.
 struct LocalBundleOptions {
   /// Keyframes that move: the newest and those that share most landmarks with it.
-  int max_keyframes = 6;
+  int max_keyframes = 10;
   /// Keyframes beyond, which see the same landmarks and hold them in place.
-  int max_fixed_keyframes = 8;
+  int max_fixed_keyframes = 16;
   /// Landmarks that a keyframe must share with the newest to move.
   int min_shared = 15;
   int max_iterations = 4;

@@ -16,7 +16,7 @@ struct MapperOptions {
   double redundant_share = 0.9;
   /// Landmarks younger than this many keyframes are on probation: seen again by then, and found in
   /// a quarter of the frames that should show them, or removed.
-  int probation_keyframes = 2;
+  int probation_keyframes = 3;
   double min_found_share = 0.25;
 };
 

@@ -20,7 +20,7 @@ struct TriangulationOptions {
   double min_parallax_sigmas = 3.0;
   double max_parallax = 1.0;
   /// Ratio of ranges over ratio of feature scales that a match of the same patch may have.
-  double max_scale_ratio = 1.6;
+  double max_scale_ratio = 1.3;
   int max_distance = 50;  // differing bits
   double ratio = 0.85;
 };
