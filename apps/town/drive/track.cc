@@ -10,8 +10,11 @@ Track EmptyTrack(const Footprint& footprint) {
   constexpr double kAir = 0.22;  // metres around the outline's sides
   Track track;
   track.radius = 0.5 * footprint.width + kAir;
-  const double last = std::max(0.0, 0.5 * footprint.length - 0.65 * track.radius);
-  const int gaps = 2 * static_cast<int>(std::ceil(last / (1.6 * track.radius)));
+  // A disc covers the outline's sides for so many metres before and behind its middle.
+  const double covered =
+      std::sqrt(track.radius * track.radius - 0.25 * footprint.width * footprint.width);
+  const double last = std::max(0.0, 0.5 * footprint.length - covered);
+  const int gaps = 2 * static_cast<int>(std::ceil(0.5 * last / covered));
   for (int i = 0; i <= gaps; ++i)
     track.discs.push_back(gaps == 0 ? 0 : last * (2.0 * i / gaps - 1));
   return track;
@@ -64,7 +67,7 @@ std::optional<int> FirstMeeting(const Track& a, const Track& b, int first, int e
 std::optional<std::vector<Pass>> FindPasses(const Ride& ride, const Footprint& footprint,
                                             const std::vector<const Track*>& others,
                                             const Moments& moments) {
-  constexpr double kLongest = 75;       // metres beside another
+  constexpr double kLongest = 100;      // metres beside another
   constexpr double kSameWay = 0.7;      // least cosine between headings
   constexpr double kBehindAhead = 1.5;  // metres between bumpers when all out
   constexpr double kAir = 0.1;          // metres besides the discs' own

@@ -15,6 +15,7 @@ namespace {
 
 /// How often one tries to fit something in before leaving it out.
 constexpr int kTries = 12;
+constexpr int kFastTries = 40;  // who overtakes needs a clear road more often
 
 /// Whether a lap runs straight on, far from junctions, about a station.
 bool IsOpenRoad(const StreetPlan& plan, const Lap& lap, double station) {
@@ -40,7 +41,7 @@ class Dispatcher {
     const int slots = static_cast<int>(std::lround(seconds / every + 0.5));
     for (int slot = 0; slot < slots; ++slot) {
       if (!random_.Chance(density_)) continue;
-      for (int i = 0; i < kTries; ++i) {
+      for (int i = 0; i < (pace == Pace::kFast ? kFastTries : kTries); ++i) {
         Mover mover = Draw(lap, pace);
         const double time = random_.Uniform(planner_->moments().from, planner_->moments().until);
         const double distance = planner_->own().DistanceAt(time);

@@ -148,15 +148,19 @@ TEST(Traffic, TheCameraPassesCyclistsAndIsOvertakenAtArmsLength) {
 TEST(Traffic, SomeVehiclesDriveOnStreetsThatTheTourDoesNotUse) {
   for (uint64_t seed = 0; seed < 3; ++seed) {
     const Busy& busy = BusyTown(seed);
-    const bool is_any_elsewhere = std::any_of(
-        busy.traffic->movers().begin(), busy.traffic->movers().end(), [&](const Mover& mover) {
-          const Vector2d p = mover.ride.PoseAt(5).position;
-          for (double s = 0; s < busy.lap->length(); s += 2) {
-            if ((busy.lap->PoseAt(s).position - p).norm() < 25) return false;
-          }
-          return true;
-        });
-    EXPECT_TRUE(is_any_elsewhere) << "seed " << seed;
+    const auto is_elsewhere = [&](const Mover& mover, double time) {
+      const Vector2d p = mover.ride.PlaceAt(time).position;
+      for (double s = 0; s < busy.lap->length(); s += 2) {
+        if ((busy.lap->PlaceAt(s).position - p).norm() < 18) return false;
+      }
+      return true;
+    };
+    int elsewhere = 0;
+    for (const Mover& mover : busy.traffic->movers()) {
+      for (double time = 0; time < busy.until; time += 4)
+        elsewhere += is_elsewhere(mover, time) ? 1 : 0;
+    }
+    EXPECT_GT(elsewhere, 5) << "seed " << seed;
   }
 }
 
@@ -185,16 +189,6 @@ TEST(Traffic, IsAFunctionOfTime) {
     EXPECT_EQ(first[i].world_from_model.matrix(), from_scratch[i].world_from_model.matrix());
     EXPECT_EQ(first[i].model, from_scratch[i].model);
   }
-}
-
-TEST(Ride, SwervesSmoothlyAndComesBackToItsLine) {
-  const Busy& busy = BusyTown(0);
-  Ride ride{.lap = busy.lap.get(), .passes = {{60, 80, 2.5}}};
-  EXPECT_EQ(ride.LeftAt(30), 0);
-  EXPECT_EQ(ride.LeftAt(70), 2.5);
-  EXPECT_EQ(ride.LeftAt(120), 0);
-  for (double s = 30; s < 120; s += 0.5)
-    EXPECT_LT(std::abs(ride.LeftAt(s + 0.5) - ride.LeftAt(s)), 0.15) << s;
 }
 
 }  // namespace

@@ -60,5 +60,29 @@ TEST(PlanTour, ComesBackInTheOppositeDirection) {
   }
 }
 
+TEST(PlanOtherTours, CirclesEachUseALegThatTheTourDoesNot) {
+  for (uint64_t seed = 0; seed < 20; ++seed) {
+    const std::vector<size_t> tour = PlanTour({4, 3, 3}, Random(seed));
+    const auto legs = [](const std::vector<size_t>& walk) {
+      std::set<std::pair<size_t, size_t>> result;
+      for (size_t i = 0; i < walk.size(); ++i) result.emplace(walk[i], walk[(i + 1) % walk.size()]);
+      return result;
+    };
+    const auto used = legs(tour);
+    const auto others = PlanOtherTours(tour, 4, 3, Random(seed));
+    EXPECT_GE(others.size(), 3U);
+    for (const std::vector<size_t>& other : others) {
+      int unused = 0;
+      for (const auto& [a, b] : legs(other)) {
+        unused += used.contains({a, b}) ? 0 : 1;
+        const int columns = std::abs(static_cast<int>(a % 4) - static_cast<int>(b % 4));
+        const int rows = std::abs(static_cast<int>(a / 4) - static_cast<int>(b / 4));
+        EXPECT_EQ(columns + rows, 1);
+      }
+      EXPECT_GE(unused, 1);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace orb360::town

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "apps/town/image/random.h"
+#include "apps/town/world/town.h"
+
+namespace orb360::town {
+
+/// Models to plant with.
+struct Plants {
+  std::span<const uint32_t> trees;
+  std::span<const uint32_t> hedges;  ///< pieces, a metre long
+  uint32_t bench = 0;
+};
+
+/// Trees in a row on medians; a tree within a ring of hedge on the islands of roundabouts.
+void PlantIslands(const Plants& plants, Random random, Town* town);
+
+/// Trees on the lawn, a hedge along the pavements but at the gates, benches about the centre.
+void PlantParks(const Plants& plants, Random random, Town* town);
+
+}  // namespace orb360::town
