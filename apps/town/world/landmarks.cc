@@ -20,8 +20,9 @@ void AddParkPaths(const StreetPlan& plan, const Park& park, MeshBuilder& builder
   for (const Vector2d& gate : park.gates) {
     const Vector2d along = (gate - park.centre).normalized();
     const Vector2d left = kPathHalfWidth * Vector2d(-along.y(), along.x());
-    for (double s = kParkCircle - 0.4; s < (gate - park.centre).norm(); s += kPiece) {
-      const Vector2d a = park.centre + s * along;
+    const int pieces = static_cast<int>((gate - park.centre).norm() / kPiece);
+    for (int i = 0; i < pieces; ++i) {
+      const Vector2d a = park.centre + (kParkCircle - 0.4 + kPiece * i) * along;
       const Vector2d b = a + kPiece * along;
       if (plan.DistanceToRoad(b) < plan.PavementAt(b) - 0.3) break;
       builder.AddGroundPolygon(
@@ -89,8 +90,11 @@ void AddBridge(const StreetPlan& plan, const Bridge& bridge, MeshBuilder& builde
     builder.set_tint({0.2F, 0.27F, 0.23F, 1});
     builder.AddBox(m.metal, front, -opening, opening, deck, deck + kGirder, -0.35F, 0.06F);
     constexpr float kRib = 1.5F;  // metres between stiffeners
-    for (float x = -opening + 0.5F * kRib; x < opening; x += kRib)
+    const int ribs = static_cast<int>(2 * opening / kRib);
+    for (int i = 0; i < ribs; ++i) {
+      const float x = -opening + (static_cast<float>(i) + 0.5F) * kRib;
       builder.AddBox(m.metal, front, x - 0.05F, x + 0.05F, deck, deck + kGirder, 0, 0.16F);
+    }
     builder.set_tint({1, 1, 1, 1});
     builder.AddBox(m.ashlar, front, -reach, reach, deck + kGirder, deck + kGirder + 0.25F, -0.5F,
                    0.2F);
@@ -107,7 +111,9 @@ void AddBridge(const StreetPlan& plan, const Bridge& bridge, MeshBuilder& builde
   builder.set_tint({0.45F, 0.45F, 0.44F, 1});
   builder.AddFace(m.concrete, corner(-w, opening, deck + 0.3F), corner(w, opening, deck + 0.3F),
                   corner(w, -opening, deck + 0.3F), corner(-w, -opening, deck + 0.3F));
-  for (float x = -w + 1; x < w; x += 1.6F) {
+  constexpr float kBeams = 1.6F;  // metres between beams
+  for (int i = 0; i < static_cast<int>((2 * w - 1) / kBeams); ++i) {
+    const float x = -w + 1 + kBeams * static_cast<float>(i);
     const Panel beam{corner(x, 0, deck), left, up, along};
     builder.AddBox(m.metal, beam, -opening, opening, 0, 0.3F, -0.2F, 0.0F);
   }

@@ -47,6 +47,7 @@ void AddRoundabout(Random random, StreetPlan* plan) {
 void AddMedians(StreetPlan* plan) {
   constexpr double kClearance = 6;  // metres from other carriageways, for those who turn
   constexpr double kShortest = 6;
+  constexpr double kSpacing = 2;  // metres between the points of a spine
   for (size_t index = 0; index < plan->streets.size(); ++index) {
     const Street& street = plan->streets[index];
     if (!IsAvenue(street)) continue;
@@ -56,7 +57,9 @@ void AddMedians(StreetPlan* plan) {
       median.spine.clear();
       median.length = 0;
     };
-    for (double s = 4; s < street.Length() - 4; s += 2) {
+    const int points = static_cast<int>((street.Length() - 8) / kSpacing);
+    for (int i = 0; i < points; ++i) {
+      const double s = 4 + kSpacing * i;
       const Vector2d p = street.At(s).position;
       if (plan->DistanceToOtherRoads(p, index) < kClearance + street.median) {
         finish();
@@ -76,12 +79,11 @@ void AddPark(int columns, int rows, Random random, StreetPlan* plan) {
   for (int row = 0; row + 1 < rows; ++row) {
     for (int column = 0; column + 1 < columns; ++column) {
       const auto on_tour = [&](size_t junction) {
-        return std::find(plan->tour.begin(), plan->tour.end(), junction) != plan->tour.end();
+        return std::find(plan->tour.begin(), plan->tour.end(), junction) != plan->tour.end() ? 1
+                                                                                             : 0;
       };
-      const int corners = static_cast<int>(on_tour(node(column, row))) +
-                          static_cast<int>(on_tour(node(column + 1, row))) +
-                          static_cast<int>(on_tour(node(column, row + 1))) +
-                          static_cast<int>(on_tour(node(column + 1, row + 1)));
+      const int corners = on_tour(node(column, row)) + on_tour(node(column + 1, row)) +
+                          on_tour(node(column, row + 1)) + on_tour(node(column + 1, row + 1));
       if (corners >= 2) blocks.emplace_back(column, row);
     }
   }

@@ -77,9 +77,10 @@ void PlantParks(const Plants& plants, Random random, Town* town) {
     const auto behind = [&](const Vector2d& p) {
       return plan.DistanceToRoad(p) - plan.PavementAt(p) - kHedge;
     };
-    for (double y = low.y(); y < high.y(); y += kSpacing) {
-      for (double x = low.x(); x < high.x(); x += kSpacing) {
-        const Vector2d p(x, y);
+    const Eigen::Vector2i cells = ((high - low) / kSpacing).cast<int>();
+    for (int row = 0; row <= cells.y(); ++row) {
+      for (int column = 0; column <= cells.x(); ++column) {
+        const Vector2d p = low + kSpacing * Vector2d(column, row);
         if (!park.Contains(p)) continue;
         const double distance = behind(p);
         if (std::abs(distance) > 0.5 * kSpacing || path_distance(p) < 0.8) continue;
