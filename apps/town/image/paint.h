@@ -41,10 +41,20 @@ Texture PaintRoom(uint32_t seed);
 Texture PaintShop(uint32_t seed);
 /// A panelled or glazed door.
 Texture PaintDoor(uint32_t seed);
-/// A fascia board with a name on it; 4:1.
-Texture PaintSign(uint32_t seed);
 /// Vertical-bar railing, a cut-out; 1 m x 1 m.
 Texture PaintRailing(uint32_t seed);
+
+// --- signs: the unit tile is the whole picture ---
+/// A fascia board with a name on it; 4:1.
+Texture PaintSign(uint32_t seed);
+/// A car's number plate; 4:1.
+Texture PaintNumberPlate(uint32_t seed);
+/// A bill with a picture, a headline and small print; 1:2.
+Texture PaintPoster(uint32_t seed);
+/// An enamel plate with one or two digits; square.
+Texture PaintHouseNumber(uint32_t seed);
+/// A faded advertisement painted on a wall, a cut-out where it has flaked off; square.
+Texture PaintMural(uint32_t seed);
 
 // --- plants ---
 /// A spray of leaves on a twig, a cut-out.

@@ -20,28 +20,22 @@ float Cracks(float x, float y, int frequency, float width, uint32_t seed) {
 }  // namespace
 
 Texture PaintAsphalt(uint32_t seed) {
-  return Texture::Paint(1024, [seed](float x, float y) {
-    // Stones of the aggregate, 1.5-3 cm apart, lighter than the bitumen around them.
-    const Cell stone = TiledCells(x, y, 320, seed);
-    const float stone_shade = static_cast<float>(stone.id & 255U) / 255;
-    float value = 0.085F + 0.06F * (1 - SmoothStep(0.2F, 0.6F, stone.nearest)) * stone_shade;
-    value *= 1 + 0.22F * TiledFbm(x, y, 3, 7, seed + 10, 0.65F);
-    // Mended patches: darker, smoother, with a tar edge.
-    const Cell patch = TiledCells(x, y, 4, seed + 20);
-    if (patch.id % 5 == 0) {
-      const float inside = patch.second - patch.nearest;
-      if (inside > 0.12F) value = std::lerp(value, 0.055F, 0.55F);
-      if (inside > 0.09F && inside < 0.13F) value *= 0.55F;
-    }
+  constexpr int kSize = 1024;
+  return Texture::Paint(kSize, [seed](float x, float y) {
+    // Stones of the aggregate: a texel (8 mm) is about one of them.
+    const float stone =
+        LatticeValue(static_cast<int>(x * kSize), static_cast<int>(y * kSize), seed);
+    float value = 0.062F + 0.034F * stone * stone;
+    value *= 1 + 0.2F * TiledFbm(x, y, 3, 7, seed + 10, 0.65F);
     const float wear = SmoothStep(-0.1F, 0.5F, TiledFbm(x, y, 2, 3, seed + 30));
-    value *= 1 - 0.75F * wear * Cracks(x, y, 6, 0.022F, seed + 40);
+    value *= 1 - 0.7F * wear * Cracks(x, y, 6, 0.018F, seed + 40);
     value *= 1 - 0.35F * Cracks(x, y, 24, 0.03F, seed + 50) *
                      SmoothStep(0.3F, 0.8F, TiledFbm(x, y, 2, 3, seed + 60));
     // Oil drips and chewing gum.
     const Cell spot = TiledCells(x, y, 22, seed + 70);
-    const float spot_radius = 0.05F + 0.15F * static_cast<float>(spot.id >> 8 & 255U) / 255;
-    if (spot.id % 3 == 0)
-      value *= 1 - 0.4F * (1 - SmoothStep(0.4F * spot_radius, spot_radius, spot.nearest));
+    const float spot_radius = 0.04F + 0.12F * static_cast<float>(spot.id >> 8 & 255U) / 255;
+    if (spot.id % 4 == 0)
+      value *= 1 - 0.3F * (1 - SmoothStep(0.3F * spot_radius, spot_radius, spot.nearest));
     const float tone = 0.03F * TiledFbm(x, y, 2, 4, seed + 80);
     return Rgba{value * (1.02F + tone), value, value * (0.97F - tone), 1};
   });
@@ -57,7 +51,7 @@ Texture PaintPavingSlabs(uint32_t seed) {
     const float v = y * kRows - static_cast<float>(row);
     const float edge = std::min(std::min(u, 1 - u), std::min(v, 1 - v));
     const float shade = LatticeValue(column, row, seed);
-    float value = 0.27F * (0.78F + 0.35F * shade);
+    float value = 0.23F * (0.82F + 0.28F * shade);
     value *= 1 + 0.10F * TiledFbm(x, y, 128, 3, seed + 1, 0.8F) +
              0.14F * TiledFbm(x, y, 5, 6, seed + 2, 0.6F);
     if (LatticeValue(column, row, seed + 3) > 0.9F) {
@@ -106,22 +100,31 @@ Texture PaintConcrete(uint32_t seed) {
 
 Texture PaintGrass(uint32_t seed) {
   return Texture::Paint(512, [seed](float x, float y) {
-    const float blades = TiledFbm(x, y, 160, 2, seed, 0.9F);
+    // Blades lie in all directions: noise stretched along x and along y.
+    const float blades = std::max(TiledFbm(x, 0.25F * y, 128, 2, seed, 0.9F),
+                                  TiledFbm(0.25F * x, y, 128, 2, seed + 9, 0.9F));
     const float clumps = TiledFbm(x, y, 12, 5, seed + 1, 0.65F);
-    const float dry = SmoothStep(0.1F, 0.9F, TiledFbm(x, y, 3, 5, seed + 2));
-    const Rgba green = Mix(Srgb(52, 78, 28), Srgb(98, 120, 48), 0.5F + 0.5F * clumps);
-    const Rgba colour = Mix(green, Srgb(140, 130, 82), 0.6F * dry);
-    return std::max(0.15F, 1 + 0.4F * blades + 0.2F * clumps) * colour;
+    const float dry = SmoothStep(0.0F, 1.0F, TiledFbm(x, y, 3, 6, seed + 2, 0.6F));
+    const Rgba green = Mix(Srgb(48, 66, 30), Srgb(88, 100, 52), 0.5F + 0.5F * clumps);
+    Rgba colour = Mix(green, Srgb(128, 120, 82), 0.7F * dry);
+    const float bare = SmoothStep(0.75F, 1.0F, TiledFbm(x, y, 4, 6, seed + 3, 0.6F));
+    colour = Mix(colour, Srgb(96, 82, 64), 0.8F * bare);
+    // Daisies, clover and fallen leaves.
+    const Cell speck = TiledCells(x, y, 48, seed + 4);
+    if (speck.id % 11 == 0 && speck.nearest < 0.16F)
+      return speck.id % 2 == 0 ? Srgb(196, 192, 170) : Srgb(120, 88, 44);
+    return std::max(0.2F, 0.85F + 0.45F * blades + 0.2F * clumps) * colour;
   });
 }
 
 Texture PaintRoadPaint(uint32_t seed) {
   return Texture::Paint(512, [seed](float x, float y) {
     const float wear = TiledFbm(x, y, 6, 7, seed, 0.75F);
-    const float value =
-        0.62F * (1 + 0.12F * TiledFbm(x, y, 20, 4, seed + 1)) - 0.18F * SmoothStep(0, 1, wear);
+    const float grime = SmoothStep(-0.6F, 1.0F, TiledFbm(x, y, 3, 6, seed + 3, 0.65F));
+    const float value = (0.5F - 0.2F * grime) * (1 + 0.1F * TiledFbm(x, y, 60, 3, seed + 1, 0.8F)) -
+                        0.14F * SmoothStep(0, 1, wear);
     const float cracked = Cracks(x, y, 10, 0.03F, seed + 2);
-    return Rgba{value, value, value * 0.96F, wear + 0.8F * cracked > 0.75F ? 0.0F : 1.0F};
+    return Rgba{value, value * 0.99F, value * 0.94F, wear + 0.8F * cracked > 0.7F ? 0.0F : 1.0F};
   });
 }
 

@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
-
-#include <opencv2/imgproc.hpp>
+#include <span>
 
 #include "apps/town/image/noise.h"
 #include "apps/town/image/paint.h"
@@ -20,68 +18,67 @@ Rgba RandomColour(Random& random, float low, float high) {
   return {r, g, b, 1};
 }
 
-/// A made-up name of two to four syllables.
-std::string RandomName(Random& random) {
-  static constexpr std::array<const char*, 24> kSyllables = {
-      "BA",  "LO", "MER", "TIN", "CA", "FE",  "RO",  "SA",  "VEN", "DO", "LI",  "KA",
-      "NOR", "PE", "TRA", "MI",  "GU", "SOL", "BER", "HAN", "ZU",  "EL", "MAR", "OS"};
-  static constexpr std::array<const char*, 14> kTrades = {
-      "",      "",      "BAR",   "CAFE",  "MODE",     "BANK",   "HOTEL",
-      "OPTIK", "PIZZA", "BOOKS", "SHOES", "APOTHEKE", "& SONS", "MARKET"};
-  std::string name;
-  const int syllables = 2 + random.Int(2);
-  for (int i = 0; i < syllables; ++i) name += kSyllables[static_cast<size_t>(random.Int(24))];
-  const std::string trade = kTrades[static_cast<size_t>(random.Int(14))];
-  return trade.empty() ? name : name + " " + trade;
-}
-
-/// An 8-bit sRGB picture, its first row at the top, as a texture.
-Texture FromPicture(const cv::Mat& picture) {
-  std::vector<Rgba> texels;
-  texels.reserve(picture.total());
-  for (int y = picture.rows - 1; y >= 0; --y) {
-    for (int x = 0; x < picture.cols; ++x) {
-      const auto& c = picture.at<cv::Vec3b>(y, x);
-      texels.push_back(Srgb(c[2], c[1], c[0]));
-    }
-  }
-  return Texture(picture.cols, picture.rows, std::move(texels));
-}
-
 }  // namespace
 
 Texture PaintRoom(uint32_t seed) {
   Random random(seed);
-  const int kind = random.Int(5);
-  const Rgba wall = 0.35F * RandomColour(random, 0.25F, 0.7F);
-  const Rgba curtain = RandomColour(random, 0.35F, 0.85F);
-  const float open = static_cast<float>(random.Uniform(0.15, 0.42));
-  const float drop = static_cast<float>(random.Uniform(0.1, 0.9));
-  const float lamp_x = static_cast<float>(random.Uniform(0.3, 0.7));
-  const bool plant = random.Chance(0.3);
-  const int folds = 10 + random.Int(8);
+  enum Dressing { kBare, kCurtains, kOneCurtain, kBlind, kNet, kRollerBlind, kCafeCurtain };
+  static constexpr std::array<Dressing, 10> kDressings = {
+      kBare,  kBare, kCurtains, kCurtains,    kOneCurtain,
+      kBlind, kNet,  kNet,      kRollerBlind, kCafeCurtain};
+  const Dressing dressing = random.Pick(std::span<const Dressing>(kDressings));
+  const Rgba wall = 0.3F * RandomColour(random, 0.25F, 0.7F);
+  const bool pale = random.Chance(0.6);
+  const Rgba curtain = RandomColour(random, pale ? 0.6F : 0.15F, pale ? 0.85F : 0.6F);
+  const auto open = static_cast<float>(random.Uniform(0.12, 0.4));
+  const auto drop = static_cast<float>(random.Uniform(0.15, 0.95));
+  const auto lamp_x = static_cast<float>(random.Uniform(0.25, 0.75));
+  const bool lamp = random.Chance(0.25);
+  const bool plant = random.Chance(0.35);
+  const auto plant_x = static_cast<float>(random.Uniform(0.2, 0.8));
+  const bool shelf = random.Chance(0.4);
+  const bool picture = random.Chance(0.4);
+  const float folds = static_cast<float>(9 + random.Int(9));
   return Texture::Paint(128, [=](float x, float y) {
-    // The room darkens with depth; a lamp and the far wall show faintly.
-    Rgba colour = (0.25F + 0.5F * y + 0.15F * TiledFbm(x, y, 3, 4, seed)) * (0.35F * wall);
-    const float lamp = std::hypot(x - lamp_x, 1.4F * (y - 0.72F));
-    colour = Mix({0.55F, 0.42F, 0.25F, 1}, colour, SmoothStep(0.03F, 0.12F, lamp));
+    // The room darkens with depth; what stands at the far wall shows faintly.
+    const float far = 0.2F + 0.5F * y + 0.12F * TiledFbm(x, y, 3, 4, seed);
+    Rgba colour = (0.35F * far) * wall;
+    if (y > 0.86F) colour = (0.5F * (1.6F - y)) * Rgba{0.3F, 0.29F, 0.27F, 1};  // the ceiling
+    if (picture && std::abs(x - 0.62F) < 0.1F && std::abs(y - 0.6F) < 0.11F)
+      colour = 0.08F * Rgba{0.9F, 0.8F * x, 0.6F * y, 1};
+    if (shelf && x < 0.34F && y < 0.62F) {
+      const int book = static_cast<int>(x * 60);
+      const int board = static_cast<int>(y * 8);
+      colour = (0.05F + 0.1F * LatticeValue(book, board, seed + 4)) *
+               Rgba{0.9F, 0.4F + 0.5F * LatticeValue(book, board, seed + 5), 0.4F, 1};
+    }
+    if (lamp) {
+      const float glow = std::hypot(x - lamp_x, 1.4F * (y - 0.72F));
+      colour = Mix({0.75F, 0.55F, 0.3F, 1}, colour, SmoothStep(0.03F, 0.09F, glow));
+    }
     if (plant) {
-      const float leaf = std::hypot(x - 0.5F, y - 0.16F) + 0.12F * TiledFbm(x, y, 10, 3, seed + 1);
-      if (leaf < 0.17F)
+      const float leaf =
+          std::hypot(x - plant_x, y - 0.15F) + 0.12F * TiledFbm(x, y, 10, 3, seed + 1);
+      if (leaf < 0.15F)
         colour =
-            (0.5F + 0.5F * LatticeValue(static_cast<int>(x * 40), static_cast<int>(y * 40), seed)) *
-            Srgb(60, 90, 40);
+            (0.3F + 0.6F * LatticeValue(static_cast<int>(x * 40), static_cast<int>(y * 40), seed)) *
+            Srgb(58, 84, 42);
     }
-    const float fold = 0.75F + 0.25F * std::sin(x * 6.2831853F * static_cast<float>(folds) +
-                                                2 * TiledFbm(x, y, 3, 2, seed + 2));
-    if (kind <= 1 && (x < open || x > 1 - open)) {
-      colour = (fold * (0.5F + 0.3F * y)) * curtain;
-    } else if (kind == 2 && y > 1 - drop) {
+    const float fold =
+        0.72F + 0.28F * std::sin(x * 6.2831853F * folds + 2.5F * TiledFbm(x, y, 3, 3, seed + 2));
+    const float cloth = fold * (0.35F + 0.35F * y);
+    const bool in_curtain = (dressing == kCurtains && (x < open || x > 1 - open)) ||
+                            (dressing == kOneCurtain && x < 1.6F * open) ||
+                            (dressing == kCafeCurtain && y < 0.5F);
+    if (in_curtain) return cloth * curtain;
+    if (dressing == kBlind && y > 1 - drop) {
       const float slat = y * 26 - std::floor(y * 26);
-      colour = (0.3F + 0.35F * slat) * curtain;
-    } else if (kind == 3) {
-      colour = Mix(colour, (0.55F + 0.25F * fold) * Rgba{0.75F, 0.74F, 0.7F, 1}, 0.55F);
+      return slat < 0.12F ? 0.3F * colour : (0.28F + 0.3F * slat) * curtain;
     }
+    if (dressing == kRollerBlind && y > 1 - drop)
+      return (y < 1.04F - drop ? 0.35F : 0.55F + 0.06F * TiledFbm(x, y, 8, 3, seed + 3)) * curtain;
+    if (dressing == kNet)
+      return Mix(colour, (0.3F + 0.3F * fold) * Rgba{0.8F, 0.79F, 0.75F, 1}, 0.6F);
     return colour;
   });
 }
@@ -114,7 +111,7 @@ Texture PaintShop(uint32_t seed) {
       if (LatticeValue(column * 8 + label, shelf, seed + 6) > 0.65F)
         colour = Mix(colour, {0.8F, 0.8F, 0.75F, 1}, 0.7F);
     }
-    return (0.65F + 0.15F * TiledFbm(x, y, 4, 5, seed + 7)) * colour;
+    return (0.5F + 0.15F * TiledFbm(x, y, 4, 5, seed + 7)) * colour;
   });
 }
 
@@ -133,34 +130,6 @@ Texture PaintDoor(uint32_t seed) {
     if (std::hypot(x - 0.9F, 1.5F * (y - 0.46F)) < 0.035F) return Rgba{0.6F, 0.52F, 0.3F, 1};
     return value * paint;
   });
-}
-
-Texture PaintSign(uint32_t seed) {
-  Random random(seed);
-  const bool dark = random.Chance(0.6);
-  const auto channel = [&](bool low) { return random.Uniform(low ? 10 : 170, low ? 110 : 255); };
-  const auto colour = [&](bool low) {
-    const double b = channel(low);
-    const double g = channel(low);
-    const double r = channel(low);
-    return cv::Scalar(b, g, r);
-  };
-  const cv::Scalar board = colour(dark);
-  const cv::Scalar ink = colour(!dark);
-  cv::Mat picture(128, 512, CV_8UC3, board);
-  const std::string name = RandomName(random);
-  static constexpr std::array<int, 4> kFonts = {cv::FONT_HERSHEY_DUPLEX, cv::FONT_HERSHEY_TRIPLEX,
-                                                cv::FONT_HERSHEY_COMPLEX, cv::FONT_HERSHEY_SIMPLEX};
-  const int font = kFonts[static_cast<size_t>(random.Int(4))];
-  const int thickness = 3 + random.Int(4);
-  int baseline = 0;
-  const cv::Size unit = cv::getTextSize(name, font, 1.0, thickness, &baseline);
-  const double scale = std::min(440.0 / unit.width, 62.0 / unit.height);
-  const cv::Size size = cv::getTextSize(name, font, scale, thickness, &baseline);
-  cv::putText(picture, name, {(512 - size.width) / 2, (128 + size.height) / 2}, font, scale, ink,
-              thickness, cv::LINE_AA);
-  if (random.Chance(0.5)) cv::rectangle(picture, {6, 6}, {505, 121}, ink, 3, cv::LINE_AA);
-  return FromPicture(picture);
 }
 
 Texture PaintRailing(uint32_t seed) {

@@ -30,17 +30,17 @@ Texture PaintBrick(uint32_t seed, const Rgba& brick, const Rgba& mortar) {
 
 Texture PaintPlaster(uint32_t seed) {
   return Texture::Paint(512, [seed](float x, float y) {
-    float value = 0.72F * (1 + 0.05F * TiledFbm(x, y, 120, 2, seed, 0.9F) +
-                           0.09F * TiledFbm(x, y, 2, 7, seed + 1, 0.6F));
+    float value = 0.7F * (1 + 0.06F * TiledFbm(x, y, 120, 2, seed, 0.9F) +
+                          0.08F * TiledFbm(x, y, 2, 7, seed + 1, 0.6F));
     // Streaks that rain leaves: noise stretched along y.
     const float streak = TiledFbm(x, 0.125F * y, 16, 4, seed + 2, 0.7F);
-    value *= 1 - 0.12F * SmoothStep(0.2F, 1, streak);
-    const Cell flake = TiledCells(x, y, 7, seed + 3);
-    const float hole = flake.nearest + 0.25F * TiledFbm(x, y, 16, 4, seed + 4);
-    Rgba colour{value, value * 0.985F, value * 0.95F, 1};
-    if (flake.id % 9 == 0)
-      colour = Mix(Srgb(150, 132, 112), colour, SmoothStep(0.18F, 0.22F, hole));
-    return colour;
+    value *= 1 - 0.14F * SmoothStep(0.1F, 1, streak);
+    // Where the finish was mended its edge shows as a faint ridge.
+    const float mend = TiledFbm(x, y, 3, 6, seed + 3, 0.55F);
+    if (mend > 0.62F) value *= 0.94F;
+    value *= 1 - 0.12F * (1 - SmoothStep(0.0F, 0.03F, std::abs(mend - 0.62F)));
+    const float soot = 0.03F * TiledFbm(x, y, 5, 4, seed + 5);
+    return Rgba{value * (1 + soot), value * 0.985F, value * (0.95F - soot), 1};
   });
 }
 

@@ -6,6 +6,7 @@
 namespace orb360::town {
 namespace {
 
+constexpr uint64_t kSkyline = 1;      // seed of the mirrored houses
 constexpr float kBlotchTile = 31.0F;  // metres across which the blotches repeat
 
 float Pow5(float x) { return x * x * x * x * x; }
@@ -18,7 +19,7 @@ float Level(const Texture& texture, float tiles) {
 }  // namespace
 
 Shader::Shader(const Palette& palette, const Light& light, const Sky& sky)
-    : palette_(&palette), light_(&light), sky_(&sky) {}
+    : palette_(&palette), light_(&light), sky_(&sky), surroundings_(light, sky, kSkyline) {}
 
 Surface Shader::Describe(const SurfaceHit& hit, float b, float c, const Vector3f& direction,
                          float footprint) const {
@@ -99,11 +100,7 @@ Vector3f Shader::Radiance(const Surface& surface, const Vector3f& albedo, float 
     const float base = glass ? 0.10F : 0.04F;
     const float fresnel = base + (1 - base) * Pow5(1 - std::clamp(cosine, 0.0F, 1.0F));
     const Vector3f mirrored = direction + 2 * cosine * surface.normal;
-    Vector3f reflected =
-        mirrored.z() > 0 ? sky_->Radiance(mirrored).cwiseMin(3.0F) : light_->ground;
-    // Near the horizon a street reflects the houses opposite, not the sky.
-    const float open = std::clamp(mirrored.z() * 2.2F, 0.0F, 1.0F) * surface.openness;
-    reflected = open * reflected + (1 - open) * 0.8F * light_->ground;
+    const Vector3f reflected = surroundings_.Radiance(mirrored);
     radiance = (1 - fresnel) * (glass ? 0.55F : 1.0F) * radiance + fresnel * reflected;
   } else if (surface.finish == Finish::kLamp) {
     radiance += 0.7F * colour;

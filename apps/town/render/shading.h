@@ -2,6 +2,7 @@
 
 #include "apps/town/render/ray_scene.h"
 #include "apps/town/render/sky.h"
+#include "apps/town/render/surroundings.h"
 #include "apps/town/world/scenery.h"
 
 namespace orb360::town {
@@ -44,6 +45,7 @@ class Shader {
   const Palette* palette_;
   const Light* light_;
   const Sky* sky_;
+  Surroundings surroundings_;
 };
 
 }  // namespace orb360::town

@@ -103,24 +103,29 @@ Vector3f Sky::Compute(const Vector3f& direction, const Light& light, uint32_t se
   Vector3f colour = light.zenith + to_horizon * (light.horizon - light.zenith);
   const Vector3f sun_colour = light.sun / std::max(light.sun.maxCoeff(), 1e-3F);
   const float angle = std::acos(cos_sun);
-  if (has_sun)
-    colour += sun_colour * (0.5F * std::exp(-angle * 3.0F) + 0.9F * std::exp(-angle * 16.0F));
+  if (has_sun) {
+    colour += sun_colour * (0.45F * std::exp(-angle * 3.0F) + 0.9F * std::exp(-angle * 14.0F) +
+                            4.0F * std::exp(-angle * 70.0F));
+  }
   // Clouds on a curved layer above: noise over the point where the ray meets it.
   const float distance = 1 / (height + 0.12F);
-  const float x = 0.06F * direction.x() * distance + 0.5F;
-  const float y = 0.06F * direction.y() * distance + 0.5F;
-  const auto density_at = [&](float px, float py) {
-    const float fbm = TiledFbm(px, py, 5, 7, seed, 0.58F) + 0.5F * TiledFbm(px, py, 2, 2, seed + 9);
-    return SmoothStep(1.1F - 2.2F * light.cloud_cover, 2.0F - 2.2F * light.cloud_cover,
-                      fbm + 0.35F);
+  const float x = 0.075F * direction.x() * distance + 0.5F;
+  const float y = 0.075F * direction.y() * distance + 0.5F;
+  const float threshold = 0.75F - 1.5F * light.cloud_cover;
+  const auto thickness_at = [&](float px, float py, int octaves) {
+    return TiledFbm(px, py, 7, octaves, seed, 0.6F) + 0.55F * TiledFbm(px, py, 3, 2, seed + 9) -
+           threshold;
   };
-  const float density = density_at(x, y);
-  const float toward_sun = density_at(x + 0.012F * light.to_sun.x(), y + 0.012F * light.to_sun.y());
-  const float lit =
-      std::clamp(0.75F + 0.9F * (density - toward_sun) - 0.28F * density, 0.25F, 1.2F);
-  const Vector3f white = has_sun ? Vector3f(0.55F * light.horizon + 0.62F * light.sun / 1.9F)
+  const float thickness = thickness_at(x, y, 8);
+  const float density = SmoothStep(0.0F, 0.45F, thickness);
+  // Bright where the layer thins out towards the sun, grey where it is thick.
+  const float ahead = thickness_at(x + 0.02F * light.to_sun.x(), y + 0.02F * light.to_sun.y(), 5);
+  const float lit = std::clamp(1.02F - 0.32F * SmoothStep(0.1F, 1.3F, thickness) +
+                                   0.45F * std::clamp(thickness - ahead, -0.8F, 0.8F),
+                               0.4F, 1.25F);
+  const Vector3f white = has_sun ? Vector3f(0.55F * light.horizon + 0.66F * light.sun / 1.9F)
                                  : Vector3f(1.25F * light.horizon);
-  const float thin = density * (1 - 0.6F * to_horizon);
+  const float thin = density * (1 - 0.55F * to_horizon);
   colour += thin * (lit * white - colour);
   if (has_sun)
     colour += 40 * sun_colour * (1 - SmoothStep(kSunRadius, 2 * kSunRadius, angle)) * (1 - thin);

@@ -31,7 +31,7 @@ class ToneCurve {
   }
 
  private:
-  static constexpr double kExposure = 0.85;
+  static constexpr double kExposure = 0.72;
   static constexpr float kMaximum = 8.0F;  // of radiance; the table is over its square root
 
   uint8_t Encode(float x) const {

@@ -99,8 +99,8 @@ void ParkCars(Side& side, const Street& street, const Models& models, const Town
   if (!street.parking) return;
   double s = random.Uniform(2, 8);
   while (s < street.Length() - 6) {
-    const int kind = random.Chance(0.1) ? 3 : random.Int(3);
-    const double length = VehicleLength(static_cast<VehicleKind>(kind));
+    const VehicleKind kind = DrawVehicleKind(random);
+    const double length = VehicleLength(kind);
     if (!side.Clear(s, 9) || !side.Clear(s + length, 9) || random.Chance(0.22)) {
       s += 3;
       continue;

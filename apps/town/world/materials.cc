@@ -67,7 +67,7 @@ Materials PaintMaterials(uint64_t seed) {
   m.lamp = library.Add({plain, Finish::kLamp, false, 1, 0});
   m.railing = library.Add({library.AddTexture(PaintRailing(next())), Finish::kMatte, true, 1, 0});
   m.bark = library.AddMatte(PaintBark(next()), 1, 0.3F);
-  for (int i = 0; i < 24; ++i)
+  for (int i = 0; i < 40; ++i)
     m.rooms.push_back(
         library.Add({library.AddTexture(PaintRoom(next())), Finish::kGlass, false, 1, 0}));
   for (int i = 0; i < 12; ++i)
@@ -79,6 +79,17 @@ Materials PaintMaterials(uint64_t seed) {
   for (int i = 0; i < 40; ++i)
     m.signs.push_back(
         library.Add({library.AddTexture(PaintSign(next())), Finish::kMatte, false, 1, 0.2F}));
+  for (int i = 0; i < 16; ++i)
+    m.posters.push_back(
+        library.Add({library.AddTexture(PaintPoster(next())), Finish::kMatte, false, 1, 0.2F}));
+  for (int i = 0; i < 24; ++i)
+    m.house_numbers.push_back(
+        library.Add({library.AddTexture(PaintHouseNumber(next())), Finish::kMatte, false, 1, 0}));
+  for (int i = 0; i < 6; ++i)
+    m.murals.push_back(
+        library.Add({library.AddTexture(PaintMural(next())), Finish::kMatte, true, 1, 0}));
+  m.number_plate =
+      library.Add({library.AddTexture(PaintNumberPlate(next())), Finish::kMatte, false, 1, 0});
   for (int i = 0; i < 3; ++i)
     m.leaves.push_back(
         library.Add({library.AddTexture(PaintLeaves(next())), Finish::kFoliage, true, 1, 0}));

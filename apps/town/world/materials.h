@@ -41,8 +41,10 @@ struct Materials : Palette {
   MaterialId plaster, ashlar, concrete, roof_tiles, gravel;
   MaterialId trim;   ///< painted wood or stone around openings, to be tinted
   MaterialId metal;  ///< dark painted metal
+  MaterialId number_plate;
   MaterialId railing, bark, paint, car_glass, rubber, lamp;
   std::vector<MaterialId> bricks, rooms, shops, doors, signs, leaves;
+  std::vector<MaterialId> posters, house_numbers, murals;
 };
 
 /// Paints every texture; the same materials for the same seed.
