@@ -31,6 +31,8 @@ Texture PaintPlaster(uint32_t seed);
 Texture PaintAshlar(uint32_t seed);
 /// Pantiles in rows of 0.33 m; 4 m.
 Texture PaintRoofTiles(uint32_t seed);
+/// Slates in rows of 0.22 m, grey to violet; 4 m.
+Texture PaintSlates(uint32_t seed);
 /// Gravel of a flat roof; 4 m.
 Texture PaintGravel(uint32_t seed);
 
@@ -41,6 +43,10 @@ Texture PaintRoom(uint32_t seed);
 Texture PaintShop(uint32_t seed);
 /// A panelled or glazed door.
 Texture PaintDoor(uint32_t seed);
+/// A louvred shutter, near white so that it can be tinted.
+Texture PaintLouvres(uint32_t seed);
+/// A closed shop's roller shutter with what has been sprayed on it.
+Texture PaintRollerShutter(uint32_t seed);
 /// Vertical-bar railing, a cut-out; 1 m x 1 m.
 Texture PaintRailing(uint32_t seed);
 

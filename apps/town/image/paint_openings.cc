@@ -132,6 +132,40 @@ Texture PaintDoor(uint32_t seed) {
   });
 }
 
+Texture PaintLouvres(uint32_t seed) {
+  return Texture::Paint(128, [seed](float x, float y) {
+    const float half = y < 0.5F ? 2 * y : 2 * y - 1;  // two panels
+    const bool rail = x < 0.12F || x > 0.88F || half < 0.08F || half > 0.94F;
+    const float slat = half * 18 - std::floor(half * 18);
+    const float wear = 1 + 0.08F * TiledFbm(x, y, 12, 4, seed, 0.7F);
+    const float value = wear * (rail ? 0.8F : 0.3F + 0.5F * slat);
+    return Rgba{value, value, value, 1};
+  });
+}
+
+Texture PaintRollerShutter(uint32_t seed) {
+  Random random(seed);
+  const Rgba metal = static_cast<float>(random.Uniform(0.2, 0.45)) * Rgba{1, 1, 0.97F, 1};
+  const Rgba spray = RandomColour(random, 0.05F, 0.7F);
+  const Rgba outline =
+      random.Chance(0.5) ? Rgba{0.02F, 0.02F, 0.02F, 1} : Rgba{0.8F, 0.8F, 0.8F, 1};
+  const bool sprayed = random.Chance(0.75);
+  return Texture::Paint(256, [=](float x, float y) {
+    const float slat = y * 40 - std::floor(y * 40);
+    Rgba colour = metal;
+    if (sprayed && y < 0.75F) {
+      // Fat letters, roughly: bands between the level lines of a noise.
+      const float shape =
+          TiledFbm(x, 0.6F * y, 5, 2, seed + 1) - 2.2F * std::abs(y - 0.36F) + 0.35F;
+      if (shape > 0.12F) colour = Mix(spray, {0.7F, 0.7F, 0.65F, 1}, 0.6F * y);
+      if (std::abs(shape - 0.1F) < 0.05F) colour = outline;
+    }
+    const float rust = SmoothStep(0.2F, 0.9F, TiledFbm(x, 0.5F * y, 6, 5, seed + 2));
+    return (0.55F + 0.5F * std::sin(3.14159265F * slat)) *
+           Mix(colour, Srgb(110, 70, 46), 0.35F * rust * (1 - y));
+  });
+}
+
 Texture PaintRailing(uint32_t seed) {
   return Texture::Paint(128, [seed](float x, float y) {
     const float bar = std::abs(x * 8 - std::floor(x * 8) - 0.5F);

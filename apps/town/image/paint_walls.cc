@@ -85,6 +85,25 @@ Texture PaintRoofTiles(uint32_t seed) {
   });
 }
 
+Texture PaintSlates(uint32_t seed) {
+  return Texture::Paint(512, [seed](float x, float y) {
+    constexpr int kColumns = 20;
+    constexpr int kRows = 18;
+    const int row = static_cast<int>(y * kRows);
+    const float shifted = x * kColumns + (row % 2 == 0 ? 0.0F : 0.5F);
+    const int column = static_cast<int>(shifted) % kColumns;
+    const float u = shifted - std::floor(shifted);
+    const float v = y * kRows - static_cast<float>(row);
+    const float gap = SmoothStep(0.0F, 0.06F, std::min(u, 1 - u));
+    const float overlap = SmoothStep(0, 0.1F, v) * (1 - 0.12F * v);
+    const float shade = 0.65F + 0.6F * LatticeValue(column, row, seed);
+    const float lichen = SmoothStep(0.3F, 1.0F, TiledFbm(x, y, 4, 7, seed + 1, 0.7F));
+    const Rgba stone = Mix(Srgb(84, 88, 96), Srgb(98, 88, 98), LatticeValue(column, row, seed + 2));
+    return (shade * overlap * (0.5F + 0.5F * gap) * (1 + 0.1F * TiledFbm(x, y, 80, 3, seed + 3))) *
+           Mix(stone, Srgb(120, 118, 92), 0.5F * lichen);
+  });
+}
+
 Texture PaintGravel(uint32_t seed) {
   return Texture::Paint(512, [seed](float x, float y) {
     const Cell stone = TiledCells(x, y, 110, seed);

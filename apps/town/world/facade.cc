@@ -5,191 +5,120 @@
 #include <cmath>
 #include <span>
 
+#include "apps/town/world/opening.h"
+#include "apps/town/world/shop_front.h"
+
 namespace orb360::town {
 namespace {
 
-template <typename T>
-const T& PickFrom(Random& random, const std::vector<T>& values) {
-  return random.Pick(std::span<const T>(values));
+MaterialId PickFrom(Random& random, const std::vector<MaterialId>& values) {
+  return random.Pick(std::span<const MaterialId>(values));
 }
 
-/// How far a pane stands behind the face of its frame, metres.
-constexpr float kPaneDepth = 0.03F;
+/// Factor on the tint at a wall's foot, where the street splashes it.
+constexpr float kSplash = 0.68F;
 
-/// Wall around the opening [x0, x1] x [z0, z1] inside [left, right] x [bottom, top], and the
-/// opening's four reveals.
-void AddWallWithOpening(MeshBuilder& b, MaterialId wall, const Panel& p, float left, float right,
-                        float bottom, float top, float x0, float x1, float z0, float z1,
-                        float reveal) {
-  b.AddRectangle(wall, p, left, x0, bottom, top);
-  b.AddRectangle(wall, p, x1, right, bottom, top);
-  b.AddRectangle(wall, p, x0, x1, bottom, z0);
-  b.AddRectangle(wall, p, x0, x1, z1, top);
-  reveal += kPaneDepth;
-  b.AddFace(wall, p.At(x0, z0), p.At(x0, z0, -reveal), p.At(x0, z1, -reveal), p.At(x0, z1));
-  b.AddFace(wall, p.At(x1, z0, -reveal), p.At(x1, z0), p.At(x1, z1), p.At(x1, z1, -reveal));
-  b.AddFace(wall, p.At(x0, z1, -reveal), p.At(x1, z1, -reveal), p.At(x1, z1), p.At(x0, z1));
-  b.AddFace(wall, p.At(x0, z0), p.At(x1, z0), p.At(x1, z0, -reveal), p.At(x0, z0, -reveal));
-}
-
-/// Frame with a mullion and a transom in front of a pane.
-void AddWindow(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float x0, float x1,
-               float z0, float z1, float reveal, bool divided, MaterialId pane) {
-  constexpr float kFrame = 0.065F;  // metres
-  // The pane reaches behind the frame as far as the reveals do, so that no gap is left.
-  b.set_tint({1, 1, 1, 1});
-  b.AddPicture(pane, p, x0, x1, z0, z1, -reveal - kPaneDepth);
-  b.set_tint(style.frame_tint);
+/// A bay that stands out by `out` from the wall between `left` and `right`, with a window in front
+/// and cheeks; `lowest` and `highest` close it below and above.
+void AddOriel(MeshBuilder& b, const FacadeStyle& style, const Panel& p, const WallPiece& piece,
+              const Opening& opening, bool lowest, bool highest, Random& random) {
+  constexpr float kOut = 0.55F;  // metres
+  Panel front = p;
+  front.origin += kOut * p.out;
+  AddWallWithOpening(b, style.wall, style.wall_tint, front, piece, opening, 0.5F * style.reveal);
+  AddWindow(b, style.frame_tint, front, opening, 0.5F * style.reveal, true,
+            PickFrom(random, b.materials().rooms), random);
+  AddSurround(b, style, front, opening);
+  b.set_tint(style.wall_tint);
+  const Panel left{p.At(piece.left, 0), p.out, p.up, -p.right};
+  const Panel right{p.At(piece.right, 0, kOut), -p.out, p.up, p.right};
+  for (const Panel& cheek : {left, right})
+    b.AddRectangle(style.wall, cheek, 0, kOut, piece.bottom, piece.top);
+  b.set_tint(style.trim_tint);
   const MaterialId trim = b.materials().trim;
-  b.AddRectangle(trim, p, x0, x0 + kFrame, z0, z1, -reveal);
-  b.AddRectangle(trim, p, x1 - kFrame, x1, z0, z1, -reveal);
-  b.AddRectangle(trim, p, x0 + kFrame, x1 - kFrame, z0, z0 + kFrame, -reveal);
-  b.AddRectangle(trim, p, x0 + kFrame, x1 - kFrame, z1 - kFrame, z1, -reveal);
-  if (divided) {
-    const float middle = 0.5F * (x0 + x1);
-    const float transom = z0 + 0.68F * (z1 - z0);
-    b.AddRectangle(trim, p, middle - 0.035F, middle + 0.035F, z0 + kFrame, z1 - kFrame,
-                   -reveal + 0.01F);
-    b.AddRectangle(trim, p, x0 + kFrame, x1 - kFrame, transom - 0.03F, transom + 0.03F,
-                   -reveal + 0.012F);
+  if (lowest) {
+    b.AddFace(trim, p.At(piece.left, piece.bottom), p.At(piece.right, piece.bottom),
+              p.At(piece.right, piece.bottom, kOut), p.At(piece.left, piece.bottom, kOut));
+    b.AddBox(trim, p, piece.left - 0.05F, piece.right + 0.05F, piece.bottom, piece.bottom + 0.14F,
+             0, kOut + 0.06F);
   }
-}
-
-void AddSurround(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float x0, float x1,
-                 float z0, float z1) {
-  const MaterialId trim = b.materials().trim;
-  b.set_tint(style.trim_tint);
-  b.AddBox(trim, p, x0 - 0.1F, x1 + 0.1F, z0 - 0.09F, z0, 0, 0.1F);  // sill
-  if (!style.surrounds) return;
-  b.AddBox(trim, p, x0 - 0.14F, x0, z0, z1, 0, 0.04F);
-  b.AddBox(trim, p, x1, x1 + 0.14F, z0, z1, 0, 0.04F);
-  b.AddBox(trim, p, x0 - 0.18F, x1 + 0.18F, z1, z1 + 0.18F, 0, 0.07F);
-}
-
-void AddBalcony(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float x0, float x1,
-                float z) {
-  constexpr float kDepth = 0.9F;
-  constexpr float kRail = 1.0F;
-  b.set_tint(style.trim_tint);
-  b.AddBox(b.materials().concrete, p, x0, x1, z - 0.16F, z, 0, kDepth);
-  b.set_tint({1, 1, 1, 1});
-  const MaterialId railing = b.materials().railing;
-  b.AddRectangle(railing, p, x0, x1, z, z + kRail, kDepth - 0.05F);
-  const Panel left{p.At(x0 + 0.05F, z), p.out, p.up, -p.right};
-  const Panel right{p.At(x1 - 0.05F, z), p.out, p.up, p.right};
-  b.AddRectangle(railing, left, 0, kDepth, 0, kRail);
-  b.AddRectangle(railing, right, 0, kDepth, 0, kRail);
+  if (highest) {
+    b.AddBox(trim, p, piece.left - 0.08F, piece.right + 0.08F, piece.top - 0.35F, piece.top - 0.2F,
+             0, kOut + 0.1F);
+  }
 }
 
 void AddUpperFloor(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width,
-                   float bottom, int floor, bool has_windows, Random& random) {
+                   float bottom, int floor, bool front, int oriel_bay, Random& random) {
   const float top = bottom + style.floor_height;
-  if (!has_windows) {
-    b.set_tint(style.wall_tint);
-    b.AddRectangle(style.wall, p, 0, width, bottom, top);
-    return;
-  }
   const int bays = std::max(1, static_cast<int>(std::lround(width / style.bay)));
   const float bay = width / static_cast<float>(bays);
   for (int i = 0; i < bays; ++i) {
     const float left = bay * static_cast<float>(i);
     const float x0 = left + 0.5F * (bay - style.window_width);
-    const float x1 = x0 + style.window_width;
-    const bool balcony = style.balconies && floor >= 1 && i % 2 == floor % 2 && bays > 1;
-    const float z0 = bottom + (balcony ? 0.05F : style.sill);
-    const float z1 = bottom + style.sill + style.window_height;
-    b.set_tint(style.wall_tint);
-    AddWallWithOpening(b, style.wall, p, left, left + bay, bottom, top, x0, x1, z0, z1,
-                       style.reveal);
-    AddWindow(b, style, p, x0, x1, z0, z1, style.reveal, style.window_width > 0.9F,
-              PickFrom(random, b.materials().rooms));
+    const bool balcony =
+        front && style.balconies && floor >= 1 && i % 2 == floor % 2 && bays > 1 && i != oriel_bay;
+    const Opening opening{x0, x0 + style.window_width, bottom + (balcony ? 0.05F : style.sill),
+                          bottom + style.sill + style.window_height};
+    const WallPiece piece{left, left + bay, bottom, top};
+    if (i == oriel_bay) {
+      AddOriel(b, style, p, piece, opening, floor == 0, floor + 2 == style.floors, random);
+      continue;
+    }
+    AddWallWithOpening(b, style.wall, style.wall_tint, p, piece, opening, style.reveal);
+    AddWindow(b, style.frame_tint, p, opening, style.reveal, style.window_width > 0.9F,
+              PickFrom(random, b.materials().rooms), random);
     if (balcony) {
-      AddBalcony(b, style, p, x0 - 0.45F, x1 + 0.45F, bottom + 0.03F);
+      const float beyond = style.balcony == BalconyKind::kFrench ? 0.05F : 0.45F;
+      AddBalcony(b, style, p, opening.x0 - beyond, opening.x1 + beyond, bottom + 0.03F, random);
     } else {
-      AddSurround(b, style, p, x0, x1, z0, z1);
+      AddSurround(b, style, p, opening);
+      if (front && random.Chance(0.06)) AddFlowerBox(b, p, opening, random);
     }
     if (style.shutters && !balcony) {
-      b.set_tint(style.shutter_tint);
       const float half = 0.5F * style.window_width;
-      b.AddBox(b.materials().trim, p, x0 - half, x0 - 0.02F, z0, z1, 0, 0.05F);
-      b.AddBox(b.materials().trim, p, x1 + 0.02F, x1 + half, z0, z1, 0, 0.05F);
+      b.set_tint(style.shutter_tint);
+      for (const float x : {opening.x0 - half, opening.x1 + 0.02F}) {
+        const float end = x + half - 0.02F;
+        b.AddBox(b.materials().trim, p, x, end, opening.z0, opening.z1, 0, 0.045F);
+        b.AddPicture(b.materials().louvres, p, x, end, opening.z0, opening.z1, 0.047F);
+      }
     }
     if (random.Chance(0.03)) {  // air conditioner
-      b.set_tint({0.7F, 0.7F, 0.68F, 1});
-      b.AddBox(b.materials().trim, p, x0, x0 + 0.8F, z0 - 0.75F, z0 - 0.2F, 0.05F, 0.4F);
+      b.set_tint({0.6F, 0.6F, 0.58F, 1});
+      b.AddBox(b.materials().trim, p, x0, x0 + 0.8F, opening.z0 - 0.75F, opening.z0 - 0.2F, 0.05F,
+               0.4F);
     }
   }
 }
 
-void AddShopFront(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float left, float right,
-                  float height, Random& random) {
+void AddDoor(MeshBuilder& b, const FacadeStyle& style, const Panel& p, const Opening& o, float drop,
+             Random& random) {
   const Materials& m = b.materials();
-  constexpr float kReveal = 0.25F;
-  const float sign_bottom = height - 0.95F;
-  const float x0 = left + 0.3F;
-  const float x1 = right - 0.3F;
-  const float z0 = 0.5F;
-  const float z1 = sign_bottom - 0.1F;
-  b.set_tint(style.ground_tint);
-  AddWallWithOpening(b, style.ground_wall, p, left, right, 0, height, x0, x1, 0.02F, z1, kReveal);
-  const float door = x0 + (x1 - x0) * (random.Chance(0.5) ? 0.0F : 1.0F) * 0.72F;
-  const float door_end = door + std::min(1.1F, 0.28F * (x1 - x0));
-  const Rgba paint = Srgb(30 + random.Int(140), 30 + random.Int(120), 30 + random.Int(120));
-  const auto glaze = [&](float a, float c) {
-    if (c - a < 0.4F) return;
-    b.set_tint(paint);
-    b.AddBox(m.trim, p, a, c, 0.02F, z0, -kReveal - kPaneDepth, -kReveal + 0.05F);
-    FacadeStyle frame = style;
-    frame.frame_tint = paint;
-    const int panes = std::max(1, static_cast<int>((c - a) / 1.9F));
-    for (int i = 0; i < panes; ++i) {
-      const float step = (c - a) / static_cast<float>(panes);
-      AddWindow(b, frame, p, a + step * static_cast<float>(i), a + step * static_cast<float>(i + 1),
-                z0, z1, kReveal, false, PickFrom(random, m.shops));
-    }
-  };
-  glaze(x0, door);
-  glaze(door_end, x1);
   b.set_tint({1, 1, 1, 1});
-  b.AddPicture(PickFrom(random, m.doors), p, door, door_end, 0.02F, std::min(z1, 2.3F), -kReveal);
-  if (z1 > 2.3F) b.AddPicture(PickFrom(random, m.rooms), p, door, door_end, 2.3F, z1, -kReveal);
-  b.set_tint(paint);
-  b.AddBox(m.trim, p, left + 0.15F, right - 0.15F, sign_bottom - 0.08F, height - 0.12F, 0, 0.1F);
-  b.set_tint({1, 1, 1, 1});
-  const float sign_height = 0.68F;
-  const float sign_width = std::min(right - left - 0.5F, 4 * sign_height);
-  const float middle = 0.5F * (left + right);
-  b.AddPicture(PickFrom(random, m.signs), p, middle - 0.5F * sign_width, middle + 0.5F * sign_width,
-               sign_bottom, sign_bottom + sign_height, 0.115F);
-  if (random.Chance(0.4)) {  // awning
-    const Rgba cloth = Srgb(60 + random.Int(190), 40 + random.Int(120), 40 + random.Int(120));
-    const float stripe = 0.4F;
-    for (float x = x0; x < x1; x += stripe) {
-      b.set_tint(std::lround((x - x0) / stripe) % 2 == 0 ? cloth : Rgba{0.8F, 0.78F, 0.72F, 1});
-      const float end = std::min(x + stripe, x1);
-      b.AddFace(m.trim, p.At(x, z1 - 0.35F, 1.2F), p.At(end, z1 - 0.35F, 1.2F), p.At(end, z1, 0.1F),
-                p.At(x, z1, 0.1F));
-      b.AddFace(m.trim, p.At(x, z1 - 0.02F, 0.1F), p.At(end, z1 - 0.02F, 0.1F),
-                p.At(end, z1 - 0.37F, 1.2F), p.At(x, z1 - 0.37F, 1.2F));
-      b.AddRectangle(m.trim, p, x, end, z1 - 0.6F, z1 - 0.35F, 1.2F);
-    }
+  b.AddPicture(PickFrom(random, m.doors), p, o.x0, o.x1, o.z0, o.z1, -style.reveal);
+  b.AddPicture(PickFrom(random, m.house_numbers), p, o.x1 + 0.2F, o.x1 + 0.38F, 1.75F, 1.93F,
+               0.012F);
+  b.set_tint(style.trim_tint);
+  AddSteps(b, p, o.x0 - 0.2F, o.x1 + 0.2F, o.z0, drop);
+  if (style.surrounds) {
+    b.AddBox(m.trim, p, o.x0 - 0.2F, o.x0, o.z0, o.z1, 0, 0.08F);
+    b.AddBox(m.trim, p, o.x1, o.x1 + 0.2F - 0.02F, o.z0, o.z1, 0, 0.08F);
+    b.AddBox(m.trim, p, o.x0 - 0.3F, o.x1 + 0.3F, o.z1, o.z1 + 0.3F, 0, 0.16F);
+  } else {
+    b.AddBox(m.trim, p, o.x0 - 0.3F, o.x1 + 0.3F, o.z1 + 0.15F, o.z1 + 0.25F, 0, 0.7F);
   }
 }
 
 void AddGroundFloor(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width,
-                    bool front, bool has_windows, Random& random) {
+                    float drop, bool front, Random& random) {
   const Materials& m = b.materials();
   const float height = style.ground_height;
-  if (!has_windows) {
-    b.set_tint(style.ground_tint);
-    b.AddRectangle(style.ground_wall, p, 0, width, 0, height);
-    return;
-  }
   if (front && style.shops) {
     const int shops = std::max(1, static_cast<int>(width / 6.5F));
     for (int i = 0; i < shops; ++i) {
       AddShopFront(b, style, p, width * static_cast<float>(i) / static_cast<float>(shops),
-                   width * static_cast<float>(i + 1) / static_cast<float>(shops), height, random);
+                   width * static_cast<float>(i + 1) / static_cast<float>(shops), drop, random);
     }
     return;
   }
@@ -199,64 +128,152 @@ void AddGroundFloor(MeshBuilder& b, const FacadeStyle& style, const Panel& p, fl
   for (int i = 0; i < bays; ++i) {
     const float left = bay * static_cast<float>(i);
     const bool door = i == door_bay;
-    const float opening = door ? 1.15F : style.window_width;
-    const float x0 = left + 0.5F * (bay - opening);
-    const float x1 = x0 + opening;
-    const float z0 = door ? 0.15F : 1.0F;
-    const float z1 = door ? 2.45F : std::min(height - 0.5F, 1.0F + style.window_height);
-    b.set_tint(style.ground_tint);
-    AddWallWithOpening(b, style.ground_wall, p, left, left + bay, 0, height, x0, x1, z0, z1,
-                       style.reveal);
+    const float size = door ? 1.15F : style.window_width;
+    const float x0 = left + 0.5F * (bay - size);
+    const Opening opening{x0, x0 + size, door ? 0.15F : 1.0F,
+                          door ? 2.45F : std::min(height - 0.5F, 1.0F + style.window_height)};
+    AddWallWithOpening(b, style.ground_wall, style.ground_tint, p, {left, left + bay, 0, height},
+                       opening, style.reveal, kSplash);
     if (door) {
+      AddDoor(b, style, p, opening, drop, random);
+      continue;
+    }
+    AddWindow(b, style.frame_tint, p, opening, style.reveal, true, PickFrom(random, m.rooms),
+              random);
+    AddSurround(b, style, p, opening);
+    if (front && random.Chance(0.08)) {
       b.set_tint({1, 1, 1, 1});
-      b.AddPicture(PickFrom(random, m.doors), p, x0, x1, z0, z1, -style.reveal);
-      b.set_tint(style.trim_tint);
-      b.AddBox(m.concrete, p, x0 - 0.2F, x1 + 0.2F, -0.1F, 0.15F, 0, 0.4F);
-    } else {
-      AddWindow(b, style, p, x0, x1, z0, z1, style.reveal, true, PickFrom(random, m.rooms));
-      AddSurround(b, style, p, x0, x1, z0, z1);
+      b.AddPicture(PickFrom(random, m.posters), p, left + 0.05F, left + 0.5F, 0.9F, 1.8F, 0.008F);
     }
   }
 }
 
-}  // namespace
+/// Ivy on a wall: cards of leaves, dense below and thinning out upwards.
+void AddIvy(MeshBuilder& b, const Panel& p, float width, float height, Random& random) {
+  const MaterialId leaves = PickFrom(random, b.materials().leaves);
+  const auto centre = static_cast<float>(random.Uniform(0.2, 0.8)) * width;
+  const auto top = static_cast<float>(random.Uniform(0.5, 0.95)) * height;
+  const float spread = std::min(0.45F * width, 3.0F);
+  const int cards = static_cast<int>(3.5F * spread * top);
+  for (int i = 0; i < cards; ++i) {
+    const auto z = static_cast<float>(random.Uniform(0, 1)) * top;
+    const float reach = spread * (1 - 0.75F * z / top);
+    const float x = centre + reach * static_cast<float>(random.Uniform(-1, 1));
+    const auto size = static_cast<float>(random.Uniform(0.7, 1.1));
+    const auto lean = static_cast<float>(random.Uniform(0.05, 0.3));
+    if (x < 0.5F * size || x > width - 0.5F * size) continue;
+    const auto shade = static_cast<float>(random.Uniform(0.45, 0.85));
+    b.set_tint({shade * 0.8F, shade, shade * 0.7F, 1});
+    b.AddQuad(leaves,
+              {p.At(x - 0.5F * size, z, 0.03F), p.At(x + 0.5F * size, z, 0.03F),
+               p.At(x + 0.5F * size, z + size, lean), p.At(x - 0.5F * size, z + size, lean)},
+              {Vector2f(0, 0), Vector2f(1, 0), Vector2f(1, 1), Vector2f(0, 1)});
+  }
+}
 
-void AddFacade(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width, float drop,
-               bool front, bool has_windows, Random& random) {
-  const Materials& m = b.materials();
+void AddPlinth(MeshBuilder& b, const Panel& p, float width, float drop, Random& random) {
+  const MaterialId concrete = b.materials().concrete;
   b.set_texture_origin(
       {static_cast<float>(random.Uniform(0, 50)), static_cast<float>(random.Uniform(0, 50))});
-  b.set_tint({0.75F, 0.74F, 0.72F, 1});
-  b.AddRectangle(m.concrete, p, 0, width, -drop - 1, 0, 0);
-  b.AddBox(m.concrete, p, 0, width, -0.5F, 0.3F, -0.01F, 0.05F);
-  AddGroundFloor(b, style, p, width, front, has_windows, random);
+  b.set_tint({0.62F, 0.61F, 0.59F, 1});
+  AddWeatheredRectangle(b, concrete, p, {0, width, -drop - 1, 0}, 0.8F, 1);
+  b.AddBox(concrete, p, 0, width, -drop - 1, 0.3F, -0.01F, 0.05F);
+}
+
+void AddCornice(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width) {
+  const float eaves = EavesHeight(style);
+  const MaterialId trim = b.materials().trim;
+  b.set_tint(style.trim_tint);
+  b.AddBox(trim, p, -0.02F, width + 0.02F, eaves - 0.28F, eaves - 0.1F, 0, 0.15F);
+  b.AddBox(trim, p, -0.02F, width + 0.02F, eaves - 0.1F, eaves + 0.08F, 0, 0.32F);
+}
+
+void AddDrainPipe(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float x, float drop) {
+  const float eaves = EavesHeight(style);
+  b.set_tint({0.22F, 0.21F, 0.2F, 1});
+  const MaterialId metal = b.materials().metal;
+  b.AddTube(metal, p.At(x, -drop, 0.12F), p.At(x, eaves - 0.3F, 0.12F), 0.05F, 0.05F, 6);
+  b.AddTube(metal, p.At(x, eaves - 0.3F, 0.12F), p.At(x, eaves - 0.05F, 0.3F), 0.06F, 0.09F, 6);
+}
+
+}  // namespace
+
+void AddFront(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width, float drop,
+              Random& random) {
+  AddPlinth(b, p, width, drop, random);
+  AddGroundFloor(b, style, p, width, drop, true, random);
+  const int bays = std::max(1, static_cast<int>(std::lround(width / style.bay)));
+  const int oriel_bay = style.oriels ? random.Int(bays) : -1;
   for (int floor = 0; floor < style.floors - 1; ++floor) {
     AddUpperFloor(b, style, p, width,
-                  style.ground_height + style.floor_height * static_cast<float>(floor), floor,
-                  has_windows, random);
+                  style.ground_height + style.floor_height * static_cast<float>(floor), floor, true,
+                  oriel_bay, random);
   }
-  const float eaves = EavesHeight(style);
+  const Materials& m = b.materials();
   b.set_tint(style.trim_tint);
-  if (style.bands && front) {
-    for (int floor = 0; floor < style.floors; ++floor) {
+  if (style.bands) {
+    for (int floor = 0; floor + 1 < style.floors; ++floor) {
       const float z = style.ground_height + style.floor_height * static_cast<float>(floor);
-      b.AddBox(m.trim, p, -0.02F, width + 0.02F, z - 0.12F, z + 0.06F, 0, 0.06F);
+      b.AddBox(m.trim, p, 0, width, z - 0.12F, z + 0.06F, 0, 0.06F);
     }
   }
-  if (style.quoins && front) {
-    for (float z = 0.35F; z + 0.5F < eaves; z += 0.5F) {
+  if (style.quoins) {
+    for (float z = 0.35F; z + 0.5F < EavesHeight(style); z += 0.5F) {
       const float length = std::lround(z / 0.5F) % 2 == 0 ? 0.55F : 0.32F;
       b.AddBox(m.ashlar, p, 0, length, z, z + 0.46F, 0, 0.035F);
       b.AddBox(m.ashlar, p, width - length, width, z, z + 0.46F, 0, 0.035F);
     }
   }
-  // Cornice in two steps.
-  b.AddBox(m.trim, p, -0.1F, width + 0.1F, eaves - 0.28F, eaves - 0.1F, 0, 0.15F);
-  b.AddBox(m.trim, p, -0.2F, width + 0.2F, eaves - 0.1F, eaves + 0.08F, 0, 0.32F);
-  if (front) {
-    b.set_tint({0.28F, 0.27F, 0.25F, 1});
-    b.AddTube(m.metal, p.At(0.12F, 0, 0.12F), p.At(0.12F, eaves - 0.2F, 0.12F), 0.05F, 0.05F, 6);
+  AddCornice(b, style, p, width);
+  AddDrainPipe(b, style, p, 0.12F, drop);
+}
+
+void AddSide(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width, float drop,
+             bool has_windows, Random& random) {
+  const Materials& m = b.materials();
+  AddPlinth(b, p, width, drop, random);
+  const float eaves = EavesHeight(style);
+  if (has_windows) {
+    AddGroundFloor(b, style, p, width, drop, false, random);
+    for (int floor = 0; floor < style.floors - 1; ++floor) {
+      AddUpperFloor(b, style, p, width,
+                    style.ground_height + style.floor_height * static_cast<float>(floor), floor,
+                    false, -1, random);
+    }
+    return;
   }
+  b.set_tint(style.ground_tint);
+  AddWeatheredRectangle(b, style.ground_wall, p, {0, width, 0, style.ground_height}, kSplash, 1);
+  b.set_tint(style.wall_tint);
+  AddWeatheredRectangle(b, style.wall, p, {0, width, style.ground_height, eaves}, 1, 0.85F);
+  // A stair's or bathrooms' small windows, one above the other.
+  const bool mural = random.Chance(0.45) && eaves > 7;
+  const int columns = mural ? 0 : random.Int(3);
+  for (int column = 0; column < columns; ++column) {
+    const float x = width * (0.2F + 0.25F * static_cast<float>(column + random.Int(2)));
+    for (int floor = 0; floor + 1 < style.floors; ++floor) {
+      if (random.Chance(0.2)) continue;
+      const float z =
+          style.ground_height + style.floor_height * static_cast<float>(floor) + style.sill + 0.3F;
+      const Opening window{x, x + 0.65F, z, z + 0.9F};
+      b.set_tint(style.frame_tint);
+      b.AddRectangle(m.trim, p, window.x0 - 0.06F, window.x1 + 0.06F, window.z0 - 0.06F,
+                     window.z1 + 0.06F, 0.01F);
+      AddPane(b, PickFrom(random, m.rooms), p, window, 0.02F, random);
+      b.set_tint(style.trim_tint);
+      b.AddBox(m.trim, p, x - 0.1F, x + 0.75F, z - 0.12F, z - 0.06F, 0, 0.08F);
+    }
+  }
+  if (mural) {
+    const float size = std::min({width - 1.6F, eaves - 4.2F, 6.5F});
+    const float x = 0.5F * (width - size);
+    b.set_tint({1, 1, 1, 1});
+    b.AddPicture(PickFrom(random, m.murals), p, x, x + size, eaves - size - 0.8F, eaves - 0.8F,
+                 0.01F);
+  } else if (style.ivy) {
+    AddIvy(b, p, width, eaves, random);
+  }
+  AddDrainPipe(b, style, p, random.Chance(0.5) ? 0.3F : width - 0.3F, drop);
 }
 
 void AddBack(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width, float drop,
@@ -277,9 +294,10 @@ void AddBack(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float wid
       b.AddRectangle(b.materials().trim, p, x0, x0 + style.window_width, z0,
                      z0 + style.window_height, 0.01F);
       b.set_tint({1, 1, 1, 1});
-      b.AddPicture(PickFrom(random, b.materials().rooms), p, x0 + 0.07F,
-                   x0 + style.window_width - 0.07F, z0 + 0.07F, z0 + style.window_height - 0.07F,
-                   0.02F);
+      AddPane(b, PickFrom(random, b.materials().rooms), p,
+              {x0 + 0.07F, x0 + style.window_width - 0.07F, z0 + 0.07F,
+               z0 + style.window_height - 0.07F},
+              0.02F, random);
     }
   }
 }

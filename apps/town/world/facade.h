@@ -5,6 +5,9 @@
 
 namespace orb360::town {
 
+enum class BalconyKind { kRailing, kSolid, kFrench };
+enum class RoofKind { kFlat, kGable, kHip, kMansard };
+
 /// What a building's facades share.
 struct FacadeStyle {
   MaterialId wall = 0;
@@ -28,7 +31,10 @@ struct FacadeStyle {
   bool bands = false;
   bool quoins = false;
   bool shops = false;
-  bool pitched_roof = true;
+  bool oriels = false;  ///< one column of windows stands out from the front
+  bool ivy = false;     ///< climbs the blank sides
+  BalconyKind balcony = BalconyKind::kRailing;
+  RoofKind roof = RoofKind::kGable;
 };
 
 /// A style for a building `width` metres wide.
@@ -39,10 +45,15 @@ inline float EavesHeight(const FacadeStyle& style) {
   return style.ground_height + style.floor_height * static_cast<float>(style.floors - 1);
 }
 
-/// A wall from `drop` below the panel's origin up to the eaves. A `front` has doors or shops and
-/// the ornaments; without windows the wall is blank.
-void AddFacade(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width, float drop,
-               bool front, bool has_windows, Random& random);
+/// The wall towards the street, from `drop` below the panel's origin up to the eaves, with door or
+/// shops and the ornaments.
+void AddFront(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width, float drop,
+              Random& random);
+
+/// A wall towards a neighbour, with windows where there is room for them; else blank but for what
+/// climbs it or is painted on it.
+void AddSide(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width, float drop,
+             bool has_windows, Random& random);
 
 /// The back of a building, which is only seen through gaps: pictures of windows on a flat wall.
 void AddBack(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width, float drop,

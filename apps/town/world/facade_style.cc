@@ -70,7 +70,17 @@ FacadeStyle DrawFacadeStyle(Random& random, const Materials& m, float width) {
   s.bands = random.Chance(0.5);
   s.quoins = random.Chance(0.3);
   s.shops = random.Chance(0.5);
-  s.pitched_roof = s.floors <= 5 && random.Chance(0.7);
+  s.oriels = s.floors >= 3 && random.Chance(0.22);
+  s.ivy = random.Chance(0.2);
+  static constexpr std::array<BalconyKind, 4> kBalconies = {
+      BalconyKind::kRailing, BalconyKind::kRailing, BalconyKind::kSolid, BalconyKind::kFrench};
+  s.balcony = kBalconies[static_cast<size_t>(random.Int(4))];
+  const double roof = random.Uniform();
+  if (s.floors > 5 || roof < 0.2) {
+    s.roof = roof < 0.8 ? RoofKind::kFlat : RoofKind::kMansard;
+  } else {
+    s.roof = roof < 0.6 ? RoofKind::kGable : (roof < 0.78 ? RoofKind::kHip : RoofKind::kMansard);
+  }
   return s;
 }
 

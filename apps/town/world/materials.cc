@@ -51,6 +51,7 @@ Materials PaintMaterials(uint64_t seed) {
   m.ashlar = library.AddMatte(PaintAshlar(next()), 4, 0.4F);
   m.concrete = library.AddMatte(PaintConcrete(next()), 4, 0.4F);
   m.roof_tiles = library.AddMatte(PaintRoofTiles(next()), 4, 0.4F);
+  m.slates = library.AddMatte(PaintSlates(next()), 4, 0.4F);
   m.gravel = library.AddMatte(PaintGravel(next()), 4, 0.4F);
   const Rgba mortar = Srgb(172, 164, 150);
   for (const Rgba& brick :
@@ -66,6 +67,10 @@ Materials PaintMaterials(uint64_t seed) {
   m.car_glass = library.Add({plain, Finish::kGlass, false, 1, 0});
   m.lamp = library.Add({plain, Finish::kLamp, false, 1, 0});
   m.railing = library.Add({library.AddTexture(PaintRailing(next())), Finish::kMatte, true, 1, 0});
+  m.louvres = library.Add({library.AddTexture(PaintLouvres(next())), Finish::kMatte, false, 1, 0});
+  for (int i = 0; i < 4; ++i)
+    m.roller_shutters.push_back(library.Add(
+        {library.AddTexture(PaintRollerShutter(next())), Finish::kMatte, false, 1, 0.2F}));
   m.bark = library.AddMatte(PaintBark(next()), 1, 0.3F);
   for (int i = 0; i < 40; ++i)
     m.rooms.push_back(

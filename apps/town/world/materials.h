@@ -38,13 +38,14 @@ struct Palette {
 /// A procedural town's palette, with the names the builders use.
 struct Materials : Palette {
   MaterialId asphalt, setts, paving, kerb, grass, road_paint;
-  MaterialId plaster, ashlar, concrete, roof_tiles, gravel;
+  MaterialId plaster, ashlar, concrete, roof_tiles, slates, gravel;
   MaterialId trim;   ///< painted wood or stone around openings, to be tinted
   MaterialId metal;  ///< dark painted metal
   MaterialId number_plate;
+  MaterialId louvres;  ///< of a window's shutter, to be tinted
   MaterialId railing, bark, paint, car_glass, rubber, lamp;
   std::vector<MaterialId> bricks, rooms, shops, doors, signs, leaves;
-  std::vector<MaterialId> posters, house_numbers, murals;
+  std::vector<MaterialId> posters, house_numbers, murals, roller_shutters;
 };
 
 /// Paints every texture; the same materials for the same seed.

@@ -1,0 +1,307 @@
+#include "apps/town/world/roof.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "apps/town/world/opening.h"
+
+namespace orb360::town {
+namespace {
+
+constexpr float kFrontOverhang = 0.4F;  // metres, over the eaves at front and back
+
+/// Where a roof stands: x along the front, y away from the street, z above the eaves.
+struct RoofFrame {
+  Vector3f origin;
+  Vector3f right;
+  Vector3f back;
+  float width;
+  float depth;
+
+  Vector3f At(float x, float y, float z) const {
+    return origin + x * right + y * back + z * Vector3f::UnitZ();
+  }
+  /// A panel that faces the street, its origin at (x, y, z).
+  Panel Front(float x, float y, float z) const {
+    return {At(x, y, z), right, Vector3f::UnitZ(), -back};
+  }
+};
+
+/// A cut through a roof from front to back: y against z, running up to the ridge and down.
+using Profile = std::vector<std::array<float, 2>>;
+
+float HeightOver(const Profile& profile, float y) {
+  for (size_t i = 0; i + 1 < profile.size(); ++i) {
+    const auto& [y0, z0] = profile[i];
+    const auto& [y1, z1] = profile[i + 1];
+    if (y >= y0 && y <= y1) return y1 > y0 ? std::lerp(z0, z1, (y - y0) / (y1 - y0)) : z1;
+  }
+  return 0;
+}
+
+/// A free-standing box with all its sides but the bottom.
+void AddBlock(MeshBuilder& b, MaterialId material, const RoofFrame& f, float x0, float x1, float y0,
+              float y1, float z0, float z1) {
+  const Panel front = f.Front(0, y0, 0);
+  b.AddBox(material, front, x0, x1, z0, z1, y0 - y1, 0);
+  const Panel rear{f.At(0, y1, 0), -f.right, Vector3f::UnitZ(), f.back};
+  b.AddRectangle(material, rear, -x1, -x0, z0, z1);
+}
+
+void AddChimney(MeshBuilder& b, const RoofFrame& f, float x, float y, float top, Random& random) {
+  const Materials& m = b.materials();
+  const auto width = static_cast<float>(random.Uniform(0.7, 1.5));
+  constexpr float kDepth = 0.55F;  // metres
+  const auto shade = static_cast<float>(random.Uniform(0.6, 0.95));
+  b.set_tint({shade, shade, shade, 1});
+  const MaterialId bricks = random.Pick(std::span<const MaterialId>(m.bricks));
+  AddBlock(b, bricks, f, x, x + width, y, y + kDepth, 0, top);
+  AddBlock(b, m.concrete, f, x - 0.06F, x + width + 0.06F, y - 0.06F, y + kDepth + 0.06F, top,
+           top + 0.1F);
+  const int pots = 1 + static_cast<int>(width / 0.42F);
+  for (int i = 0; i < pots; ++i) {
+    const float px = x + width * (static_cast<float>(i) + 0.5F) / static_cast<float>(pots);
+    const Vector3f foot = f.At(px, y + 0.5F * kDepth, top + 0.1F);
+    b.set_tint({0.42F, 0.17F, 0.09F, 1});
+    b.AddTube(m.trim, foot, foot + 0.42F * Vector3f::UnitZ(), 0.12F, 0.1F, 8);
+    b.set_tint({0.02F, 0.02F, 0.02F, 1});
+    b.AddTube(m.trim, foot + 0.4F * Vector3f::UnitZ(), foot + 0.41F * Vector3f::UnitZ(), 0.11F,
+              0.001F, 8);
+  }
+}
+
+void AddAerial(MeshBuilder& b, const RoofFrame& f, float x, float y, float z) {
+  const MaterialId metal = b.materials().metal;
+  b.set_tint({0.25F, 0.25F, 0.26F, 1});
+  constexpr float kMast = 1.8F;  // metres
+  b.AddTube(metal, f.At(x, y, z), f.At(x, y, z + kMast), 0.02F, 0.02F, 4);
+  b.AddTube(metal, f.At(x, y - 0.5F, z + kMast - 0.1F), f.At(x, y + 0.5F, z + kMast - 0.1F), 0.012F,
+            0.012F, 4);
+  for (float along = -0.45F; along < 0.5F; along += 0.22F) {
+    const float half = 0.28F - 0.16F * along;
+    b.AddTube(metal, f.At(x - half, y + along, z + kMast - 0.1F),
+              f.At(x + half, y + along, z + kMast - 0.1F), 0.008F, 0.008F, 4);
+  }
+}
+
+/// A dormer over the front slope at `x`; its window stands at `y` on the slope.
+void AddDormer(MeshBuilder& b, const RoofFrame& f, const FacadeStyle& style, MaterialId tiles,
+               const Rgba& tile_tint, const Profile& profile, float x, float y, float height,
+               Random& random) {
+  const Materials& m = b.materials();
+  constexpr float kWidth = 1.25F;  // metres
+  const float foot = HeightOver(profile, y);
+  const float top = foot + height;
+  // Where the slope comes up to the dormer's eaves, or nearly at the ridge.
+  float end = y;
+  while (end < 0.5F * f.depth - 0.1F && HeightOver(profile, end) < top) end += 0.05F;
+  const Panel front = f.Front(x, y, foot);
+  const Opening opening{0.14F, kWidth - 0.14F, 0.18F, height - 0.12F};
+  AddWallWithOpening(b, m.trim, style.trim_tint, front, {0, kWidth, -0.3F, height}, opening, 0.08F);
+  AddWindow(b, style.frame_tint, front, opening, 0.08F, true,
+            random.Pick(std::span<const MaterialId>(m.rooms)), random);
+  b.set_tint(0.8F * tile_tint);
+  const auto at = [&](float dx, float dy, float z) { return f.At(x + dx, dy, z); };
+  const float slope = HeightOver(profile, end);
+  b.AddFace(tiles, at(0, end, slope), at(0, y, foot - 0.3F), at(0, y, top), at(0, end, top));
+  b.AddFace(tiles, at(kWidth, y, foot - 0.3F), at(kWidth, end, slope), at(kWidth, end, top),
+            at(kWidth, y, top));
+  // A small gable of its own, its ridge running back into the slope.
+  constexpr float kRise = 0.45F;
+  constexpr float kEave = 0.12F;
+  float back = end;
+  while (back < 0.5F * f.depth - 0.05F && HeightOver(profile, back) < top + kRise) back += 0.05F;
+  b.set_tint(tile_tint);
+  const float middle = 0.5F * kWidth;
+  b.AddFace(tiles, at(middle, y - 0.2F, top + kRise), at(-kEave, y - 0.2F, top - 0.08F),
+            at(-kEave, end, top - 0.08F), at(middle, back, top + kRise));
+  b.AddFace(tiles, at(kWidth + kEave, y - 0.2F, top - 0.08F), at(middle, y - 0.2F, top + kRise),
+            at(middle, back, top + kRise), at(kWidth + kEave, end, top - 0.08F));
+  b.set_tint(style.trim_tint);
+  b.AddFace(m.trim, at(0, y - 0.01F, top), at(kWidth, y - 0.01F, top),
+            at(middle, y - 0.01F, top + kRise - 0.05F), at(middle, y - 0.01F, top + kRise - 0.05F));
+}
+
+/// A flat window in the front slope around (x, y).
+void AddSkylight(MeshBuilder& b, const RoofFrame& f, const Profile& profile, float x, float y,
+                 Random& random) {
+  const Vector3f foot = f.At(x, y, HeightOver(profile, y));
+  const Vector3f head = f.At(x, y + 0.8F, HeightOver(profile, y + 0.8F));
+  const Vector3f up = (head - foot).normalized();
+  const Panel panel{foot, f.right, up, f.right.cross(up)};
+  const float length = (head - foot).norm();
+  b.set_tint({0.1F, 0.1F, 0.1F, 1});
+  b.AddBox(b.materials().trim, panel, -0.06F, 0.76F, -0.06F, length + 0.06F, 0, 0.07F);
+  AddPane(b, random.Pick(std::span<const MaterialId>(b.materials().rooms)), panel,
+          {0, 0.7F, 0, length}, 0.075F, random);
+}
+
+void AddGutter(MeshBuilder& b, const Vector3f& from, const Vector3f& to) {
+  b.set_tint({0.2F, 0.2F, 0.2F, 1});
+  b.AddTube(b.materials().metal, from, to, 0.075F, 0.075F, 6);
+}
+
+/// Slopes along the front with walls below them at the sides.
+void AddProfileRoof(MeshBuilder& b, const FacadeStyle& style, const RoofFrame& f, MaterialId tiles,
+                    const Rgba& tint, const Profile& profile) {
+  b.set_tint(tint);
+  for (size_t i = 0; i + 1 < profile.size(); ++i) {
+    const auto& [y0, z0] = profile[i];
+    const auto& [y1, z1] = profile[i + 1];
+    b.AddFace(tiles, f.At(0, y0, z0), f.At(f.width, y0, z0), f.At(f.width, y1, z1),
+              f.At(0, y1, z1));
+  }
+  b.set_tint(style.wall_tint);
+  for (size_t i = 0; i + 1 < profile.size(); ++i) {
+    const float y0 = std::clamp(profile[i][0], 0.0F, f.depth);
+    const float y1 = std::clamp(profile[i + 1][0], 0.0F, f.depth);
+    if (y1 - y0 < 1e-3F) continue;
+    const float z0 = HeightOver(profile, y0);
+    const float z1 = HeightOver(profile, y1);
+    b.AddFace(style.wall, f.At(0, y1, -0.1F), f.At(0, y0, -0.1F), f.At(0, y0, z0), f.At(0, y1, z1));
+    b.AddFace(style.wall, f.At(f.width, y0, -0.1F), f.At(f.width, y1, -0.1F), f.At(f.width, y1, z1),
+              f.At(f.width, y0, z0));
+  }
+  const auto ridge = *std::max_element(profile.begin(), profile.end(),
+                                       [](const auto& p, const auto& q) { return p[1] < q[1]; });
+  b.set_tint(0.7F * tint);
+  b.AddTube(tiles, f.At(0, ridge[0], ridge[1]), f.At(f.width, ridge[0], ridge[1]), 0.1F, 0.1F, 6);
+  for (const auto& [y, z] : {profile.front(), profile.back()})
+    AddGutter(b, f.At(0, y, z - 0.03F), f.At(f.width, y, z - 0.03F));
+}
+
+void AddHipRoof(MeshBuilder& b, const RoofFrame& f, MaterialId tiles, const Rgba& tint,
+                float rise) {
+  constexpr float kSide = 0.15F;  // metres, overhang towards the neighbours
+  const float inset = std::min(0.5F * f.depth, 0.5F * f.width);
+  const float fall = kFrontOverhang * rise / (0.5F * f.depth);
+  const std::array<Vector3f, 4> eaves = {f.At(-kSide, -kFrontOverhang, -fall),
+                                         f.At(f.width + kSide, -kFrontOverhang, -fall),
+                                         f.At(f.width + kSide, f.depth + kFrontOverhang, -fall),
+                                         f.At(-kSide, f.depth + kFrontOverhang, -fall)};
+  const Vector3f left = f.At(inset, 0.5F * f.depth, rise);
+  const Vector3f right = f.At(f.width - inset, 0.5F * f.depth, rise);
+  b.set_tint(tint);
+  b.AddFace(tiles, eaves[0], eaves[1], right, left);
+  b.AddFace(tiles, eaves[1], eaves[2], right, right);
+  b.AddFace(tiles, eaves[2], eaves[3], left, right);
+  b.AddFace(tiles, eaves[3], eaves[0], left, left);
+  b.set_tint(0.7F * tint);
+  for (const auto& [from, to] : {std::pair(eaves[0], left),
+                                 {eaves[3], left},
+                                 {eaves[1], right},
+                                 {eaves[2], right},
+                                 {left, right}}) {
+    if ((to - from).norm() > 0.1F) b.AddTube(tiles, from, to, 0.09F, 0.09F, 6);
+  }
+  for (size_t i = 0; i < 4; ++i) AddGutter(b, eaves[i], eaves[(i + 1) % 4]);
+}
+
+void AddFlatRoof(MeshBuilder& b, const FacadeStyle& style, const RoofFrame& f, Random& random) {
+  const Materials& m = b.materials();
+  const auto parapet = static_cast<float>(random.Uniform(0.5, 1.1));
+  constexpr float kThickness = 0.3F;
+  b.set_tint({1, 1, 1, 1});
+  b.AddFace(m.gravel, f.At(0, 0, 0), f.At(f.width, 0, 0), f.At(f.width, f.depth, 0),
+            f.At(0, f.depth, 0));
+  const float w = f.width;
+  const float d = f.depth;
+  const std::array<std::array<float, 4>, 4> walls = {
+      {{0, w, 0, kThickness},
+       {0, w, d - kThickness, d},
+       {0, kThickness, kThickness, d - kThickness},
+       {w - kThickness, w, kThickness, d - kThickness}}};
+  for (const auto& [x0, x1, y0, y1] : walls) {
+    b.set_tint(style.wall_tint);
+    AddBlock(b, style.wall, f, x0, x1, y0, y1, 0, parapet);
+    b.set_tint(0.9F * style.trim_tint);
+    AddBlock(b, m.concrete, f, x0 - 0.03F, x1 + 0.03F, y0 - 0.05F, y1 + 0.05F, parapet,
+             parapet + 0.07F);
+  }
+  // The head of the stairs, ventilators and a tank.
+  if (w > 7) {
+    const auto x = static_cast<float>(random.Uniform(0.2, 0.6)) * w;
+    b.set_tint(0.9F * style.wall_tint);
+    AddBlock(b, style.wall, f, x, x + 2.6F, 0.45F * d, 0.45F * d + 3, 0, 2.5F);
+  }
+  const int boxes = random.Int(4);
+  for (int i = 0; i < boxes; ++i) {
+    const auto x = static_cast<float>(random.Uniform(0.1, 0.85)) * w;
+    const auto y = static_cast<float>(random.Uniform(0.1, 0.7)) * d;
+    const auto size = static_cast<float>(random.Uniform(0.6, 1.3));
+    b.set_tint({0.5F, 0.5F, 0.5F, 1});
+    AddBlock(b, m.trim, f, x, x + size, y, y + size, 0, 0.8F * size);
+  }
+}
+
+}  // namespace
+
+void AddRoof(MeshBuilder& b, const FacadeStyle& style, const Lot& lot, Random& random) {
+  const Materials& m = b.materials();
+  const Vector3f up(0, 0, 1);
+  constexpr float kWallPlate = 0.08F;  // metres above the eaves
+  const RoofFrame f{lot.front_left + (EavesHeight(style) + kWallPlate) * up, lot.right,
+                    up.cross(lot.right), lot.width, lot.depth};
+  const float d = f.depth;
+  const bool slate = random.Chance(style.roof == RoofKind::kMansard ? 0.8 : 0.35);
+  const MaterialId tiles = slate ? m.slates : m.roof_tiles;
+  const auto shade = static_cast<float>(random.Uniform(0.55, 1.0));
+  const Rgba tint{shade, shade * static_cast<float>(random.Uniform(0.8, 1)),
+                  shade * static_cast<float>(random.Uniform(0.75, 1)), 1};
+  Profile profile;
+  if (style.roof == RoofKind::kGable || style.roof == RoofKind::kHip) {
+    const float rise = d * static_cast<float>(random.Uniform(0.26, 0.46));
+    const float fall = kFrontOverhang * rise / (0.5F * d);
+    profile = {{-kFrontOverhang, -fall}, {0.5F * d, rise}, {d + kFrontOverhang, -fall}};
+    if (style.roof == RoofKind::kGable)
+      AddProfileRoof(b, style, f, tiles, tint, profile);
+    else
+      AddHipRoof(b, f, tiles, tint, rise);
+  } else if (style.roof == RoofKind::kMansard) {
+    const auto steep = static_cast<float>(random.Uniform(2.2, 2.8));
+    profile = {
+        {-0.1F, 0}, {0.8F, steep}, {0.5F * d, steep + 0.9F}, {d - 0.8F, steep}, {d + 0.1F, 0}};
+    AddProfileRoof(b, style, f, tiles, tint, profile);
+  } else {
+    AddFlatRoof(b, style, f, random);
+    profile = {{0, 0}, {d, 0}};
+  }
+
+  const bool mansard = style.roof == RoofKind::kMansard;
+  const bool steep_gable =
+      style.roof == RoofKind::kGable && HeightOver(profile, 0.5F * d) > 0.34F * d;
+  if (mansard || (steep_gable && random.Chance(0.6))) {
+    const float y = mansard ? 0.12F : 0.16F * d;
+    const float height = mansard ? 1.6F : 1.25F;
+    const int count = std::max(1, static_cast<int>(f.width / random.Uniform(2.4, 4.5)));
+    const float step = f.width / static_cast<float>(count);
+    for (int i = 0; i < count; ++i) {
+      const float x = step * (static_cast<float>(i) + 0.5F) - 0.62F;
+      AddDormer(b, f, style, tiles, tint, profile, x, y, height, random);
+    }
+  } else if (style.roof == RoofKind::kGable) {
+    const int count = random.Int(4);
+    for (int i = 0; i < count; ++i) {
+      const auto x = static_cast<float>(random.Uniform(0.08, 0.85)) * f.width;
+      AddSkylight(b, f, profile, x, 0.2F * d, random);
+    }
+  }
+  const int chimneys = style.roof == RoofKind::kFlat ? random.Int(2) : 1 + random.Int(2);
+  for (int i = 0; i < chimneys; ++i) {
+    const auto x =
+        static_cast<float>(i == 0 ? random.Uniform(0.02, 0.1) : random.Uniform(0.6, 0.85)) *
+        f.width;
+    const auto y = static_cast<float>(random.Uniform(0.42, 0.56)) * d;
+    const float top = HeightOver(profile, 0.5F * d) + static_cast<float>(random.Uniform(0.9, 1.7));
+    AddChimney(b, f, x, y, top, random);
+  }
+  if (random.Chance(0.45)) {
+    const auto x = static_cast<float>(random.Uniform(0.2, 0.8)) * f.width;
+    AddAerial(b, f, x, 0.5F * d, HeightOver(profile, 0.5F * d) - 0.1F);
+  }
+}
+
+}  // namespace orb360::town

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "apps/town/world/facade.h"
+
+namespace orb360::town {
+
+/// A shop in the ground floor of a front between `left` and `right`: display windows, a door, a
+/// fascia with a name and perhaps an awning, a sign over the pavement or, when closed, a shutter.
+/// `drop` is how far the ground may lie below the panel's origin.
+void AddShopFront(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float left, float right,
+                  float drop, Random& random);
+
+}  // namespace orb360::town
