@@ -11,6 +11,12 @@ namespace orb360::town {
 // --- ground ---
 /// Worn asphalt with cracks, patches and tar seams; 8 m.
 Texture PaintAsphalt(uint32_t seed);
+/// Asphalt laid not long ago, without cracks; 4 m.
+Texture PaintFreshAsphalt(uint32_t seed);
+/// A cast-iron cover in its frame, the disc inscribed in the tile; 0.66 m.
+Texture PaintManhole(uint32_t seed);
+/// The grate of a drain; 0.5 m x 0.36 m.
+Texture PaintDrain(uint32_t seed);
 /// Concrete pavement slabs of 0.5 m; 4 m.
 Texture PaintPavingSlabs(uint32_t seed);
 /// Granite setts of 0.125 m in rows; 4 m.

@@ -41,6 +41,41 @@ Texture PaintAsphalt(uint32_t seed) {
   });
 }
 
+Texture PaintFreshAsphalt(uint32_t seed) {
+  constexpr int kSize = 512;
+  return Texture::Paint(kSize, [seed](float x, float y) {
+    const float stone =
+        LatticeValue(static_cast<int>(x * kSize), static_cast<int>(y * kSize), seed);
+    const float value =
+        (0.05F + 0.035F * stone * stone) * (1 + 0.15F * TiledFbm(x, y, 4, 6, seed + 1, 0.6F));
+    return Rgba{value, value, value * 1.02F, 1};
+  });
+}
+
+Texture PaintManhole(uint32_t seed) {
+  return Texture::Paint(128, [seed](float x, float y) {
+    const float radius = 2 * std::hypot(x - 0.5F, y - 0.5F);
+    // A chequer of raised studs inside a plain rim.
+    const float stud = std::max(std::abs(std::sin(x * 50)), std::abs(std::sin(y * 50)));
+    float value = radius > 0.86F ? 0.2F : 0.09F + 0.09F * SmoothStep(0.6F, 0.9F, stud);
+    if (std::abs(radius - 0.84F) < 0.025F) value = 0.015F;
+    if (std::abs(radius - 0.5F) < 0.06F) value = 0.13F;
+    value *= 1 + 0.25F * TiledFbm(x, y, 6, 5, seed, 0.7F);
+    const float rust = SmoothStep(0, 1, TiledFbm(x, y, 3, 4, seed + 1));
+    return Rgba{value * (1.05F + 0.25F * rust), value, value * (0.92F - 0.2F * rust), 1};
+  });
+}
+
+Texture PaintDrain(uint32_t seed) {
+  return Texture::Paint(128, [seed](float x, float y) {
+    const float bar = std::abs(x * 9 - std::floor(x * 9) - 0.5F);
+    const bool frame = std::min({x, y, 1 - x, 1 - y}) < 0.09F || std::abs(y - 0.5F) < 0.04F;
+    const float value =
+        (frame || bar > 0.28F ? 0.12F : 0.008F) * (1 + 0.3F * TiledFbm(x, y, 6, 5, seed, 0.7F));
+    return Rgba{value * 1.1F, value, value * 0.9F, 1};
+  });
+}
+
 Texture PaintPavingSlabs(uint32_t seed) {
   return Texture::Paint(512, [seed](float x, float y) {
     constexpr int kRows = 8;

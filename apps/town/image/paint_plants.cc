@@ -36,6 +36,8 @@ Texture PaintLeaves(uint32_t seed) {
                       static_cast<float>(random.Uniform(0.11, 0.19)),
                       static_cast<float>(random.Uniform(0.55, 1.25))});
   }
+  const Rgba base = Mix({0.14F, 0.19F, 0.045F, 1}, {0.095F, 0.15F, 0.06F, 1},
+                        static_cast<float>(random.Uniform()));
   return Texture::Paint(256, [=](float x, float y) {
     Rgba colour{0.06F, 0.09F, 0.03F, 0};
     for (const Leaf& leaf : leaves) {
@@ -48,7 +50,7 @@ Texture PaintLeaves(uint32_t seed) {
       if (std::abs(across) > half_width) continue;
       const float vein = std::abs(across) < 0.02F ? 1.3F : 1.0F;
       const float shade = leaf.shade * vein * (0.85F + 0.3F * along) * (across > 0 ? 1.0F : 0.82F);
-      colour = shade * Rgba{0.11F, 0.19F, 0.045F, 1};
+      colour = shade * base;
     }
     return colour;
   });

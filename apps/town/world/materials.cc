@@ -40,6 +40,9 @@ Materials PaintMaterials(uint64_t seed) {
   m.blotches_texture = library.AddTexture(PaintBlotches(next()));
 
   m.asphalt = library.AddMatte(PaintAsphalt(next()), 8, 0.5F);
+  m.fresh_asphalt = library.AddMatte(PaintFreshAsphalt(next()), 4, 0.4F);
+  m.manhole = library.Add({library.AddTexture(PaintManhole(next())), Finish::kMatte, false, 1, 0});
+  m.drain = library.Add({library.AddTexture(PaintDrain(next())), Finish::kMatte, false, 1, 0});
   m.setts = library.AddMatte(PaintSetts(next()), 4, 0.4F);
   m.paving = library.AddMatte(PaintPavingSlabs(next()), 4, 0.4F);
   m.kerb = library.AddMatte(PaintConcrete(next()), 4, 0.4F);
@@ -90,12 +93,12 @@ Materials PaintMaterials(uint64_t seed) {
   for (int i = 0; i < 24; ++i)
     m.house_numbers.push_back(
         library.Add({library.AddTexture(PaintHouseNumber(next())), Finish::kMatte, false, 1, 0}));
-  for (int i = 0; i < 6; ++i)
+  for (int i = 0; i < 10; ++i)
     m.murals.push_back(
         library.Add({library.AddTexture(PaintMural(next())), Finish::kMatte, true, 1, 0}));
   m.number_plate =
       library.Add({library.AddTexture(PaintNumberPlate(next())), Finish::kMatte, false, 1, 0});
-  for (int i = 0; i < 3; ++i)
+  for (int i = 0; i < 5; ++i)
     m.leaves.push_back(
         library.Add({library.AddTexture(PaintLeaves(next())), Finish::kFoliage, true, 1, 0}));
   return m;

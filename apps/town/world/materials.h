@@ -37,7 +37,7 @@ struct Palette {
 
 /// A procedural town's palette, with the names the builders use.
 struct Materials : Palette {
-  MaterialId asphalt, setts, paving, kerb, grass, road_paint;
+  MaterialId asphalt, fresh_asphalt, manhole, drain, setts, paving, kerb, grass, road_paint;
   MaterialId plaster, ashlar, concrete, roof_tiles, slates, gravel;
   MaterialId trim;   ///< painted wood or stone around openings, to be tinted
   MaterialId metal;  ///< dark painted metal

@@ -1,13 +1,16 @@
 #include "apps/town/world/town.h"
 
 #include <utility>
+#include <vector>
 
 #include "apps/town/image/random.h"
+#include "apps/town/world/boundary.h"
 #include "apps/town/world/building.h"
 #include "apps/town/world/furnish.h"
 #include "apps/town/world/ground.h"
 #include "apps/town/world/landmarks.h"
 #include "apps/town/world/lots.h"
+#include "apps/town/world/road_details.h"
 
 namespace orb360::town {
 
@@ -26,12 +29,15 @@ Town BuildTown(uint64_t seed, PlanOptions plan) {
   AddRoadMarkings(town.plan, builder);
   for (const Park& park : town.plan.parks) AddParkPaths(town.plan, park, builder);
   for (const Bridge& bridge : town.plan.bridges) AddBridge(town.plan, bridge, builder);
+  AddRoadDetails(town.plan, random.Fork(5), builder);
   Random lots_random = random.Fork(3);
   uint64_t number = 100;
-  for (const Lot& lot : LayOutLots(town.plan, lots_random)) {
+  const std::vector<Lot> lots = LayOutLots(town.plan, lots_random);
+  for (const Lot& lot : lots) {
     Random lot_random = random.Fork(number++);
     AddBuilding(lot, lot_random, builder);
   }
+  AddBoundaries(lots, random.Fork(6), builder);
   town.scenery.fixed = std::move(builder.mesh());
   FurnishStreets(random.Fork(4), materials, &town);
   town.scenery.fixed.PartitionCutouts(materials);

@@ -34,9 +34,29 @@ void AddLeafCard(MeshBuilder& b, MaterialId leaves, const Vector3f& root, const 
   b.AddTriangle(leaves, index[0], index[2], index[3]);
 }
 
+/// How a kind of tree grows; lengths in metres.
+struct Species {
+  float trunk_low, trunk_high;  ///< range of the trunk's length
+  float spread;                 ///< how far branches lean from their parent's direction
+  float rise;                   ///< how strongly they turn upwards
+  float shortening;             ///< of a branch against its parent, on average
+  float leaf_size;              ///< side of a card of leaves
+  Rgba leaf_tint;
+  Rgba bark_tint;
+};
+
+constexpr std::array<Species, 5> kSpecies = {{
+    // lime, plane, poplar, birch, maple turning red
+    {2.2F, 3.0F, 1.0F, 0.35F, 0.68F, 0.95F, {0.8F, 0.9F, 0.7F, 1}, {0.8F, 0.8F, 0.8F, 1}},
+    {2.8F, 3.4F, 1.15F, 0.25F, 0.74F, 1.1F, {0.9F, 0.9F, 0.75F, 1}, {1, 1, 0.9F, 1}},
+    {2.4F, 2.8F, 0.42F, 1.1F, 0.86F, 0.85F, {0.7F, 0.82F, 0.7F, 1}, {0.7F, 0.7F, 0.7F, 1}},
+    {2.6F, 3.4F, 0.8F, 0.45F, 0.66F, 0.7F, {0.95F, 0.95F, 0.7F, 1}, {1, 1, 1, 1}},
+    {1.9F, 2.4F, 0.95F, 0.4F, 0.7F, 0.9F, {1, 0.62F, 0.5F, 1}, {0.7F, 0.65F, 0.6F, 1}},
+}};
+
 /// A branch with branches, down to `levels`; the ends of the last ones are collected.
-void Grow(MeshBuilder& b, const Vector3f& base, const Vector3f& direction, float length,
-          float radius, int levels, Random& random, std::vector<Vector3f>* tips) {
+void Grow(MeshBuilder& b, const Species& species, const Vector3f& base, const Vector3f& direction,
+          float length, float radius, int levels, Random& random, std::vector<Vector3f>* tips) {
   const Vector3f middle = base + 0.5F * length * direction;
   const Vector3f bent =
       (direction + 0.25F * RandomDirection(random) + Vector3f(0, 0, 0.15F)).normalized();
@@ -49,11 +69,11 @@ void Grow(MeshBuilder& b, const Vector3f& base, const Vector3f& direction, float
   const int children = 3 + random.Int(2);
   for (int i = 0; i < children; ++i) {
     Vector3f side = RandomDirection(random);
-    side.z() = 0.25F + 0.5F * std::abs(side.z());
-    const Vector3f child = (0.55F * bent + side.normalized()).normalized();
-    Grow(b, i % 2 == 0 ? end : Vector3f(0.35F * middle + 0.65F * end), child,
-         length * static_cast<float>(random.Uniform(0.55, 0.8)), 0.5F * radius, levels - 1, random,
-         tips);
+    side.z() = species.rise + 0.5F * std::abs(side.z());
+    const Vector3f child = (0.55F * bent + species.spread * side.normalized()).normalized();
+    const auto share = static_cast<float>(random.Uniform(-0.12, 0.12)) + species.shortening;
+    Grow(b, species, i % 2 == 0 ? end : Vector3f(0.35F * middle + 0.65F * end), child,
+         length * share, 0.5F * radius, levels - 1, random, tips);
   }
 }
 
@@ -62,39 +82,26 @@ void Grow(MeshBuilder& b, const Vector3f& base, const Vector3f& direction, float
 Mesh MakeTree(const Materials& materials, Random random) {
   MeshBuilder b(materials);
   std::vector<Vector3f> tips;
-  const auto trunk = static_cast<float>(random.Uniform(2.2, 3.2));
-  const auto crown = static_cast<float>(random.Uniform(0.8, 1.25));
-  Grow(b, {0, 0, -0.3F}, Vector3f::UnitZ(), trunk, static_cast<float>(random.Uniform(0.12, 0.2)), 4,
-       random, &tips);
+  const Species& species = random.Pick(std::span<const Species>(kSpecies));
+  const auto trunk = static_cast<float>(random.Uniform(species.trunk_low, species.trunk_high));
+  b.set_tint(species.bark_tint);
+  Grow(b, species, {0, 0, -0.3F}, Vector3f::UnitZ(), trunk,
+       static_cast<float>(random.Uniform(0.12, 0.2)), 4, random, &tips);
   Vector3f centre = Vector3f::Zero();
   for (const Vector3f& tip : tips) centre += tip / static_cast<float>(tips.size());
   const MaterialId leaves = random.Pick(std::span<const MaterialId>(materials.leaves));
-  const auto hue = static_cast<float>(random.Uniform(0.6, 1.0));
-  const float yellow = static_cast<float>(random.Uniform(0.55, 1.0));
+  const auto yellow = static_cast<float>(random.Uniform(0.8, 1.0));
   for (const Vector3f& tip : tips) {
     for (int i = 0; i < 5; ++i) {
       const Vector3f outward = (tip - centre + Vector3f(0, 0, 0.4F)).normalized();
-      const auto shade = static_cast<float>(random.Uniform(0.65, 1.0));
-      b.set_tint({shade * yellow, shade * hue, shade * 0.7F, 1});
+      const auto shade = static_cast<float>(random.Uniform(0.6, 1.0));
+      const Rgba& tint = species.leaf_tint;
+      b.set_tint({shade * yellow * tint.r, shade * tint.g, shade * tint.b, 1});
       AddLeafCard(b, leaves, tip + 0.15F * RandomDirection(random),
                   RandomDirection(random) + 0.6F * outward,
-                  crown * static_cast<float>(random.Uniform(0.6, 1.0)), outward, random);
+                  species.leaf_size * static_cast<float>(random.Uniform(0.65, 1.05)), outward,
+                  random);
     }
-  }
-  return std::move(b.mesh());
-}
-
-Mesh MakeBush(const Materials& materials, Random random) {
-  MeshBuilder b(materials);
-  const MaterialId leaves = random.Pick(std::span<const MaterialId>(materials.leaves));
-  for (int i = 0; i < 90; ++i) {
-    const Vector3f p(static_cast<float>(random.Uniform(-0.5, 0.5)),
-                     static_cast<float>(random.Uniform(-0.35, 0.35)),
-                     static_cast<float>(random.Uniform(0, 0.95)));
-    const Vector3f outward = Vector3f(0, 2.5F * p.y(), p.z()).normalized();
-    const auto shade = static_cast<float>(random.Uniform(0.5, 0.9));
-    b.set_tint({shade * 0.8F, shade, shade * 0.7F, 1});
-    AddLeafCard(b, leaves, p, RandomDirection(random) + outward, 0.42F, outward, random);
   }
   return std::move(b.mesh());
 }

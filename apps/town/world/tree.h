@@ -5,10 +5,7 @@
 
 namespace orb360::town {
 
-/// A broad-leaved tree standing at the origin, about 6 to 10 m tall.
+/// A broad-leaved tree of some species standing at the origin, about 6 to 11 m tall.
 Mesh MakeTree(const Materials& materials, Random random);
-
-/// A clipped hedge of unit length along x, centred at the origin: 1 m wide and 1.2 m high.
-Mesh MakeBush(const Materials& materials, Random random);
 
 }  // namespace orb360::town
