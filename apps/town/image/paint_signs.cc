@@ -171,7 +171,7 @@ Texture PaintMural(uint32_t seed) {
   return Texture::Paint(kSize, [&flat, seed](float x, float y) {
     Rgba c = flat.Sample(x, y, 0);
     const float age = TiledFbm(x, y, 4, 8, seed, 0.65F);
-    c = Mix(c, {0.35F, 0.33F, 0.3F, 1}, 0.35F + 0.15F * age);
+    c = 0.8F * Mix(c, {0.34F, 0.31F, 0.27F, 1}, 0.5F + 0.2F * age);
     const bool inside = std::min({x, y, 1 - x, 1 - y}) > 0.008F;
     c.a = inside && age < 0.55F ? 1.0F : 0.0F;
     return c;

@@ -40,18 +40,18 @@ Light MakeLight(std::string_view name, uint64_t seed) {
     light.cloud_cover = 0.42F;
   } else if (name == "morning") {
     elevation = static_cast<float>(random.Uniform(0.38, 0.5));
-    light.sun = {2.1F, 1.72F, 1.28F};
-    light.zenith = {0.22F, 0.36F, 0.64F};
-    light.horizon = {0.85F, 0.84F, 0.82F};
-    light.ground = {0.20F, 0.18F, 0.16F};
+    light.sun = {2.45F, 2.0F, 1.48F};
+    light.zenith = {0.26F, 0.42F, 0.74F};
+    light.horizon = {0.95F, 0.94F, 0.92F};
+    light.ground = {0.24F, 0.22F, 0.20F};
     light.cloud_cover = 0.35F;
     light.haze = 500;
   } else if (name == "sunset") {
     elevation = static_cast<float>(random.Uniform(0.16, 0.24));
-    light.sun = {2.5F, 1.35F, 0.62F};
-    light.zenith = {0.20F, 0.28F, 0.50F};
-    light.horizon = {1.15F, 0.72F, 0.45F};
-    light.ground = {0.20F, 0.15F, 0.12F};
+    light.sun = {3.2F, 1.85F, 0.95F};
+    light.zenith = {0.34F, 0.46F, 0.76F};
+    light.horizon = {1.35F, 0.92F, 0.64F};
+    light.ground = {0.30F, 0.25F, 0.22F};
     light.cloud_cover = 0.5F;
     light.haze = 600;
   } else if (name == "overcast") {

@@ -49,11 +49,11 @@ void AddPatch(const StreetFrame& frame, MaterialId material, double s0, double s
 void AddMendedPiece(const StreetFrame& frame, double s0, double s1, double y0, double y1,
                     Random& random, MeshBuilder& b) {
   const MaterialId asphalt = b.materials().fresh_asphalt;
-  constexpr double kSeam = 0.05;  // metres
+  constexpr double kSeam = 0.035;  // metres
   const auto shade = static_cast<float>(random.Uniform(0.6, 1.0));
   b.set_tint({shade, shade, shade, 1});
   AddPatch(frame, asphalt, s0 + kSeam, s1 - kSeam, y0 + kSeam, y1 - kSeam, kPatchHeight, b);
-  b.set_tint({0.3F, 0.3F, 0.3F, 1});
+  b.set_tint({0.4F, 0.4F, 0.4F, 1});
   AddPatch(frame, asphalt, s0, s1, y0, y0 + kSeam, kPatchHeight, b);
   AddPatch(frame, asphalt, s0, s1, y1 - kSeam, y1, kPatchHeight, b);
   AddPatch(frame, asphalt, s0, s0 + kSeam, y0 + kSeam, y1 - kSeam, kPatchHeight, b);
@@ -103,7 +103,7 @@ void AddRoadDetails(const StreetPlan& plan, Random random, MeshBuilder& b) {
     const double length = street.Length();
     const auto half_width = [&street](double s) { return street.At(s).half_width; };
     for (double s = random.Uniform(2, 12); s < length - 7; s += random.Uniform(9, 26)) {
-      if (random.Chance(0.3)) {  // a trench from kerb to kerb
+      if (random.Chance(0.15)) {  // a trench from kerb to kerb
         const double end = s + random.Uniform(0.5, 1.1);
         const double edge = std::min(half_width(s), half_width(end)) - 0.02;
         AddMendedPiece(frame, s, end, -edge, edge, random, b);

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "apps/town/world/hedge.h"
+
 namespace orb360::town {
 namespace {
 
@@ -103,6 +105,13 @@ Mesh MakeTree(const Materials& materials, Random random) {
                   random);
     }
   }
+  return std::move(b.mesh());
+}
+
+Mesh MakeBush(const Materials& materials, Random random) {
+  MeshBuilder b(materials);
+  AddHedge(b, {{-0.5F, -0.4F, 0}, Vector3f::UnitX(), Vector3f::UnitZ(), -Vector3f::UnitY()}, 1,
+           1.1F, 0.8F, random);
   return std::move(b.mesh());
 }
 

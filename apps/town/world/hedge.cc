@@ -1,0 +1,45 @@
+#include "apps/town/world/hedge.h"
+
+#include <span>
+
+namespace orb360::town {
+
+void AddHedge(MeshBuilder& b, const Panel& p, float length, float height, float depth,
+              Random& random) {
+  constexpr float kCard = 0.45F;    // metres
+  constexpr float kInside = 0.16F;  // metres from the clipped surface to the core
+  const Materials& m = b.materials();
+  const MaterialId leaves = random.Pick(std::span<const MaterialId>(m.leaves));
+  b.set_tint({0.012F, 0.02F, 0.008F, 1});
+  b.AddBox(m.rubber, p, 0, length, -0.5F, height - kInside, kInside - depth, -kInside);
+  const auto card = [&](const Vector3f& centre, const Vector3f& out, const Vector3f& up) {
+    const auto uniform = [&](double low, double high) {
+      return static_cast<float>(random.Uniform(low, high));
+    };
+    const float shade = uniform(0.45, 0.8);
+    b.set_tint({shade * 0.85F, shade, shade * 0.75F, 1});
+    const Vector3f across = (out.cross(up) + uniform(-0.5, 0.5) * up).normalized();
+    const Vector3f along = (out.cross(across) + uniform(-0.25, 0.25) * out).normalized();
+    const Vector3f x = 0.5F * kCard * across;
+    const Vector3f y = 0.5F * kCard * along;
+    const size_t first = b.mesh().vertices.size();
+    b.AddQuad(leaves, {centre - x - y, centre + x - y, centre + x + y, centre - x + y},
+              {Vector2f(0, 0), Vector2f(1, 0), Vector2f(1, 1), Vector2f(0, 1)});
+    for (size_t i = first; i < b.mesh().vertices.size(); ++i)
+      b.mesh().vertices[i].normal = (out * 127).array().round().cast<int8_t>();
+  };
+  const auto count = [](float area) { return static_cast<int>(14 * area); };
+  const auto place = [&](float low, float high) {
+    return static_cast<float>(random.Uniform(low, high));
+  };
+  for (int i = 0; i < count(length * height); ++i) {
+    const float x = place(0, length);
+    const float z = place(0, height - 0.1F);
+    card(p.At(x, z, place(-0.16F, -0.04F)), p.out, p.up);
+    card(p.At(x, z, place(0.04F, 0.16F) - depth), -p.out, p.up);
+  }
+  for (int i = 0; i < count(length * depth); ++i)
+    card(p.At(place(0, length), height - place(0.04F, 0.14F), place(-depth, 0)), p.up, p.out);
+}
+
+}  // namespace orb360::town

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "apps/town/image/random.h"
+#include "apps/town/world/mesh.h"
+
+namespace orb360::town {
+
+/// A clipped hedge from the panel's origin along its x, `length` long: cards of leaves around a
+/// dark core, within 0.15 m of `height` and of `depth` metres behind the panel.
+void AddHedge(MeshBuilder& b, const Panel& p, float length, float height, float depth,
+              Random& random);
+
+}  // namespace orb360::town
