@@ -28,11 +28,13 @@ std::string RandomName(Random& random) {
   return name;
 }
 
-/// A colour as OpenCV takes it, each channel in [low, high].
+/// A printer's colour as OpenCV takes it: about a grey in [low, high], none too loud.
 cv::Scalar DrawColour(Random& random, double low, double high) {
-  const double b = random.Uniform(low, high);
-  const double g = random.Uniform(low, high);
-  const double r = random.Uniform(low, high);
+  const double grey = random.Uniform(low, high);
+  const double reach = std::min(0.45 * grey + 12, 70.0);
+  const double b = grey + random.Uniform(-reach, 0.6 * reach);
+  const double g = grey + random.Uniform(-reach, reach);
+  const double r = grey + random.Uniform(-reach, 1.2 * reach);
   return {b, g, r};
 }
 

@@ -70,6 +70,8 @@ Texture::Texture(int width, int height, std::vector<Rgba> texels) {
                    std::has_single_bit(static_cast<unsigned>(height)) &&
                    texels.size() == static_cast<size_t>(width) * static_cast<size_t>(height),
                width, height, texels.size());
+  ORB360_CHECK(std::all_of(texels.begin(), texels.end(),
+                           [](const Rgba& c) { return std::isfinite(c.r + c.g + c.b + c.a); }));
   covered_.resize(texels.size() / 64 + 1);
   for (size_t i = 0; i < texels.size(); ++i) {
     if (texels[i].a >= 0.5F) covered_[i / 64] |= 1ULL << (i % 64);

@@ -19,6 +19,8 @@ namespace {
 /// Indices of the town's models.
 struct Models {
   std::vector<uint32_t> trees, lamps, signs, vehicles, hedges;
+  std::vector<uint32_t> small;  ///< post boxes, hydrants, cabinets: stand anywhere by the kerb
+  std::vector<uint32_t> columns, shelters;
   uint32_t traffic_light, bench, bin, bollard;
 };
 
@@ -51,6 +53,13 @@ Models MakeModels(const Random& random, const Materials& m, Town* town) {
     }
   }
   for (uint64_t i = 0; i < 4; ++i) models.hedges.push_back(add(MakeBush(m, random.Fork(90 + i))));
+  models.small = {add(MakePostBox(m)), add(MakeHydrant(m))};
+  for (uint64_t i = 0; i < 3; ++i)
+    models.small.push_back(add(MakeCabinet(m, random.Fork(100 + i))));
+  for (uint64_t i = 0; i < 2; ++i)
+    models.columns.push_back(add(MakeAdvertisingColumn(m, random.Fork(110 + i))));
+  for (uint64_t i = 0; i < 2; ++i)
+    models.shelters.push_back(add(MakeBusShelter(m, random.Fork(120 + i))));
   models.traffic_light = add(MakeTrafficLight(m));
   models.bench = add(MakeBench(m));
   models.bin = add(MakeBin(m));
@@ -149,6 +158,17 @@ void FurnishSide(Side& side, const Street& street, const Models& models, const T
       side.Place(models.bin, s, 0.6, 0);
     else
       side.Place(models.bench, s, street.pavement - 0.5, 0);
+  }
+  for (double s = random.Uniform(4, 25); s < street.Length(); s += random.Uniform(14, 40)) {
+    if (!side.Clear(s, 5)) continue;
+    if (random.Chance(0.12) && street.pavement > 2.8)
+      side.Place(pick(models.columns), s, 0.6, random.Uniform(0, 6.28)).lookout = 4;
+    else
+      side.Place(pick(models.small), s, 0.45, 0).lookout = 2;
+  }
+  if (street.pavement > 2.8 && random.Chance(0.3)) {
+    const double s = random.Uniform(0.3, 0.7) * street.Length();
+    if (side.Clear(s, 9)) side.Place(pick(models.shelters), s, 0.3, 0).lookout = 3;
   }
   if (random.Chance(0.3)) {
     for (double s = 2; s < street.Length(); s += 2.2) {

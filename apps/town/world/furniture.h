@@ -12,5 +12,13 @@ Mesh MakeRoadSign(const Materials& materials, Random random);
 Mesh MakeBench(const Materials& materials);
 Mesh MakeBin(const Materials& materials);
 Mesh MakeBollard(const Materials& materials);
+Mesh MakePostBox(const Materials& materials);
+Mesh MakeHydrant(const Materials& materials);
+/// A cabinet of the telephone or electricity company, with bills stuck on it.
+Mesh MakeCabinet(const Materials& materials, Random random);
+/// A column covered with posters, 3.4 m high.
+Mesh MakeAdvertisingColumn(const Materials& materials, Random random);
+/// A bus shelter, 3.6 m long and 0.75 m deep, open towards the carriageway.
+Mesh MakeBusShelter(const Materials& materials, Random random);
 
 }  // namespace orb360::town

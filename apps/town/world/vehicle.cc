@@ -150,14 +150,21 @@ void AddMirrors(MeshBuilder& b, const VehicleShape& s) {
   }
 }
 
-/// What is seen below a car is dark: a plate just above the road.
+/// What is seen below a car is dark: an octagonal plate just above the road.
 void AddUnderside(MeshBuilder& b, const VehicleShape& s) {
-  const float half = 0.47F * s.length;
-  const float w = 0.43F * s.width;
+  const float x = 0.46F * s.length;
+  const float y = 0.42F * s.width;
+  const float cut = 0.35F * s.width;
   constexpr float kHeight = 0.03F;  // metres
   b.set_tint({0.012F, 0.012F, 0.012F, 1});
-  b.AddFace(b.materials().rubber, {-half, -w, kHeight}, {half, -w, kHeight}, {half, w, kHeight},
-            {-half, w, kHeight});
+  b.AddGroundPolygon(b.materials().rubber, {{x - cut, -y, kHeight},
+                                            {x, cut - y, kHeight},
+                                            {x, y - cut, kHeight},
+                                            {x - cut, y, kHeight},
+                                            {cut - x, y, kHeight},
+                                            {-x, y - cut, kHeight},
+                                            {-x, cut - y, kHeight},
+                                            {cut - x, -y, kHeight}});
 }
 
 }  // namespace

@@ -134,9 +134,9 @@ std::vector<OutlinePoint> Outline(const VehicleShape& s) {
 /// A piece of another material on the skin, between two angles of the outline and two heights.
 void AddPatch(MeshBuilder& b, const VehicleShape& s, float angle0, float angle1, float z0, float z1,
               const Skin& skin) {
-  constexpr int kAround = 5;
-  constexpr int kUp = 3;
-  constexpr float kProud = 1.004F;
+  constexpr int kAround = 10;
+  constexpr int kUp = 4;
+  constexpr float kProud = 1.005F;
   std::vector<std::vector<Vector3f>> rows;
   for (int i = 0; i <= kAround; ++i) {
     const OutlinePoint p = OutlineAt(s, std::lerp(angle0, angle1, static_cast<float>(i) / kAround));
@@ -250,7 +250,7 @@ void AddBody(MeshBuilder& b, const VehicleShape& s) {
     rows.push_back(std::move(row));
   }
   const Skin dark{m.rubber, {0.01F, 0.01F, 0.01F, 1}};
-  AddGrid(b, rows, [&](size_t, size_t j) { return j == 0 ? dark : Skin{m.paint}; });
+  AddGrid(b, rows, [&](size_t, size_t j) { return j <= 1 ? dark : Skin{m.paint}; });
   AddLampsAndGrille(b, s);
   AddDoors(b, s);
 }

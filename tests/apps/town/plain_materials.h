@@ -20,4 +20,17 @@ inline Materials PlainMaterials() {
   return materials;
 }
 
+/// Plain materials under every name that the builders of houses and things use; those of a kind
+/// that is told apart (`paint`, `leaves`) have a number of their own.
+inline Materials NamedPlainMaterials() {
+  Materials m = PlainMaterials();
+  m.paint = 3;
+  m.all.push_back({.finish = Finish::kPaint});
+  for (auto* list : {&m.bricks, &m.rooms, &m.shops, &m.doors, &m.signs, &m.posters,
+                     &m.house_numbers, &m.murals, &m.roller_shutters})
+    list->push_back(0);
+  m.leaves.push_back(2);
+  return m;
+}
+
 }  // namespace orb360::town

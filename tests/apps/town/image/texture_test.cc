@@ -57,6 +57,12 @@ TEST(Texture, RefusesSidesThatAreNoPowersOfTwo) {
   EXPECT_THROW(Texture(4, 4, std::vector<Rgba>(15)), ContractError);
 }
 
+TEST(Texture, RefusesColoursThatAreNoNumbers) {
+  std::vector<Rgba> texels(4);
+  texels[2].g = std::nanf("");
+  EXPECT_THROW(Texture(2, 2, texels), ContractError);
+}
+
 TEST(FastLog2, IsWithinATenthOfTheLogarithm) {
   for (float x = 1e-4F; x < 1e6F; x *= 1.07F) EXPECT_NEAR(FastLog2(x), std::log2(x), 0.09F) << x;
 }
