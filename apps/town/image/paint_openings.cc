@@ -117,7 +117,17 @@ Texture PaintShop(uint32_t seed) {
 
 Texture PaintDoor(uint32_t seed) {
   Random random(seed);
-  const Rgba paint = RandomColour(random, 0.04F, 0.35F);
+  static constexpr std::array<std::array<int, 3>, 9> kPaints = {{{92, 58, 36},
+                                                                 {60, 38, 26},
+                                                                 {126, 88, 54},
+                                                                 {40, 62, 50},
+                                                                 {34, 48, 74},
+                                                                 {112, 30, 30},
+                                                                 {52, 54, 58},
+                                                                 {204, 200, 190},
+                                                                 {70, 100, 112}}};
+  const auto& c = kPaints[static_cast<size_t>(random.Int(9))];
+  const Rgba paint = static_cast<float>(random.Uniform(0.7, 1.2)) * Srgb(c[0], c[1], c[2]);
   const bool glazed = random.Chance(0.5);
   const int rows = 2 + random.Int(3);
   return Texture::Paint(128, [=](float x, float y) {

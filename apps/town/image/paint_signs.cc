@@ -170,9 +170,9 @@ Texture PaintMural(uint32_t seed) {
   cv::rectangle(picture, {10, 10}, {kSize - 11, kSize - 11}, ink, 8);
   // Paint flakes off, and what stays has faded.
   const Texture flat = FromPicture(picture);
-  return Texture::Paint(kSize, [&flat, seed](float x, float y) {
-    Rgba c = flat.Sample(x, y, 0);
-    const float age = TiledFbm(x, y, 4, 8, seed, 0.65F);
+  return Texture::Paint(kSize / 2, [&flat, seed](float x, float y) {
+    Rgba c = flat.Sample(x, y, 1);
+    const float age = TiledFbm(x, y, 4, 6, seed, 0.7F);
     c = 0.8F * Mix(c, {0.34F, 0.31F, 0.27F, 1}, 0.5F + 0.2F * age);
     const bool inside = std::min({x, y, 1 - x, 1 - y}) > 0.008F;
     c.a = inside && age < 0.55F ? 1.0F : 0.0F;

@@ -56,9 +56,9 @@ Light MakeLight(std::string_view name, uint64_t seed) {
     light.haze = 600;
   } else if (name == "overcast") {
     elevation = 0.8F;
-    light.zenith = {0.95F, 0.98F, 1.02F};
-    light.horizon = {0.75F, 0.79F, 0.84F};
-    light.ground = {0.22F, 0.22F, 0.21F};
+    light.zenith = {1.3F, 1.35F, 1.4F};
+    light.horizon = {1.05F, 1.1F, 1.16F};
+    light.ground = {0.33F, 0.33F, 0.31F};
     light.cloud_cover = 1;
     light.haze = 450;
   } else {

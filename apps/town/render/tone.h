@@ -10,8 +10,8 @@
 
 namespace orb360::town {
 
-/// From radiance to 8-bit sRGB: a filmic curve (Hable's form fitted by Narkowicz 2015) with a soft
-/// shoulder, then the sRGB transfer function.
+/// From radiance to 8-bit sRGB: a filmic curve (Hable's form fitted by Narkowicz 2015, with a
+/// longer toe so that shade keeps its detail), then the sRGB transfer function.
 class ToneCurve {
  public:
   ToneCurve() {
@@ -19,7 +19,7 @@ class ToneCurve {
       const double root = static_cast<double>(i) / (table_.size() - 1);
       const double x = kExposure * kMaximum * root * root;
       const double film =
-          std::clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
+          std::clamp(x * (2.51 * x + 0.08) / (x * (2.43 * x + 0.59) + 0.14), 0.0, 1.0);
       const double srgb =
           film <= 0.0031308 ? 12.92 * film : 1.055 * std::pow(film, 1 / 2.4) - 0.055;
       table_[i] = static_cast<uint8_t>(std::lround(255 * srgb));

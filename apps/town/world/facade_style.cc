@@ -45,7 +45,8 @@ FacadeStyle DrawFacadeStyle(Random& random, const Materials& m, float width) {
   }
   const bool stone_base = random.Chance(0.5);
   s.ground_wall = stone_base ? m.ashlar : s.wall;
-  s.ground_tint = stone_base ? 0.85F * Pastel(random) : s.wall_tint;
+  s.ground_tint =
+      stone_base ? 0.85F * Mix(Pastel(random), {0.75F, 0.75F, 0.75F, 1}, 0.65F) : s.wall_tint;
   const auto trim = static_cast<float>(random.Uniform(0.55, 1.0));
   s.trim_tint = {trim, trim * 0.98F, trim * 0.93F, 1};
   static constexpr std::array<std::array<int, 3>, 6> kFrames = {

@@ -175,13 +175,13 @@ void AddProfileRoof(MeshBuilder& b, const FacadeStyle& style, const RoofFrame& f
 
 void AddHipRoof(MeshBuilder& b, const RoofFrame& f, MaterialId tiles, const Rgba& tint,
                 float rise) {
-  constexpr float kSide = 0.15F;  // metres, overhang towards the neighbours
+  constexpr float kOverhang = 0.2F;  // metres: less than elsewhere, for it reaches over the sides
   const float inset = std::min(0.5F * f.depth, 0.5F * f.width);
-  const float fall = kFrontOverhang * rise / (0.5F * f.depth);
-  const std::array<Vector3f, 4> eaves = {f.At(-kSide, -kFrontOverhang, -fall),
-                                         f.At(f.width + kSide, -kFrontOverhang, -fall),
-                                         f.At(f.width + kSide, f.depth + kFrontOverhang, -fall),
-                                         f.At(-kSide, f.depth + kFrontOverhang, -fall)};
+  const float fall = kOverhang * rise / (0.5F * f.depth);
+  const float side = kOverhang * inset / (0.5F * f.depth);  // all slopes start on the walls
+  const std::array<Vector3f, 4> eaves = {
+      f.At(-side, -kOverhang, -fall), f.At(f.width + side, -kOverhang, -fall),
+      f.At(f.width + side, f.depth + kOverhang, -fall), f.At(-side, f.depth + kOverhang, -fall)};
   const Vector3f left = f.At(inset, 0.5F * f.depth, rise);
   const Vector3f right = f.At(f.width - inset, 0.5F * f.depth, rise);
   b.set_tint(tint);
