@@ -95,7 +95,7 @@ Texture PaintPavingSlabs(uint32_t seed) {
     value *=
         0.35F + 0.65F * SmoothStep(0.005F, 0.03F, edge + 0.008F * TiledFbm(x, y, 64, 2, seed + 5));
     const Cell gum = TiledCells(x, y, 30, seed + 6);
-    if (gum.id % 4 == 0) value *= 1 - 0.45F * (1 - SmoothStep(0.1F, 0.2F, gum.nearest));
+    if (gum.id % 9 == 0) value *= 1 - 0.4F * (1 - SmoothStep(0.1F, 0.2F, gum.nearest));
     const float tone = 0.05F * (LatticeValue(column, row, seed + 7) - 0.5F);
     return Rgba{value * (1.04F + tone), value, value * (0.93F - tone), 1};
   });
@@ -140,7 +140,7 @@ Texture PaintGrass(uint32_t seed) {
                                   TiledFbm(0.25F * x, y, 128, 2, seed + 9, 0.9F));
     const float clumps = TiledFbm(x, y, 12, 5, seed + 1, 0.65F);
     const float dry = SmoothStep(0.0F, 1.0F, TiledFbm(x, y, 3, 6, seed + 2, 0.6F));
-    const Rgba green = Mix(Srgb(48, 66, 30), Srgb(88, 100, 52), 0.5F + 0.5F * clumps);
+    const Rgba green = Mix(Srgb(44, 60, 30), Srgb(80, 90, 50), 0.5F + 0.5F * clumps);
     Rgba colour = Mix(green, Srgb(128, 120, 82), 0.7F * dry);
     const float bare = SmoothStep(0.75F, 1.0F, TiledFbm(x, y, 4, 6, seed + 3, 0.6F));
     colour = Mix(colour, Srgb(96, 82, 64), 0.8F * bare);

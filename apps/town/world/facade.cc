@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "apps/town/world/hedge.h"
 #include "apps/town/world/opening.h"
 #include "apps/town/world/shop_front.h"
 
@@ -145,29 +146,6 @@ void AddGroundFloor(MeshBuilder& b, const FacadeStyle& style, const Panel& p, fl
       b.set_tint({1, 1, 1, 1});
       b.AddPicture(PickFrom(random, m.posters), p, left + 0.05F, left + 0.5F, 0.9F, 1.8F, 0.008F);
     }
-  }
-}
-
-/// Ivy on a wall: cards of leaves, dense below and thinning out upwards.
-void AddIvy(MeshBuilder& b, const Panel& p, float width, float height, Random& random) {
-  const MaterialId leaves = PickFrom(random, b.materials().leaves);
-  const auto centre = static_cast<float>(random.Uniform(0.2, 0.8)) * width;
-  const auto top = static_cast<float>(random.Uniform(0.5, 0.95)) * height;
-  const float spread = std::min(0.45F * width, 3.0F);
-  const int cards = static_cast<int>(3.5F * spread * top);
-  for (int i = 0; i < cards; ++i) {
-    const auto z = static_cast<float>(random.Uniform(0, 1)) * top;
-    const float reach = spread * (1 - 0.75F * z / top);
-    const float x = centre + reach * static_cast<float>(random.Uniform(-1, 1));
-    const auto size = static_cast<float>(random.Uniform(0.7, 1.1));
-    const auto lean = static_cast<float>(random.Uniform(0.05, 0.3));
-    if (x < 0.5F * size || x > width - 0.5F * size) continue;
-    const auto shade = static_cast<float>(random.Uniform(0.45, 0.85));
-    b.set_tint({shade * 0.8F, shade, shade * 0.7F, 1});
-    b.AddQuad(leaves,
-              {p.At(x - 0.5F * size, z, 0.03F), p.At(x + 0.5F * size, z, 0.03F),
-               p.At(x + 0.5F * size, z + size, lean), p.At(x - 0.5F * size, z + size, lean)},
-              {Vector2f(0, 0), Vector2f(1, 0), Vector2f(1, 1), Vector2f(0, 1)});
   }
 }
 

@@ -10,4 +10,8 @@ namespace orb360::town {
 void AddHedge(MeshBuilder& b, const Panel& p, float length, float height, float depth,
               Random& random);
 
+/// Ivy on a wall `width` wide and `height` high: cards of leaves, dense below and thinning out
+/// upwards.
+void AddIvy(MeshBuilder& b, const Panel& p, float width, float height, Random& random);
+
 }  // namespace orb360::town
