@@ -12,7 +12,10 @@ void AddHedge(MeshBuilder& b, const Panel& p, float length, float height, float 
   const Materials& m = b.materials();
   const MaterialId leaves = random.Pick(std::span<const MaterialId>(m.leaves));
   b.set_tint({0.012F, 0.02F, 0.008F, 1});
-  b.AddBox(m.rubber, p, 0, length, -0.5F, height - kInside, kInside - depth, -kInside);
+  const float end = std::min(kInside, 0.3F * length);
+  b.AddBox(m.rubber, p, end, length - end, -0.5F, height - kInside, kInside - depth, -kInside);
+  const Panel rear{p.At(length, 0, kInside - depth), -p.right, p.up, -p.out};
+  b.AddRectangle(m.rubber, rear, end, length - end, -0.5F, height - kInside);
   const auto card = [&](const Vector3f& centre, const Vector3f& out, const Vector3f& up) {
     const auto uniform = [&](double low, double high) {
       return static_cast<float>(random.Uniform(low, high));
@@ -41,6 +44,12 @@ void AddHedge(MeshBuilder& b, const Panel& p, float length, float height, float 
   }
   for (int i = 0; i < count(length * depth); ++i)
     card(p.At(place(0, length), height - place(0.04F, 0.14F), place(-depth, 0)), p.up, p.out);
+  for (int i = 0; i < count(height * depth); ++i) {
+    const float z = place(0, height - 0.1F);
+    const float y = place(0, -depth);
+    card(p.At(place(0.04F, 0.16F), z, y), -p.right, p.up);
+    card(p.At(length - place(0.04F, 0.16F), z, y), p.right, p.up);
+  }
 }
 
 void AddIvy(MeshBuilder& b, const Panel& p, float width, float height, Random& random) {

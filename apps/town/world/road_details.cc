@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace orb360::town {
 namespace {
@@ -17,13 +18,29 @@ class StreetFrame {
  public:
   StreetFrame(const StreetPlan& plan, const Street& street) : plan_(&plan), street_(&street) {}
 
+  /// Whether the edges of a piece lie on the carriageway, not on an island in it.
+  bool IsRoad(double s0, double s1, double y0, double y1) const {
+    for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      const double s = std::lerp(s0, s1, share);
+      const double y = std::lerp(y0, y1, share);
+      for (const auto& [station, offset] :
+           {std::pair(s, y0), std::pair(s, y1), std::pair(s0, y), std::pair(s1, y)}) {
+        if (plan_->DistanceToRoad(PlanAt(station, offset)) > 0) return false;
+      }
+    }
+    return true;
+  }
   Vector3f At(double station, double offset, double height) const {
-    const StreetPoint p = street_->At(station);
-    const Vector2d q = p.position + offset * Vector2d(-p.tangent.y(), p.tangent.x());
+    const Vector2d q = PlanAt(station, offset);
     return Eigen::Vector3d(q.x(), q.y(), plan_->Height(q) + height).cast<float>();
   }
 
  private:
+  Vector2d PlanAt(double station, double offset) const {
+    const StreetPoint p = street_->At(station);
+    return p.position + offset * Vector2d(-p.tangent.y(), p.tangent.x());
+  }
+
   const StreetPlan* plan_;
   const Street* street_;
 };
@@ -48,6 +65,7 @@ void AddPatch(const StreetFrame& frame, MaterialId material, double s0, double s
 /// A piece of new asphalt with the tar of its seam around it.
 void AddMendedPiece(const StreetFrame& frame, double s0, double s1, double y0, double y1,
                     Random& random, MeshBuilder& b) {
+  if (!frame.IsRoad(s0, s1, y0, y1)) return;
   const MaterialId asphalt = b.materials().fresh_asphalt;
   constexpr double kSeam = 0.035;  // metres
   const auto shade = static_cast<float>(random.Uniform(0.6, 1.0));
@@ -64,6 +82,8 @@ void AddMendedPiece(const StreetFrame& frame, double s0, double s1, double y0, d
 void AddManhole(const StreetFrame& frame, double station, double offset, MeshBuilder& b) {
   constexpr double kRadius = 0.33;  // metres
   constexpr int kSides = 20;
+  if (!frame.IsRoad(station - kRadius, station + kRadius, offset - kRadius, offset + kRadius))
+    return;
   b.set_tint({1, 1, 1, 1});
   const auto rim = [&](int i) {
     const double angle = 2 * std::numbers::pi * i / kSides;
@@ -86,9 +106,10 @@ void AddManhole(const StreetFrame& frame, double station, double offset, MeshBui
 void AddDrain(const StreetFrame& frame, double station, double offset, MeshBuilder& b) {
   constexpr double kLength = 0.5;
   constexpr double kWidth = 0.36;
-  b.set_tint({1, 1, 1, 1});
   const double y0 = offset - 0.5 * kWidth;
   const double y1 = offset + 0.5 * kWidth;
+  if (!frame.IsRoad(station, station + kLength, y0, y1)) return;
+  b.set_tint({1, 1, 1, 1});
   b.AddQuad(b.materials().drain,
             {frame.At(station, y0, kIronHeight), frame.At(station + kLength, y0, kIronHeight),
              frame.At(station + kLength, y1, kIronHeight), frame.At(station, y1, kIronHeight)},
@@ -98,11 +119,18 @@ void AddDrain(const StreetFrame& frame, double station, double offset, MeshBuild
 }  // namespace
 
 void AddRoadDetails(const StreetPlan& plan, Random random, MeshBuilder& b) {
-  for (const Street& street : plan.streets) {
+  for (size_t index = 0; index < plan.streets.size(); ++index) {
+    const Street& street = plan.streets[index];
     const StreetFrame frame(plan, street);
     const double length = street.Length();
+    // Nothing where streets meet: pieces of two streets would lie in each other.
+    const auto clear = [&](double s) {
+      return plan.DistanceToOtherRoads(street.At(s).position, index) >
+             1.5 + street.At(s).half_width;
+    };
     const auto half_width = [&street](double s) { return street.At(s).half_width; };
     for (double s = random.Uniform(2, 12); s < length - 7; s += random.Uniform(9, 26)) {
+      if (!clear(s) || !clear(s + 6)) continue;
       if (random.Chance(0.15)) {  // a trench from kerb to kerb
         const double end = s + random.Uniform(0.5, 1.1);
         const double edge = std::min(half_width(s), half_width(end)) - 0.02;
@@ -116,13 +144,14 @@ void AddRoadDetails(const StreetPlan& plan, Random random, MeshBuilder& b) {
       }
     }
     for (double s = random.Uniform(2, 20); s < length - 2; s += random.Uniform(14, 32)) {
+      if (!clear(s)) continue;
       const double edge = half_width(s) - 0.9;
       AddManhole(frame, s, random.Uniform(-edge, edge), b);
       if (random.Chance(0.25)) AddManhole(frame, s + 1.1, random.Uniform(-edge, edge), b);
     }
     for (const double side : {-1.0, 1.0}) {
       for (double s = random.Uniform(4, 20); s < length - 2; s += random.Uniform(16, 26))
-        AddDrain(frame, s, side * (half_width(s) - 0.22), b);
+        if (clear(s)) AddDrain(frame, s, side * (half_width(s) - 0.22), b);
     }
   }
 }
