@@ -8,7 +8,6 @@ namespace {
 
 constexpr std::string_view kTownPrefix = "town:";
 constexpr double kTownFps = 20.0;
-const cv::Size kTownSize(2048, 1024);
 
 }  // namespace
 
@@ -16,10 +15,11 @@ bool IsRendered(const std::string& input) { return input.starts_with(kTownPrefix
 
 std::unique_ptr<Sequence> OpenInput(const std::string& input, const SequenceOptions& options) {
   if (!IsRendered(input)) return OpenSequence(input, options);
-  const cv::Size size = options.resize.empty() ? kTownSize : options.resize;
   const town::TownSpec spec = town::FindTown(input.substr(kTownPrefix.size()));
-  const town::Recording recording{EquirectangularCamera(size.width, size.height), kTownFps,
-                                  spec.frames};
+  const bool has_size = !options.resize.empty();
+  const cv::Size size = has_size ? options.resize : cv::Size(spec.width, spec.width / 2);
+  town::Recording recording{EquirectangularCamera(size.width, size.height), kTownFps, spec.frames};
+  recording.cube_size = has_size ? 0 : spec.cube_size;
   auto source = std::make_unique<town::TownSource>(input, spec, recording);
   return std::make_unique<Sequence>(std::move(source), options);
 }

@@ -24,7 +24,7 @@ struct Arguments {
   ImportedSpec imported;
   std::filesystem::path out;
   std::optional<int> frames;
-  int width = 1024;
+  std::optional<int> width;
   double fps = 20;
   std::optional<std::string> light;
   std::optional<double> traffic;
@@ -55,8 +55,18 @@ SensorOptions SensorOf(const Arguments& arguments) {
   return sensor;
 }
 
-std::unique_ptr<Drive> MakeTownDrive(const Arguments& arguments, Recording recording) {
+/// `width` and `cube_size` where the user says nothing of the picture's size.
+Recording RecordingOf(const Arguments& arguments, int width, int cube_size) {
+  const int chosen = arguments.width.value_or(width);
+  Recording recording{EquirectangularCamera(chosen, chosen / 2), arguments.fps};
+  recording.cube_size = arguments.cube.value_or(arguments.width ? 0 : cube_size);
+  recording.sensor = SensorOf(arguments);
+  return recording;
+}
+
+std::unique_ptr<Drive> MakeTownDrive(const Arguments& arguments) {
   TownSpec spec = FindTown(arguments.town);
+  Recording recording = RecordingOf(arguments, spec.width, spec.cube_size);
   if (arguments.light) spec.light = *arguments.light;
   if (arguments.traffic) spec.traffic = *arguments.traffic;
   spec.mount = {arguments.camera_height, arguments.pitch_degrees * kDegree,
@@ -66,7 +76,9 @@ std::unique_ptr<Drive> MakeTownDrive(const Arguments& arguments, Recording recor
   return std::make_unique<TownDrive>(spec, recording);
 }
 
-std::unique_ptr<Drive> MakeImportedDrive(const Arguments& arguments, Recording recording) {
+std::unique_ptr<Drive> MakeImportedDrive(const Arguments& arguments) {
+  constexpr int kWidth = 1024;
+  Recording recording = RecordingOf(arguments, kWidth, 0);
   ImportedSpec spec = arguments.imported;
   if (spec.path.empty()) throw UserError("--scene needs a --path through it");
   if (arguments.light) spec.light = *arguments.light;
@@ -95,12 +107,8 @@ void Render(const Arguments& arguments) {
   if (arguments.town.empty() == arguments.imported.scene.empty())
     throw UserError("render takes either --town or --scene (see town render --help)");
   if (arguments.threads > 0) omp_set_num_threads(arguments.threads);
-  Recording recording{EquirectangularCamera(arguments.width, arguments.width / 2), arguments.fps};
-  recording.cube_size = arguments.cube.value_or(0);
-  recording.sensor = SensorOf(arguments);
-  const std::unique_ptr<Drive> drive = arguments.town.empty()
-                                           ? MakeImportedDrive(arguments, recording)
-                                           : MakeTownDrive(arguments, recording);
+  const std::unique_ptr<Drive> drive =
+      arguments.town.empty() ? MakeImportedDrive(arguments) : MakeTownDrive(arguments);
   ProgressBar bar;
   const FolderOptions options{arguments.depth_every, arguments.masks};
   RenderIntoFolder(*drive, arguments.out, options,
@@ -139,13 +147,14 @@ void AddRenderCommand(CLI::App* app) {
       ->check(CLI::Range(1, 1000000));
   command
       ->add_option("--width", arguments->width,
-                   "Width of the panorama in pixels; its height is half of it")
-      ->capture_default_str()
+                   "Width of the panorama in pixels; its height is half of it [2048 for Town1 ... "
+                   "Town5, 1024 for others]")
       ->check(CLI::Range(32, 16384));
   command
       ->add_option("--cube", arguments->cube,
-                   "Stitch the panorama from six faces, so many pixels wide")
-      ->check(CLI::Range(16, 8192));
+                   "Stitch the panorama from six faces, so many pixels wide; 0: render it directly "
+                   "[768 for Town1 ... Town5 without --width, else 0]")
+      ->check(CLI::Range(0, 0) | CLI::Range(16, 8192));
   command->add_option("--fps", arguments->fps, "Frames per second")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 1000.0));

@@ -10,7 +10,7 @@ namespace {
 
 constexpr size_t kMaximumDigits = 18;  // 10^18 < 2^63
 
-/// Lengths and light as in the paper's table of sequences.
+/// Lengths, light and pictures as in the paper: 2048 x 1024 from six faces of 768 x 768.
 struct Named {
   std::string_view name;
   uint64_t number;
@@ -21,14 +21,17 @@ struct Named {
   int rows;
   double spacing;
   int tour_blocks;
+  int width;
+  int cube_size;
 };
 /// The tours are a little shorter than the sequences, so that each path closes its loop.
-constexpr std::array<Named, 6> kTowns = {{{"Town1", 1, "noon", 0.3, 1000, 3, 3, 32, 2},
-                                          {"Town2", 2, "sunset", 0.5, 2000, 4, 3, 54, 3},
-                                          {"Town3", 3, "morning", 0.2, 2850, 4, 4, 56, 4},
-                                          {"Town4", 4, "noon", 0.8, 3000, 5, 3, 50, 5},
-                                          {"Town5", 5, "sunset", 0.1, 1000, 3, 3, 34, 2},
-                                          {"Loop", 6, "noon", 0.0, 600, 3, 2, 36, 1}}};
+constexpr std::array<Named, 6> kTowns = {
+    {{"Town1", 1, "noon", 0.3, 1000, 3, 3, 32, 2, 2048, 768},
+     {"Town2", 2, "sunset", 0.5, 2000, 4, 3, 54, 3, 2048, 768},
+     {"Town3", 3, "morning", 0.2, 2850, 4, 4, 56, 4, 2048, 768},
+     {"Town4", 4, "noon", 0.8, 3000, 5, 3, 50, 5, 2048, 768},
+     {"Town5", 5, "sunset", 0.1, 1000, 3, 3, 34, 2, 2048, 768},
+     {"Loop", 6, "noon", 0.0, 600, 3, 2, 36, 1, 1024, 0}}};
 
 }  // namespace
 
@@ -41,6 +44,8 @@ TownSpec FindTown(std::string_view name) {
     spec.light = town.light;
     spec.traffic = town.traffic;
     spec.frames = town.frames;
+    spec.width = town.width;
+    spec.cube_size = town.cube_size;
     spec.plan.columns = town.columns;
     spec.plan.rows = town.rows;
     spec.plan.spacing = town.spacing;

@@ -24,6 +24,8 @@ struct TownSpec {
   std::string light = "noon";
   double traffic = 0;  ///< density, 0 to 1
   int frames = 600;    ///< that show all of it, at 20 a second
+  int width = 1024;    ///< of the panorama, pixels
+  int cube_size = 0;   ///< of the faces that it is stitched from, pixels; 0: rendered directly
   Mount mount;
   PlanOptions plan;  ///< its seed is drawn from `seed`
 };
