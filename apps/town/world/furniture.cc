@@ -37,12 +37,12 @@ Mesh MakeLampPost(const Materials& materials, Random random) {
   MeshBuilder b(materials);
   const auto height = static_cast<float>(random.Uniform(5, 8));
   b.set_tint(random.Chance(0.5) ? Rgba{0.05F, 0.07F, 0.06F, 1} : Rgba{0.3F, 0.31F, 0.32F, 1});
-  b.AddTube(materials.metal, {0, 0, -0.2F}, {0, 0, 0.9F}, 0.11F, 0.1F, 10);
-  b.AddTube(materials.metal, {0, 0, 0.9F}, {0, 0, height}, 0.065F, 0.045F, 8);
+  b.AddTube(materials.metal, {0, 0, -0.2F}, {0, 0, 0.9F}, 0.13F, 0.12F, 10);
+  b.AddTube(materials.metal, {0, 0, 0.9F}, {0, 0, height}, 0.09F, 0.065F, 8);
   const float reach = 1.6F;
-  b.AddTube(materials.metal, {0, 0, height}, {0.5F * reach, 0, height + 0.3F}, 0.045F, 0.04F, 6);
-  b.AddTube(materials.metal, {0.5F * reach, 0, height + 0.3F}, {reach, 0, height + 0.35F}, 0.04F,
-            0.04F, 6);
+  b.AddTube(materials.metal, {0, 0, height}, {0.5F * reach, 0, height + 0.3F}, 0.065F, 0.06F, 6);
+  b.AddTube(materials.metal, {0.5F * reach, 0, height + 0.3F}, {reach, 0, height + 0.35F}, 0.06F,
+            0.06F, 6);
   AddBlock(b, materials.metal, {reach - 0.1F, -0.14F, height + 0.3F},
            {reach + 0.6F, 0.14F, height + 0.42F});
   b.set_tint({0.9F, 0.88F, 0.8F, 1});
@@ -134,7 +134,7 @@ Mesh MakePostBox(const Materials& materials) {
   MeshBuilder b(materials);
   const Rgba paint = Srgb(196, 150, 20);
   b.set_tint({0.1F, 0.1F, 0.1F, 1});
-  b.AddTube(materials.metal, {0, 0, -0.1F}, {0, 0, 0.6F}, 0.04F, 0.04F, 8);
+  b.AddTube(materials.metal, {0, 0, -0.1F}, {0, 0, 0.6F}, 0.055F, 0.055F, 8);
   b.set_tint(paint);
   AddBlock(b, materials.metal, {-0.17F, -0.24F, 0.6F}, {0.17F, 0.24F, 1.3F});
   AddBlock(b, materials.metal, {-0.2F, -0.27F, 1.3F}, {0.2F, 0.27F, 1.36F});
@@ -218,8 +218,8 @@ Mesh MakeBusShelter(const Materials& materials, Random random) {
   constexpr float kHeight = 2.4F;
   b.set_tint({0.08F, 0.085F, 0.09F, 1});
   for (const float y : {-kHalf, 0.0F, kHalf}) {
-    AddBlock(b, materials.metal, {kBack - 0.04F, y - 0.04F, -0.1F},
-             {kBack + 0.04F, y + 0.04F, kHeight});
+    AddBlock(b, materials.metal, {kBack - 0.04F, y - 0.06F, -0.1F},
+             {kBack + 0.04F, y + 0.06F, kHeight});
     AddBlock(b, materials.metal, {kBack, y - 0.03F, kHeight - 0.08F}, {0.2F, y + 0.03F, kHeight});
   }
   AddBlock(b, materials.metal, {kBack - 0.15F, -kHalf - 0.1F, kHeight},

@@ -95,7 +95,7 @@ TEST_F(DriveSlow, PoseAndRangeAgreeBetweenFrames) {
   // A point seen in one frame and carried into another by the poses must be met there at its
   // distance, unless something stands in front of it.
   const Drive& drive = SmallDrive();
-  const EquirectangularCamera camera(1024, 512);  // lamp posts must be as wide as a pixel
+  const EquirectangularCamera camera(2048, 1024);  // distant lamp posts must be as wide as a pixel
   const FrameScene scene_a = drive.SceneAt(40);
   const FrameScene scene_b = drive.SceneAt(52);
   const GeometryImage a = RenderGeometry(scene_a, camera, drive.WorldFromCamera(40));
