@@ -39,6 +39,26 @@ MatchedViews EstimateMotion(const Features& features1, const Features& features2
   return {std::move(matches), std::move(pose)};
 }
 
+// Median parallax of the matches that agree with the motion and are near enough to become
+// landmarks, radians; 0 where there are too few. Clouds and distant hills have none, however far
+// the camera moves, and under an open sky they are the majority.
+double MedianParallax(const Features& features1, const Features& features2,
+                      const MatchedViews& views, const InitializerOptions& options) {
+  std::vector<double> parallaxes;
+  for (size_t i = 0; i < views.matches.size(); ++i) {
+    if (!views.pose->inliers[i]) continue;
+    const double parallax =
+        std::acos(std::min(1.0, ParallaxCosine(views.pose->camera1_from_camera2.rotation,
+                                               features1.bearings[views.matches[i].first],
+                                               features2.bearings[views.matches[i].second])));
+    if (parallax > options.min_landmark_parallax) parallaxes.push_back(parallax);
+  }
+  if (static_cast<int>(parallaxes.size()) < options.min_landmarks) return 0;
+  const auto middle = parallaxes.begin() + parallaxes.size() / 2;
+  std::nth_element(parallaxes.begin(), middle, parallaxes.end());
+  return *middle;
+}
+
 // Points and camera 2 refined together; camera 1 is the gauge, and the free scale does no harm to
 // Levenberg-Marquardt. Points whose residuals are too large afterwards are dropped.
 bool Refine(const Features& features1, const Features& features2, TwoViewMap* map) {
@@ -89,7 +109,7 @@ InitializationResult InitializeFromTwoViews(const Features& features1, const Fea
           ->sigma;
   const double min_parallax =
       std::max(options.min_parallax, options.min_parallax_sigmas * finest_sigma);
-  if (views.pose->median_parallax < min_parallax) return result;
+  if (MedianParallax(features1, features2, views, options) < min_parallax) return result;
 
   TwoViewMap map;
   map.world_from_camera2 = views.pose->camera1_from_camera2;

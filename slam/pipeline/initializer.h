@@ -13,7 +13,7 @@ struct InitializerOptions {
   double nearby_radius = 0.3;
   /// Landmarks the first map must have.
   int min_landmarks = 80;
-  /// Median parallax of the matches that makes a baseline, radians ...
+  /// Median parallax of the matches that are not far away, which makes a baseline, radians ...
   double min_parallax = 0.026;
   /// ... and in standard deviations of a feature on pyramid level 0: with less, the direction of
   /// motion is a guess.

@@ -19,9 +19,9 @@ ConfigSchema MakeConfigSchema(Options* options) {
   schema.Add("initializer.min_landmarks", &initializer.min_landmarks,
              "landmarks that the first map must have", 20, 10000);
   schema.Add("initializer.min_parallax", &initializer.min_parallax,
-             "median parallax of the two views, radians", 0.001, 1.0);
+             "median parallax of what is not far away in the two views, radians", 0.001, 1.0);
   schema.Add("initializer.min_parallax_sigmas", &initializer.min_parallax_sigmas,
-             "median parallax of the two views, standard deviations of a feature", 0.0, 100.0);
+             "the same, standard deviations of a feature", 0.0, 100.0);
   schema.Add("initializer.min_landmark_parallax", &initializer.min_landmark_parallax,
              "least parallax of a single landmark, radians", 0.001, 1.0);
   schema.Add("initializer.min_inlier_share", &initializer.min_inlier_share,

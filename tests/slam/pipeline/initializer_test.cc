@@ -36,6 +36,20 @@ TEST(Initializer, WaitsWhenTheCameraOnlyTurns) {
   EXPECT_EQ(result.failure, InitializationFailure::kLittleParallax);
 }
 
+TEST(Initializer, StartsUnderASkyThatHoldsMostOfTheFeatures) {
+  SyntheticScene scene(500);
+  for (size_t i = 0; i < 320; ++i) {
+    Eigen::Vector3d& position = scene.points[i].position;
+    position *= 1e6 / position.norm();
+  }
+  const Rigid3 pose2{ExpSo3({0.05, -0.1, 0.2}), {-0.9, 0.2, 0.1}};
+  const InitializationResult result =
+      InitializeFromTwoViews(*scene.See(Rigid3()), *scene.See(pose2), {});
+  ASSERT_TRUE(result.map.has_value());
+  EXPECT_LT(AngleBetween(result.map->world_from_camera2.translation, pose2.translation), 5e-3);
+  for (const TwoViewMap::Point& point : result.map->points) EXPECT_GE(point.feature1, 320);
+}
+
 TEST(Initializer, FindsMatchesAfterAHalfTurn) {
   SyntheticScene scene(500);
   const Rigid3 pose2{ExpSo3({0.0, 0.0, 3.0}), {-0.9, 0.2, 0.1}};
