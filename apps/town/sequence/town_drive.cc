@@ -26,10 +26,13 @@ CameraMotionOptions MotionOf(const TownSpec& spec) {
 LapOptions LapOf(const TownSpec& spec) { return {.seed = SeedOf(spec, kLap)}; }
 
 TownDrive::TownDrive(const TownSpec& spec, const Recording& recording)
+    : TownDrive(spec, MakeLight(spec.light, spec.seed), recording) {}
+
+TownDrive::TownDrive(const TownSpec& spec, const Light& light, const Recording& recording)
     : Drive(recording),
       spec_(spec),
       town_(BuildTown(spec.seed, spec.plan)),
-      stage_(&town_.scenery, MakeLight(spec.light, spec.seed), spec.seed),
+      stage_(&town_.scenery, light, spec.seed),
       lap_(town_.plan, town_.plan.tour, LapOf(spec)),
       traffic_(town_, lap_,
                {.seed = SeedOf(spec, kTraffic),

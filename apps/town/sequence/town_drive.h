@@ -30,6 +30,9 @@ class TownDrive : public Drive {
   std::vector<Instance> MovingAt(double seconds) const override;
 
  private:
+  /// An unknown light is refused before the town is built.
+  TownDrive(const TownSpec& spec, const Light& light, const Recording& recording);
+
   TownSpec spec_;
   Town town_;
   Stage stage_;
