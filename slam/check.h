@@ -34,7 +34,7 @@ template <typename... Values>
 }  // namespace orb360
 
 /// Throws ContractError with the expression, and the further arguments as values, unless it holds.
-#define ORB360_CHECK(expression, ...)                                                     \
-  ((expression) ? static_cast<void>(0)                                                    \
-                : ::orb360::internal::FailContract(__FILE__, __LINE__,                    \
+#define ORB360_CHECK(expression, ...)                                  \
+  ((expression) ? static_cast<void>(0)                                 \
+                : ::orb360::internal::FailContract(__FILE__, __LINE__, \
                                                    #expression __VA_OPT__(, ) __VA_ARGS__))

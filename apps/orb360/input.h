@@ -12,7 +12,8 @@ namespace orb360 {
 bool IsRendered(const std::string& input);
 
 /// Opens what a user gives as INPUT: a rendered town, at 20 frames a second and the size of
-/// options.resize, or at its own if that is empty; or whatever OpenSequence reads. Throws UserError.
+/// options.resize, or at its own if that is empty; or whatever OpenSequence reads. Throws
+/// UserError.
 std::unique_ptr<Sequence> OpenInput(const std::string& input, const SequenceOptions& options);
 
 }  // namespace orb360

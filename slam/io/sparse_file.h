@@ -14,7 +14,7 @@ struct SparseSample {
   cv::Mat image;  // CV_8UC3, BGR
   SparseDepth sparse;
   int frame_index = 0;
-  double timestamp = 0;  // s
+  double timestamp = 0;      // s
   Rigid3 world_from_camera;  // map frame and units, camera -X forward
 };
 
