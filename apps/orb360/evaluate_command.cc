@@ -9,7 +9,7 @@
 
 #include "apps/orb360/commands.h"
 #include "apps/orb360/evaluation_report.h"
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/evaluation/depth_folder.h"
 #include "slam/evaluation/trajectory_error.h"
 #include "slam/evaluation/trajectory_plot.h"

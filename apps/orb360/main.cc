@@ -11,7 +11,7 @@
 #include <opencv2/core/utils/logger.hpp>
 
 #include "apps/orb360/commands.h"
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/version.h"
 
 namespace {

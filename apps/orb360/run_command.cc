@@ -18,7 +18,7 @@
 #include "apps/orb360/run_output.h"
 #include "apps/orb360/sparse_output.h"
 #include "apps/orb360/stage_times.h"
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/number_text.h"
 #include "slam/io/sequence.h"

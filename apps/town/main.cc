@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/town/commands.h"
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Renders panoramic drives through towns, with exact depth and poses.");

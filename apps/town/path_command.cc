@@ -6,7 +6,7 @@
 #include "apps/town/commands.h"
 #include "apps/town/import/import_scenery.h"
 #include "apps/town/import/torcs_track.h"
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/io/atomic_file.h"
 
 namespace orb360::town {

@@ -14,7 +14,7 @@
 #include "apps/town/sequence/named_town.h"
 #include "apps/town/sequence/render_folder.h"
 #include "apps/town/sequence/town_drive.h"
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360::town {
 namespace {

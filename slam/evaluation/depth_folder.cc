@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/io/depth_image.h"
 #include "slam/io/full_sphere.h"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/evaluation/association.h"
 #include "slam/geometry/alignment.h"
 #include "slam/geometry/so3.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/evaluation/chart.h"
 
 namespace orb360 {

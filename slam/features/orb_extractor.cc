@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/features/corner_selection.h"
 #include "slam/features/patch_descriptor.h"
 #include "slam/features/tangent_sampling.h"

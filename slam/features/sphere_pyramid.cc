@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/features/row_resample.h"
 
 namespace orb360 {

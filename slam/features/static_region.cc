@@ -6,7 +6,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360 {
 namespace {

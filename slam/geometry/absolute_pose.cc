@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <opengv/absolute_pose/methods.hpp>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/geometry/bearing.h"
 
 namespace orb360 {

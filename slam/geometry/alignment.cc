@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360 {
 namespace {

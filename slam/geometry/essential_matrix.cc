@@ -8,7 +8,7 @@
 #include <Eigen/Cholesky>
 #include <opengv/relative_pose/methods.hpp>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/geometry/bearing.h"
 
 namespace orb360 {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360 {
 

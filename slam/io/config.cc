@@ -10,7 +10,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/io/number_text.h"
 #include "slam/io/yaml_file.h"
 

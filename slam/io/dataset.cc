@@ -5,7 +5,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/io/yaml_file.h"
 
 namespace orb360 {

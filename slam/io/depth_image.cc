@@ -7,7 +7,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/io/atomic_file.h"
 
 namespace orb360 {

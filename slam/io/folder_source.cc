@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/image_file.h"
 

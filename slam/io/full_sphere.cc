@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360 {
 

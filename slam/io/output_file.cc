@@ -8,7 +8,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360 {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/number_text.h"
 

@@ -6,7 +6,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/io/dataset.h"
 #include "slam/io/folder_source.h"
 #include "slam/io/full_sphere.h"

@@ -6,9 +6,9 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
+#include "nn/base/hdf5_handle.h"
 #include "slam/io/atomic_file.h"
-#include "slam/io/hdf5_handle.h"
 
 namespace orb360 {
 namespace {

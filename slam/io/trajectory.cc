@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string_view>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/number_text.h"
 

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360 {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360 {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/features/hamming.h"
 
 namespace orb360 {

@@ -7,7 +7,7 @@
 
 #include <ceres/ceres.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/optimization/bearing_cost.h"
 #include "slam/optimization/bearing_residual.h"
 

@@ -6,7 +6,7 @@
 #include <omp.h>
 #include <opencv2/imgproc.hpp>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/pipeline/initializer.h"
 #include "slam/pipeline/mapper.h"
 

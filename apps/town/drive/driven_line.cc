@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360::town {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360::town {
 namespace {

@@ -11,7 +11,7 @@
 
 #include <Eigen/Geometry>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360::town {
 namespace {

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360::town {
 namespace {

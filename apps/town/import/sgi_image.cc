@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360::town {
 namespace {

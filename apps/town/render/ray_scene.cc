@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360::town {
 namespace {

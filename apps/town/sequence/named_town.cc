@@ -3,7 +3,7 @@
 #include <array>
 #include <charconv>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360::town {
 namespace {

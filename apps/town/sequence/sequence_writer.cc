@@ -8,7 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/depth_image.h"
 

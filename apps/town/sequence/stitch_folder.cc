@@ -16,7 +16,7 @@
 
 #include "apps/town/image/stitch.h"
 #include "apps/town/sequence/sequence_writer.h"
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/dataset.h"
 #include "slam/io/folder_source.h"

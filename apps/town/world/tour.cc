@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360::town {
 namespace {

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/io/depth_image.h"
 #include "tests/slam/io/temp_folder.h"
 

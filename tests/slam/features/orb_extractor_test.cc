@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/features/matching.h"
 #include "slam/geometry/bearing.h"
 #include "slam/geometry/so3.h"

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/geometry/bearing.h"
 #include "tests/slam/geometry/random_geometry.h"
 

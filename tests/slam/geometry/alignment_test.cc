@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "tests/slam/geometry/random_geometry.h"
 
 namespace orb360 {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "tests/slam/io/temp_folder.h"
 
 namespace orb360 {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "tests/slam/io/temp_folder.h"
 
 namespace orb360 {

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/geometry/so3.h"
 #include "tests/slam/io/temp_folder.h"
 

@@ -11,7 +11,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "tests/slam/io/temp_folder.h"
 
 namespace orb360 {

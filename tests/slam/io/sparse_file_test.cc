@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360 {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "tests/slam/pipeline/synthetic_scene.h"
 
 namespace orb360 {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/geometry/alignment.h"
 #include "tests/slam/pipeline/box_room.h"
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360::town {
 namespace {

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "tests/apps/town/plain_materials.h"
 
 namespace orb360::town {

@@ -11,7 +11,7 @@
 
 #include "apps/town/render/renderer.h"
 #include "apps/town/render/stage.h"
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360::town {
 namespace {

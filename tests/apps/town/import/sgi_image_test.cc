@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "slam/check.h"
+#include "nn/base/check.h"
 
 namespace orb360::town {
 namespace {

@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "apps/town/image/cube.h"
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/geometry/camera.h"
 #include "slam/io/dataset.h"
 #include "slam/io/depth_image.h"

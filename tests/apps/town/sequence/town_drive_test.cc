@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "apps/town/sequence/render_folder.h"
-#include "slam/check.h"
+#include "nn/base/check.h"
 #include "slam/io/dataset.h"
 
 namespace orb360::town {

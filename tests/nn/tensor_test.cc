@@ -1,0 +1,164 @@
+#include "nn/tensor.h"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "nn/base/check.h"
+
+namespace orb360::nn {
+namespace {
+
+struct Memory {
+  explicit Memory(const TensorFormat& format)
+      : bytes(format.bytes() + kAlignment, std::byte{0x7f}) {
+    void* start = bytes.data();
+    std::size_t room = bytes.size();
+    view = format.View(std::align(kAlignment, format.bytes(), start, room));
+  }
+  std::vector<std::byte> bytes;
+  TensorView view;
+};
+
+float& At(const TensorView& tensor, int channel, int y, int x) {
+  const int block = tensor.layout == Layout::kBlocked ? BlockOf(tensor.type) : 1;
+  return tensor.row<float>(channel / block, y)[x * block + channel % block];
+}
+
+float Value(int channel, int y, int x) { return static_cast<float>(100 * channel + 10 * y + x); }
+
+void Number(const TensorView& tensor) {
+  for (int c = 0; c < tensor.shape.channels; ++c) {
+    for (int y = 0; y < tensor.shape.height; ++y) {
+      for (int x = 0; x < tensor.shape.width; ++x) At(tensor, c, y, x) = Value(c, y, x);
+    }
+  }
+}
+
+TEST(Tensor, RowsAreAlignedInEveryLayout) {
+  for (const Layout layout : {Layout::kPlanar, Layout::kBlocked}) {
+    for (const DataType type : {DataType::kFloat, DataType::kBFloat16}) {
+      for (const int halo : {0, 1, 2}) {
+        const Memory memory({{3, 5, 7}, layout, type, halo});
+        for (int y = -halo; y < 5 + halo; ++y) {
+          EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory.view.row<std::byte>(0, 0) +
+                                                     y * memory.view.row_stride *
+                                                         static_cast<int>(SizeOf(type))) %
+                        kAlignment,
+                    0u);
+        }
+      }
+    }
+  }
+}
+
+// Where a pixel of the halo must come from, by walking over the sphere in single steps.
+float Expected(Padding padding, const Shape& shape, int channel, int y, int x) {
+  if (padding == Padding::kZero) return 0;
+  if (padding == Padding::kWrapReplicate) {
+    y = std::min(std::max(y, 0), shape.height - 1);
+  } else {
+    while (y < 0 || y >= shape.height) {
+      y = y < 0 ? -1 - y : 2 * shape.height - 1 - y;
+      x += shape.width / 2;
+    }
+  }
+  return Value(channel, y, ((x % shape.width) + shape.width) % shape.width);
+}
+
+TEST(Tensor, HaloContinuesThePictureAsThePaddingSays) {
+  for (const Layout layout : {Layout::kPlanar, Layout::kBlocked}) {
+    for (const Padding padding :
+         {Padding::kZero, Padding::kWrapReplicate, Padding::kWrapCrossPole}) {
+      for (const Shape shape : {Shape{2, 4, 6}, Shape{17, 1, 2}}) {
+        const int halo = 3;
+        const Memory memory({shape, layout, DataType::kFloat, halo});
+        Number(memory.view);
+        FillHalo(memory.view, padding, halo);
+        for (int c = 0; c < shape.channels; ++c) {
+          for (int y = -halo; y < shape.height + halo; ++y) {
+            for (int x = -halo; x < shape.width + halo; ++x) {
+              const bool inside = y >= 0 && y < shape.height && x >= 0 && x < shape.width;
+              ASSERT_EQ(At(memory.view, c, y, x),
+                        inside ? Value(c, y, x) : Expected(padding, shape, c, y, x))
+                  << "padding " << static_cast<int>(padding) << " channel " << c << " y " << y
+                  << " x " << x;
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Tensor, AnOddPictureHasNoOppositeMeridian) {
+  const Memory memory({{1, 4, 5}, Layout::kPlanar, DataType::kFloat, 1});
+  EXPECT_THROW(FillHalo(memory.view, Padding::kWrapCrossPole, 1), ContractError);
+}
+
+TEST(Tensor, ReorderRoundTripsAndFillsTheLastBlockWithZeros) {
+  const Shape shape{18, 3, 5};
+  const Memory planar({shape, Layout::kPlanar, DataType::kFloat, 1});
+  const Memory blocked({shape, Layout::kBlocked, DataType::kFloat, 2});
+  const Memory back({shape, Layout::kPlanar, DataType::kFloat, 0});
+  Number(planar.view);
+  Reorder(planar.view, blocked.view);
+  Reorder(blocked.view, back.view);
+  for (int c = 0; c < 32; ++c) {
+    for (int y = 0; y < 3; ++y) {
+      for (int x = 0; x < 5; ++x) {
+        ASSERT_EQ(At(blocked.view, c, y, x), c < 18 ? Value(c, y, x) : 0) << c << y << x;
+        if (c < 18) {
+          ASSERT_EQ(At(back.view, c, y, x), Value(c, y, x));
+        }
+      }
+    }
+  }
+}
+
+TEST(Tensor, BFloat16RoundsToNearestEvenAndKeepsWhatIsNotANumber) {
+  const std::vector<float> values = {1.0f,
+                                     1.0f + 0x1p-8f,             // a tie, down to even
+                                     1.0f + 3 * 0x1p-8f,         // a tie, up to even
+                                     1.0f + 0x1p-8f + 0x1p-20f,  // above a tie
+                                     -3.14159265f,
+                                     std::numeric_limits<float>::infinity(),
+                                     std::numeric_limits<float>::max()};
+  const std::vector<float> expected = {1.0f,
+                                       1.0f,
+                                       1.0f + 0x1p-6f,
+                                       1.0f + 0x1p-7f,
+                                       -3.140625f,
+                                       std::numeric_limits<float>::infinity(),
+                                       std::numeric_limits<float>::infinity()};
+  const Shape shape{1, 1, static_cast<int>(values.size()) + 1};
+  const Memory from({shape, Layout::kPlanar, DataType::kFloat, 0});
+  const Memory half({shape, Layout::kBlocked, DataType::kBFloat16, 0});
+  const Memory to({shape, Layout::kPlanar, DataType::kFloat, 0});
+  for (std::size_t i = 0; i < values.size(); ++i)
+    At(from.view, 0, 0, static_cast<int>(i)) = values[i];
+  At(from.view, 0, 0, shape.width - 1) = std::numeric_limits<float>::quiet_NaN();
+  Reorder(from.view, half.view);
+  Reorder(half.view, to.view);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_EQ(At(to.view, 0, 0, static_cast<int>(i)), expected[i]) << values[i];
+  }
+  EXPECT_TRUE(std::isnan(At(to.view, 0, 0, shape.width - 1)));
+}
+
+TEST(Tensor, AChannelSliceIsAWindowOnTheSameMemory) {
+  const Memory memory({{48, 2, 2}, Layout::kBlocked, DataType::kFloat, 1});
+  Number(memory.view);
+  const TensorView slice = ChannelSlice(memory.view, 16, 32);
+  EXPECT_EQ(At(slice, 5, 1, 1), Value(21, 1, 1));
+  EXPECT_THROW(ChannelSlice(memory.view, 8, 16), ContractError);
+  EXPECT_THROW(ChannelSlice(memory.view, 32, 32), ContractError);
+}
+
+}  // namespace
+}  // namespace orb360::nn
