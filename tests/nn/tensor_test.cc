@@ -3,32 +3,16 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "nn/base/check.h"
+#include "tests/nn/tensor_memory.h"
 
 namespace orb360::nn {
 namespace {
-
-struct Memory {
-  explicit Memory(const TensorFormat& format)
-      : bytes(format.bytes() + kAlignment, std::byte{0x7f}) {
-    void* start = bytes.data();
-    std::size_t room = bytes.size();
-    view = format.View(std::align(kAlignment, format.bytes(), start, room));
-  }
-  std::vector<std::byte> bytes;
-  TensorView view;
-};
-
-float& At(const TensorView& tensor, int channel, int y, int x) {
-  const int block = tensor.layout == Layout::kBlocked ? BlockOf(tensor.type) : 1;
-  return tensor.row<float>(channel / block, y)[x * block + channel % block];
-}
 
 float Value(int channel, int y, int x) { return static_cast<float>(100 * channel + 10 * y + x); }
 
@@ -44,7 +28,7 @@ TEST(Tensor, RowsAreAlignedInEveryLayout) {
   for (const Layout layout : {Layout::kPlanar, Layout::kBlocked}) {
     for (const DataType type : {DataType::kFloat, DataType::kBFloat16}) {
       for (const int halo : {0, 1, 2}) {
-        const Memory memory({{3, 5, 7}, layout, type, halo});
+        const TensorMemory memory({{3, 5, 7}, layout, type, halo});
         for (int y = -halo; y < 5 + halo; ++y) {
           EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory.view.row<std::byte>(0, 0) +
                                                      y * memory.view.row_stride *
@@ -77,7 +61,7 @@ TEST(Tensor, HaloContinuesThePictureAsThePaddingSays) {
          {Padding::kZero, Padding::kWrapReplicate, Padding::kWrapCrossPole}) {
       for (const Shape shape : {Shape{2, 4, 6}, Shape{17, 1, 2}}) {
         const int halo = 3;
-        const Memory memory({shape, layout, DataType::kFloat, halo});
+        const TensorMemory memory({shape, layout, DataType::kFloat, halo});
         Number(memory.view);
         FillHalo(memory.view, padding, halo);
         for (int c = 0; c < shape.channels; ++c) {
@@ -97,15 +81,15 @@ TEST(Tensor, HaloContinuesThePictureAsThePaddingSays) {
 }
 
 TEST(Tensor, AnOddPictureHasNoOppositeMeridian) {
-  const Memory memory({{1, 4, 5}, Layout::kPlanar, DataType::kFloat, 1});
+  const TensorMemory memory({{1, 4, 5}, Layout::kPlanar, DataType::kFloat, 1});
   EXPECT_THROW(FillHalo(memory.view, Padding::kWrapCrossPole, 1), ContractError);
 }
 
 TEST(Tensor, ReorderRoundTripsAndFillsTheLastBlockWithZeros) {
   const Shape shape{18, 3, 5};
-  const Memory planar({shape, Layout::kPlanar, DataType::kFloat, 1});
-  const Memory blocked({shape, Layout::kBlocked, DataType::kFloat, 2});
-  const Memory back({shape, Layout::kPlanar, DataType::kFloat, 0});
+  const TensorMemory planar({shape, Layout::kPlanar, DataType::kFloat, 1});
+  const TensorMemory blocked({shape, Layout::kBlocked, DataType::kFloat, 2});
+  const TensorMemory back({shape, Layout::kPlanar, DataType::kFloat, 0});
   Number(planar.view);
   Reorder(planar.view, blocked.view);
   Reorder(blocked.view, back.view);
@@ -137,9 +121,9 @@ TEST(Tensor, BFloat16RoundsToNearestEvenAndKeepsWhatIsNotANumber) {
                                        std::numeric_limits<float>::infinity(),
                                        std::numeric_limits<float>::infinity()};
   const Shape shape{1, 1, static_cast<int>(values.size()) + 1};
-  const Memory from({shape, Layout::kPlanar, DataType::kFloat, 0});
-  const Memory half({shape, Layout::kBlocked, DataType::kBFloat16, 0});
-  const Memory to({shape, Layout::kPlanar, DataType::kFloat, 0});
+  const TensorMemory from({shape, Layout::kPlanar, DataType::kFloat, 0});
+  const TensorMemory half({shape, Layout::kBlocked, DataType::kBFloat16, 0});
+  const TensorMemory to({shape, Layout::kPlanar, DataType::kFloat, 0});
   for (std::size_t i = 0; i < values.size(); ++i)
     At(from.view, 0, 0, static_cast<int>(i)) = values[i];
   At(from.view, 0, 0, shape.width - 1) = std::numeric_limits<float>::quiet_NaN();
@@ -152,7 +136,7 @@ TEST(Tensor, BFloat16RoundsToNearestEvenAndKeepsWhatIsNotANumber) {
 }
 
 TEST(Tensor, AChannelSliceIsAWindowOnTheSameMemory) {
-  const Memory memory({{48, 2, 2}, Layout::kBlocked, DataType::kFloat, 1});
+  const TensorMemory memory({{48, 2, 2}, Layout::kBlocked, DataType::kFloat, 1});
   Number(memory.view);
   const TensorView slice = ChannelSlice(memory.view, 16, 32);
   EXPECT_EQ(At(slice, 5, 1, 1), Value(21, 1, 1));

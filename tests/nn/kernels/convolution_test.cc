@@ -1,0 +1,343 @@
+#include "nn/kernels/convolution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "nn/base/check.h"
+#include "tests/nn/tensor_memory.h"
+
+namespace orb360::nn {
+namespace {
+
+std::vector<float> Random(std::size_t count, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  std::vector<float> values(count);
+  for (float& value : values) value = uniform(generator);
+  return values;
+}
+
+// A convolution of random numbers, with everything that goes into it in plain arrays.
+struct Case {
+  ConvolutionSpec spec;
+  int height = 1;
+  int width = 1;
+  Layout input_layout = Layout::kBlocked;
+  Layout output_layout = Layout::kBlocked;
+  bool with_bias = true;
+  bool with_residual = false;
+
+  Shape input_shape() const { return {spec.in_channels, height, width}; }
+  Shape output_shape() const {
+    return {spec.out_channels, (height + spec.stride - 1) / spec.stride,
+            (width + spec.stride - 1) / spec.stride};
+  }
+  std::string text() const {
+    std::ostringstream out;
+    out << spec.in_channels << "->" << spec.out_channels << " k" << spec.kernel << " s"
+        << spec.stride << " padding " << static_cast<int>(spec.padding) << " slope " << spec.slope
+        << ' ' << height << 'x' << width << (input_layout == Layout::kPlanar ? " from planar" : "")
+        << (output_layout == Layout::kPlanar ? " to planar" : "") << (with_bias ? " bias" : "")
+        << (with_residual ? " residual" : "");
+    return out.str();
+  }
+};
+
+struct Data {
+  explicit Data(const Case& c)
+      : weight(Random(static_cast<std::size_t>(c.spec.out_channels) * c.spec.in_channels *
+                          c.spec.kernel * c.spec.kernel,
+                      1)),
+        bias(c.with_bias ? Random(c.spec.out_channels, 2) : std::vector<float>{}),
+        input(Random(static_cast<std::size_t>(c.spec.in_channels) * c.height * c.width, 3)),
+        residual(Random(static_cast<std::size_t>(c.spec.out_channels) * c.output_shape().height *
+                            c.output_shape().width,
+                        4)) {}
+  std::vector<float> weight, bias, input, residual;
+};
+
+void Fill(const TensorView& tensor, const std::vector<float>& values) {
+  TensorMemory planar({tensor.shape, Layout::kPlanar, DataType::kFloat, 0});
+  std::size_t next = 0;
+  for (int c = 0; c < tensor.shape.channels; ++c) {
+    for (int y = 0; y < tensor.shape.height; ++y) {
+      for (int x = 0; x < tensor.shape.width; ++x) At(planar.view, c, y, x) = values[next++];
+    }
+  }
+  Reorder(planar.view, tensor);
+}
+
+// The output, channel by channel, behind whatever the blocks are filled up with.
+std::vector<float> Compute(const Case& c, const Data& data, int threads) {
+  const Convolution convolution(c.spec, data.weight, data.bias);
+  // One pixel more than needed, so that the strides differ from the smallest possible.
+  TensorMemory input({c.input_shape(), c.input_layout, DataType::kFloat, c.spec.kernel / 2 + 1});
+  TensorMemory output({c.output_shape(), c.output_layout, DataType::kFloat, 1});
+  TensorMemory residual({c.output_shape(), c.output_layout, DataType::kFloat, 0});
+  EXPECT_EQ(convolution.OutputShape(c.input_shape()), c.output_shape());
+  Fill(input.view, data.input);
+  Fill(residual.view, data.residual);
+  convolution.Run(input.view, c.with_residual ? &residual.view : nullptr, output.view, threads);
+  std::vector<float> values;
+  const int block = c.output_layout == Layout::kBlocked ? BlockOf(DataType::kFloat) : 1;
+  for (int o = 0; o < output.view.planes() * block; ++o) {
+    for (int y = 0; y < c.output_shape().height; ++y) {
+      for (int x = 0; x < c.output_shape().width; ++x) {
+        values.push_back(At(output.view, o, y, x));
+      }
+    }
+  }
+  return values;
+}
+
+// The sum of a window in double precision, and the sum of its terms' magnitudes.
+struct Sum {
+  double value = 0;
+  double norm = 0;
+  void Add(double term) {
+    value += term;
+    norm += std::abs(term);
+  }
+};
+
+Sum Expected(const Case& c, const Data& data, int o, int y, int x) {
+  const auto& [in_channels, out_channels, kernel, stride, padding, slope] = c.spec;
+  const int reach = kernel / 2;
+  Sum sum;
+  for (int i = 0; i < in_channels; ++i) {
+    for (int v = 0; v < kernel; ++v) {
+      for (int u = 0; u < kernel; ++u) {
+        int row = y * stride + v - reach;
+        int column = x * stride + u - reach;
+        if (padding == Padding::kZero &&
+            (row < 0 || row >= c.height || column < 0 || column >= c.width)) {
+          continue;
+        }
+        if (padding == Padding::kWrapReplicate) row = std::clamp(row, 0, c.height - 1);
+        while (row < 0 || row >= c.height) {
+          row = row < 0 ? -1 - row : 2 * c.height - 1 - row;
+          column += c.width / 2;
+        }
+        column = (column % c.width + c.width) % c.width;
+        sum.Add(double{data.weight[((o * in_channels + i) * kernel + v) * kernel + u]} *
+                data.input[(i * c.height + row) * c.width + column]);
+      }
+    }
+  }
+  if (c.with_bias) sum.Add(data.bias[o]);
+  if (c.with_residual) {
+    const Shape& out = c.output_shape();
+    sum.Add(data.residual[(o * out.height + y) * out.width + x]);
+  }
+  if (!(sum.value > 0)) sum.value *= slope;
+  return sum;
+}
+
+// A sum of n rounded products in any order is off by at most about n units of rounding of the sum
+// of the magnitudes; the activation rounds once more.
+double Tolerance(const Case& c, const Sum& sum) {
+  const int terms = c.spec.in_channels * c.spec.kernel * c.spec.kernel + 3;
+  return terms * 0.5 * std::numeric_limits<float>::epsilon() * sum.norm;
+}
+
+// The largest error over what is tolerated, and where it is.
+void ExpectRight(const Case& c) {
+  const Data data(c);
+  const std::vector<float> values = Compute(c, data, 1);
+  const Shape out = c.output_shape();
+  double worst = 0;
+  std::ostringstream where;
+  std::size_t next = 0;
+  for (int o = 0; o < out.channels; ++o) {
+    for (int y = 0; y < out.height; ++y) {
+      for (int x = 0; x < out.width; ++x) {
+        const Sum expected = Expected(c, data, o, y, x);
+        const double error = std::abs(values[next] - expected.value);
+        const double ratio = error == 0 ? 0 : error / Tolerance(c, expected);
+        if (!(ratio <= worst)) {
+          worst = std::isnan(ratio) ? std::numeric_limits<double>::infinity() : ratio;
+          where.str("");
+          where << "channel " << o << " row " << y << " column " << x << ": " << values[next]
+                << " instead of " << expected.value;
+        }
+        ++next;
+      }
+    }
+  }
+  EXPECT_LE(worst, 1) << c.text() << ", worst at " << where.str();
+  for (; next < values.size(); ++next) ASSERT_EQ(values[next], 0) << c.text() << ", past the end";
+  const std::vector<float> again = Compute(c, data, 2);
+  EXPECT_EQ(std::memcmp(values.data(), again.data(), values.size() * sizeof(float)), 0)
+      << c.text() << ": two threads give other bits than one";
+}
+
+TEST(Convolution, IsThePlainSumForEveryKernelStrideAndPadding) {
+  for (const int kernel : {1, 3, 5}) {
+    for (const int stride : {1, 2}) {
+      for (const Padding padding :
+           {Padding::kZero, Padding::kWrapReplicate, Padding::kWrapCrossPole}) {
+        for (const auto& [height, width] :
+             std::vector<std::pair<int, int>>{{1, 2}, {5, 8}, {9, 46}}) {
+          Case c{{19, 21, kernel, stride, padding, 0.1f}, height, width};
+          ExpectRight(c);
+          c.with_residual = true;
+          ExpectRight(c);
+        }
+      }
+    }
+  }
+}
+
+TEST(Convolution, IsThePlainSumForEveryWidth) {
+  for (int width = 1; width <= 40; ++width) {
+    for (const int stride : {1, 2}) {
+      ExpectRight({{17, 40, 3, stride, Padding::kWrapReplicate, 0}, 3, width});
+    }
+  }
+}
+
+TEST(Convolution, IsThePlainSumForEveryNumberOfChannels) {
+  for (const int in : {1, 2, 15, 16, 33, 80}) {
+    for (const int out : {1, 16, 31, 38, 48, 64, 80, 97}) {
+      ExpectRight({{in, out, 3, 1, Padding::kZero, 0.2f}, 3, 15});
+      ExpectRight({{in, out, 1, 1, Padding::kZero, 1}, 2, 29});
+    }
+  }
+}
+
+TEST(Convolution, IsThePlainSumFromAndToPlanes) {
+  for (const int in : {1, 2, 5, 6, 8}) {
+    for (const int stride : {1, 2}) {
+      for (const int kernel : {1, 3, 5}) {
+        for (const int width : {1, 7, 33, 64}) {
+          Case c{{in, 38, kernel, stride, Padding::kWrapReplicate, 0.1f}, 5, width};
+          c.input_layout = Layout::kPlanar;
+          ExpectRight(c);
+          c.output_layout = Layout::kPlanar;
+          c.with_residual = true;
+          ExpectRight(c);
+        }
+      }
+    }
+  }
+  for (const int out : {1, 16, 38}) {
+    Case c{{32, out, 1}, 3, 50};
+    c.output_layout = Layout::kPlanar;
+    ExpectRight(c);
+  }
+}
+
+TEST(Convolution, OfOnePixelSeesItAroundTheSphere) {
+  for (const Padding padding : {Padding::kZero, Padding::kWrapReplicate}) {
+    for (const int kernel : {1, 3, 5}) ExpectRight({{20, 20, kernel, 1, padding, 0}, 1, 1});
+  }
+}
+
+TEST(Convolution, ActivatesWithAnySlope) {
+  for (const float slope : {0.0f, 0.1f, 1.0f, -1.0f, 2.0f}) {
+    Case c{{16, 16, 3, 1, Padding::kZero, slope}, 4, 20};
+    c.with_bias = false;
+    ExpectRight(c);
+  }
+}
+
+TEST(Convolution, AddsAResidualInPlace) {
+  const Case c{{32, 32, 3, 1, Padding::kWrapReplicate, 0.1f},
+               6,
+               31,
+               Layout::kBlocked,
+               Layout::kBlocked,
+               true,
+               true};
+  const Data data(c);
+  const std::vector<float> expected = Compute(c, data, 1);
+  const Convolution convolution(c.spec, data.weight, data.bias);
+  TensorMemory input({c.input_shape(), Layout::kBlocked, DataType::kFloat, 1});
+  TensorMemory output({c.output_shape(), Layout::kBlocked, DataType::kFloat, 0});
+  Fill(input.view, data.input);
+  Fill(output.view, data.residual);
+  convolution.Run(input.view, &output.view, output.view, 2);
+  std::size_t next = 0;
+  for (int o = 0; o < 32; ++o) {
+    for (int y = 0; y < 6; ++y) {
+      for (int x = 0; x < 31; ++x) ASSERT_EQ(At(output.view, o, y, x), expected[next++]);
+    }
+  }
+}
+
+TEST(Convolution, ReadsAndWritesSlicesOfChannels) {
+  const Case c{{20, 16, 3}, 4, 9};
+  const Data data(c);
+  const std::vector<float> expected = Compute(c, data, 1);
+  const Convolution convolution(c.spec, data.weight, data.bias);
+  TensorMemory input({{52, 4, 9}, Layout::kBlocked, DataType::kFloat, 1});
+  TensorMemory output({{48, 4, 9}, Layout::kBlocked, DataType::kFloat, 1});
+  Fill(ChannelSlice(input.view, 32, 20), data.input);
+  convolution.Run(ChannelSlice(input.view, 32, 20), nullptr, ChannelSlice(output.view, 16, 16), 1);
+  float untouched;
+  std::memset(&untouched, 0x7f, sizeof(untouched));
+  std::size_t next = 0;
+  for (int o = 0; o < 48; ++o) {
+    for (int y = 0; y < 4; ++y) {
+      for (int x = 0; x < 9; ++x) {
+        const bool inside = o >= 16 && o < 32;
+        ASSERT_EQ(At(output.view, o, y, x), inside ? expected[next++] : untouched) << o;
+      }
+    }
+  }
+}
+
+TEST(Convolution, CarriesNanAndInfinityToTheirWindowsOnly) {
+  for (const float value :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    for (const int stride : {1, 2}) {
+      const Case c{{24, 20, 3, stride, Padding::kZero, 0}, 9, 37};
+      Data data(c);
+      std::fill(data.weight.begin(), data.weight.end(), 1.0f);
+      data.input[(20 * 9 + 4) * 37 + 18] = value;  // channel 20, row 4, column 18
+      const std::vector<float> values = Compute(c, data, 1);
+      const Shape out = c.output_shape();
+      for (int o = 0; o < out.channels; ++o) {
+        for (int y = 0; y < out.height; ++y) {
+          for (int x = 0; x < out.width; ++x) {
+            const float at = values[(o * out.height + y) * out.width + x];
+            const bool reached = std::abs(y * stride - 4) <= 1 && std::abs(x * stride - 18) <= 1;
+            ASSERT_EQ(std::isfinite(at), !reached) << o << ' ' << y << ' ' << x;
+            if (reached) {
+              ASSERT_EQ(std::isnan(at), std::isnan(value));
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Convolution, RefusesWhatDoesNotFit) {
+  const std::vector<float> weight(16 * 16 * 9);
+  EXPECT_THROW(Convolution({16, 16, 2}, weight, {}), ContractError);
+  EXPECT_THROW(Convolution({16, 16, 3, 3}, weight, {}), ContractError);
+  EXPECT_THROW(Convolution({16, 15, 3}, weight, {}), ContractError);
+  EXPECT_THROW(Convolution({16, 16, 3}, weight, std::vector<float>(15)), ContractError);
+  const Convolution convolution({16, 16, 3}, weight, {});
+  TensorMemory input({{16, 4, 4}, Layout::kBlocked, DataType::kFloat, 1});
+  TensorMemory narrow({{16, 4, 4}, Layout::kBlocked, DataType::kFloat, 0});
+  TensorMemory planar({{16, 4, 4}, Layout::kPlanar, DataType::kFloat, 1});
+  TensorMemory small({{16, 4, 3}, Layout::kBlocked, DataType::kFloat, 0});
+  EXPECT_THROW(convolution.Run(narrow.view, nullptr, input.view, 1), ContractError);
+  EXPECT_THROW(convolution.Run(planar.view, nullptr, narrow.view, 1), ContractError);
+  EXPECT_THROW(convolution.Run(input.view, nullptr, small.view, 1), ContractError);
+  EXPECT_THROW(convolution.Run(input.view, &small.view, narrow.view, 1), ContractError);
+}
+
+}  // namespace
+}  // namespace orb360::nn
