@@ -13,7 +13,7 @@
 #include "slam/features/fast_score.h"
 #include "slam/features/hamming.h"
 #include "slam/features/row_resample.h"
-#include "tests/slam/features/dispatch_targets.h"
+#include "tests/dispatch_targets.h"
 #include "tests/slam/geometry/random_geometry.h"
 
 namespace orb360 {

@@ -12,7 +12,7 @@
 #include "slam/features/matching.h"
 #include "slam/geometry/bearing.h"
 #include "slam/geometry/so3.h"
-#include "tests/slam/features/dispatch_targets.h"
+#include "tests/dispatch_targets.h"
 #include "tests/slam/features/sphere_texture.h"
 
 namespace orb360 {

@@ -8,7 +8,7 @@
 
 #include "slam/features/comparison_pattern.h"
 #include "slam/features/sphere_pyramid.h"
-#include "tests/slam/features/dispatch_targets.h"
+#include "tests/dispatch_targets.h"
 
 namespace orb360 {
 namespace {
