@@ -1,0 +1,19 @@
+#pragma once
+
+#include "nn/tensor.h"
+
+namespace orb360::nn {
+
+/// Twice the size: every pixel becomes a 2 x 2 square. Floats, both of the same layout, planar or
+/// blocked; no halo is read or written.
+void UpsampleNearest(const TensorView& x, const TensorView& y, int threads);
+
+/// Pixels of halo that the input of UpsampleBilinear needs; what stands there is overwritten.
+constexpr int kUpsampleBilinearHalo = 1;
+
+/// Twice the size: output pixel u samples the input, linearly in both directions, at
+/// (u + 0.5) / 2 - 0.5, with `padding` beyond the edge. Floats, both of the same layout, planar or
+/// blocked.
+void UpsampleBilinear(const TensorView& x, const TensorView& y, Padding padding, int threads);
+
+}  // namespace orb360::nn
