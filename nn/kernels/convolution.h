@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "nn/base/aligned_vector.h"
 #include "nn/tensor.h"
 
 namespace orb360::nn {
@@ -43,8 +44,9 @@ class Convolution {
 
  private:
   ConvolutionSpec spec_;
-  std::vector<float> weight_;
-  std::vector<float> bias_;
+  std::vector<int> groups_;  // blocks of output channels that are computed together
+  AlignedVector<float> weight_;
+  AlignedVector<float> bias_;
 };
 
 }  // namespace orb360::nn

@@ -1,0 +1,262 @@
+#include "nn/kernels/convolution_direct.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
+
+// Not for vectors whose size the compiler does not know: they cannot be members of arrays. SSSE3
+// would be SSE4's code again.
+#undef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "nn/kernels/convolution_direct.cc"
+#include <hwy/foreach_target.h>
+// foreach_target must come first.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace orb360::nn {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr int kBlock = BlockOf(DataType::kFloat);
+
+// A vector holds a block of output channels, or the whole fraction of one that fits a register.
+using D = hn::CappedTag<float, kBlock>;
+using V = hn::Vec<D>;
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
+constexpr int kVectorsPerBlock = kBlock / kLanes;
+
+// The tile that stays in registers: all output channels of a group at a few pixels of a row. A
+// step takes one input channel of one tap: it loads the tile's weights, broadcasts each pixel's
+// input, and adds their products.
+//
+// - The units finish 2 FMAs a cycle with a latency of 4 cycles (Intel since Skylake, AMD since Zen;
+//   4 units x 4 cycles on the widest ARM cores): 8 sums must be on their way, 16 there.
+// - They load 2 vectors a cycle: a tile of b vectors x p pixels loads b + p of them for b * p FMAs,
+//   and keeps up if b + p <= b * p.
+// - All sums, the b weights and one input fit the registers.
+//
+// AVX-512, 32 registers: 2 x 14 takes 31 of them, loads 16 times in 14 cycles and needs 128 bytes
+// of weights in that time, which the second-level cache delivers; 3 x 9 does the same for an odd
+// number of blocks, and 1 x 28 loads as much as it multiplies.
+// AVX2, 16 registers: 2 x 6 takes 15. SSE4, without FMA, needs one more for the product: 4 x 2
+// takes 8 + 4 + 2. NEON, 32 registers: 4 x 6 takes 29.
+#if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
+constexpr int kMaxBlocks = 3;
+constexpr int MaxPixels(int blocks) { return blocks == 1 ? 28 : blocks == 2 ? 14 : 9; }
+#elif HWY_TARGET == HWY_AVX2 || HWY_ARCH_ARM_A64
+constexpr int kMaxBlocks = 1;
+constexpr int MaxPixels(int /*blocks*/) { return 6; }
+#else
+constexpr int kMaxBlocks = 1;
+constexpr int MaxPixels(int /*blocks*/) { return 2; }
+#endif
+
+// What the tiles of a row have in common.
+struct Row {
+  int kernel;
+  int in_channels;
+  ptrdiff_t in_row;    // elements from a row of the input to the next
+  ptrdiff_t in_plane;  // from a block (kBlocked) or a channel (kPlanar) to the next
+  const float* weight;
+  const float* bias;
+  float slope;
+  int out_channels;  // that exist in this group
+  ptrdiff_t out_plane;
+  ptrdiff_t residual_plane;
+  Layout out_layout;
+};
+
+// Writes a tile, with what follows the convolution. `residual` is null if there is none.
+template <int kVectors, int kPixels>
+HWY_INLINE void StoreTile(const Row& row, V (&sum)[kVectors][kPixels], const float* residual,
+                          float* out) {
+  const D d;
+  const V slope = hn::Set(d, row.slope);
+  const auto finish = [&](V value) HWY_ATTR {
+    // NaN fails the comparison and stays NaN.
+    return hn::IfThenElse(hn::Gt(value, hn::Zero(d)), value, hn::Mul(value, slope));
+  };
+  if (row.out_layout == Layout::kBlocked) {
+    HWY_UNROLL(16)
+    for (int v = 0; v < kVectors; ++v) {
+      const int channel = v * kLanes;
+      const ptrdiff_t lane = channel % kBlock;
+      // What fills up the last block is zero whatever the input is: zero weights would not be
+      // enough beside infinity.
+      const auto exists = hn::FirstN(d, std::max(0, row.out_channels - channel));
+      HWY_UNROLL(28)
+      for (int p = 0; p < kPixels; ++p) {
+        V value = sum[v][p];
+        if (residual != nullptr) {
+          value = hn::Add(value, hn::LoadU(d, residual + channel / kBlock * row.residual_plane +
+                                                  p * kBlock + lane));
+        }
+        hn::StoreU(hn::IfThenElseZero(exists, finish(value)), d,
+                   out + channel / kBlock * row.out_plane + p * kBlock + lane);
+      }
+    }
+    return;
+  }
+  HWY_ALIGN float tile[kPixels * kVectors * kLanes];
+  for (int v = 0; v < kVectors; ++v) {
+    for (int p = 0; p < kPixels; ++p) {
+      hn::Store(sum[v][p], d, tile + (p * kVectors + v) * kLanes);
+    }
+  }
+  for (int c = 0; c < row.out_channels; ++c) {
+    for (int p = 0; p < kPixels; ++p) {
+      float value = tile[p * kVectors * kLanes + c];
+      if (residual != nullptr) value += residual[c * row.residual_plane + p];
+      out[c * row.out_plane + p] = value > 0 ? value : row.slope * value;
+    }
+  }
+}
+
+// `kInStep` is the distance of two pixels' inputs: the stride, in blocks if the input is blocked.
+template <int kBlocks, int kPixels, int kInStep>
+void ComputeTile(const Row& row, const float* in, const float* residual, float* out) {
+  constexpr bool kPlanarInput = kInStep < kBlock;
+  constexpr int kVectors = kBlocks * kVectorsPerBlock;
+  const D d;
+  V sum[kVectors][kPixels];
+  HWY_UNROLL(16)
+  for (int v = 0; v < kVectors; ++v) {
+    const V bias = hn::Load(d, row.bias + v * kLanes);
+    HWY_UNROLL(28)
+    for (int p = 0; p < kPixels; ++p) sum[v][p] = bias;
+  }
+  const float* HWY_RESTRICT weight = row.weight;
+  const ptrdiff_t channel_step = kPlanarInput ? row.in_plane : 1;
+  for (int first = 0; first < row.in_channels; first += kBlock) {
+    const int count = std::min(kBlock, row.in_channels - first);
+    for (int v = 0; v < row.kernel; ++v) {
+      for (int u = 0; u < row.kernel; ++u) {
+        const float* HWY_RESTRICT x = in + v * row.in_row + u * (kPlanarInput ? 1 : kBlock);
+        for (int c = 0; c < count; ++c) {
+          V w[kVectors];
+          HWY_UNROLL(16)
+          for (int i = 0; i < kVectors; ++i) w[i] = hn::Load(d, weight + i * kLanes);
+          HWY_UNROLL(28)
+          for (int p = 0; p < kPixels; ++p) {
+            const V value = hn::Set(d, x[p * kInStep]);
+            HWY_UNROLL(16)
+            for (int i = 0; i < kVectors; ++i) sum[i][p] = hn::MulAdd(value, w[i], sum[i][p]);
+          }
+          x += channel_step;
+          weight += kVectors * kLanes;
+        }
+      }
+    }
+    in += row.in_plane;
+  }
+  StoreTile<kVectors, kPixels>(row, sum, residual, out);
+}
+
+using TileFunction = void (*)(const Row&, const float*, const float*, float*);
+
+// The functions for tiles of 1, 2, ... pixels.
+template <int kBlocks, int kInStep, int... kIndex>
+const TileFunction* TileFunctions(std::integer_sequence<int, kIndex...>) {
+  static constexpr TileFunction kFunctions[] = {&ComputeTile<kBlocks, kIndex + 1, kInStep>...};
+  return kFunctions;
+}
+
+template <int kBlocks>
+const TileFunction* TileFunctions(int in_step) {
+  constexpr auto kSizes = std::make_integer_sequence<int, MaxPixels(kBlocks)>();
+  switch (in_step) {
+    case 1:
+      return TileFunctions<kBlocks, 1>(kSizes);
+    case 2:
+      return TileFunctions<kBlocks, 2>(kSizes);
+    case kBlock:
+      return TileFunctions<kBlocks, kBlock>(kSizes);
+    default:
+      return TileFunctions<kBlocks, 2 * kBlock>(kSizes);
+  }
+}
+
+const TileFunction* TileFunctions(int blocks, int in_step) {
+#if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
+  if (blocks == 2) return TileFunctions<2>(in_step);
+  if (blocks == 3) return TileFunctions<3>(in_step);
+#endif
+  return blocks == 1 ? TileFunctions<1>(in_step) : nullptr;
+}
+
+int PreferredBlocks() { return kMaxBlocks; }
+
+void RunDirectRows(const DirectConvolution& run, int first, int last) {
+  const TensorView& output = run.output;
+  const int in_block = run.input.layout == Layout::kBlocked ? kBlock : 1;
+  const int out_block = output.layout == Layout::kBlocked ? kBlock : 1;
+  const int reach = run.kernel / 2;
+  const float* weight = run.weight;
+  const float* bias = run.bias;
+  int first_block = 0;
+  for (const int blocks : *run.groups) {
+    const TileFunction* functions = TileFunctions(blocks, run.stride * in_block);
+    const int first_channel = first_block * kBlock;
+    const int plane = first_channel / out_block;
+    const Row row{run.kernel,
+                  run.input.shape.channels,
+                  run.input.row_stride,
+                  run.input.plane_stride,
+                  weight,
+                  bias,
+                  run.slope,
+                  std::min(blocks * kBlock, output.shape.channels - first_channel),
+                  output.plane_stride,
+                  run.residual.plane_stride,
+                  output.layout};
+    // Tiles of equal width, give or take a pixel: a remainder of few pixels would have too few
+    // sums on their way.
+    const int width = output.shape.width;
+    const int max_pixels = MaxPixels(blocks);
+    const int tiles = (width + max_pixels - 1) / max_pixels;
+    for (int y = first; y < last; ++y) {
+      const float* in = run.input.row<float>(0, y * run.stride - reach);
+      for (int t = 0; t < tiles; ++t) {
+        const int x = t * width / tiles;
+        const int end = (t + 1) * width / tiles;
+        functions[end - x - 1](row, in + (x * run.stride - reach) * in_block,
+                               run.residual.data == nullptr
+                                   ? nullptr
+                                   : run.residual.row<float>(plane, y) + x * out_block,
+                               output.row<float>(plane, y) + x * out_block);
+      }
+    }
+    weight += ptrdiff_t{run.kernel} * run.kernel * run.input.shape.channels * blocks * kBlock;
+    bias += blocks * kBlock;
+    first_block += blocks;
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace orb360::nn
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace orb360::nn {
+
+HWY_EXPORT(PreferredBlocks);
+HWY_EXPORT(RunDirectRows);
+
+std::vector<int> DirectGroups(int out_channels) {
+  int left = (out_channels + BlockOf(DataType::kFloat) - 1) / BlockOf(DataType::kFloat);
+  if (HWY_DYNAMIC_DISPATCH(PreferredBlocks)() == 1) return std::vector<int>(left, 1);
+  std::vector<int> groups;
+  // Pairs, and one of three if the number is odd: a block alone would read every input for itself.
+  for (; left > 0; left -= groups.back()) groups.push_back(left == 3 ? 3 : std::min(left, 2));
+  return groups;
+}
+
+void RunDirect(const DirectConvolution& run, int first, int last) {
+  HWY_DYNAMIC_DISPATCH(RunDirectRows)(run, first, last);
+}
+
+}  // namespace orb360::nn
+#endif
