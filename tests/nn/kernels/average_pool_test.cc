@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "nn/base/check.h"
+#include "tests/dispatch_targets.h"
 #include "tests/nn/kernels/plain_picture.h"
-#include "tests/slam/features/dispatch_targets.h"
 
 namespace orb360::nn {
 namespace {
