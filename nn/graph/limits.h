@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace orb360::nn::limits {
+
+// What a file may ask for (docs/networks.md): far above any network that this library is for, and
+// low enough that no product of them overflows.
+constexpr std::size_t kJsonBytes = std::size_t{4} << 20;
+constexpr int kJsonDepth = 32;  // nested objects and arrays; a graph has six
+constexpr std::size_t kNameBytes = 256;
+constexpr std::size_t kNodes = 4096;
+constexpr std::size_t kNodeInputs = 256;
+constexpr int kChannels = 4096;
+constexpr std::int64_t kWeights = std::int64_t{1} << 28;  // numbers, 1 GiB
+constexpr int kKernelSize = 15;
+constexpr int kSizeMultiple = 1 << 12;
+constexpr int kMostHalvings = 12;
+constexpr int kLeastHalvings = -2;
+
+/// Pixels of a picture on each side: the largest that image formats and libraries agree on.
+constexpr int kPictureSide = 1 << 15;
+
+}  // namespace orb360::nn::limits

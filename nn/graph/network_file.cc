@@ -1,0 +1,248 @@
+#include "nn/graph/network_file.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include <hdf5.h>
+#include <openssl/evp.h>
+
+#include "nn/base/check.h"
+#include "nn/base/hdf5_handle.h"
+#include "nn/graph/json_object.h"
+#include "nn/graph/limits.h"
+#include "nn/graph/parse_graph.h"
+
+namespace orb360::nn {
+namespace {
+
+constexpr std::string_view kMagic = "ORB360NN";
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kVersionAt = 8;
+constexpr std::size_t kDigestAt = 16;
+constexpr std::size_t kDigestBytes = 32;
+constexpr std::size_t kHeaderBytes = 512;
+/// All weights that are accepted, as 32-bit floats, and as much again for everything else.
+constexpr std::uintmax_t kMostBytes = std::uintmax_t{limits::kWeights} * 8;
+
+static_assert(std::endian::native == std::endian::little, "numbers are read as they lie in files");
+
+using Bytes = std::vector<unsigned char>;
+
+Bytes ReadBytes(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) throw UserError("cannot be read: " + error.message());
+  if (size > kMostBytes) {
+    throw UserError("has " + std::to_string(size) + " bytes, more than any network");
+  }
+  Bytes bytes(static_cast<std::size_t>(size));
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw UserError("cannot be read: " + std::generic_category().message(errno));
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (!file) throw UserError("cannot be read to its end");
+  return bytes;
+}
+
+void CheckHeader(const Bytes& bytes) {
+  if (bytes.size() < kHeaderBytes || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) {
+    throw UserError("is not a network of orb360; weights_tools writes them");
+  }
+  std::uint32_t version = 0;
+  std::memcpy(&version, bytes.data() + kVersionAt, sizeof(version));
+  if (version != kVersion) {
+    throw UserError("is a network of version " + std::to_string(version) +
+                    ", and this program reads version " + std::to_string(kVersion) +
+                    "; use the weights that belong to it");
+  }
+  const std::span<const unsigned char> header(bytes.data(), kHeaderBytes);
+  const auto is_zero = [](std::span<const unsigned char> part) {
+    return std::ranges::all_of(part, [](unsigned char byte) { return byte == 0; });
+  };
+  if (!is_zero(
+          header.subspan(kVersionAt + sizeof(version), kDigestAt - kVersionAt - sizeof(version))) ||
+      !is_zero(header.subspan(kDigestAt + kDigestBytes))) {
+    throw UserError("has a damaged header; copy or download it again");
+  }
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
+  unsigned size = 0;
+  const int done = EVP_Digest(bytes.data() + kHeaderBytes, bytes.size() - kHeaderBytes,
+                              digest.data(), &size, EVP_sha256(), nullptr);
+  ORB360_CHECK(done == 1 && size == kDigestBytes, size);
+  if (std::memcmp(digest.data(), bytes.data() + kDigestAt, kDigestBytes) != 0) {
+    throw UserError("is damaged (its SHA-256 is another one); copy or download it again");
+  }
+}
+
+/// The file in memory as the HDF5 library sees it.
+Hdf5Handle OpenImage(Bytes* bytes) {
+  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  constexpr std::size_t kGrowth = 1 << 16;  // bytes; never used for reading
+  H5Pset_fapl_core(access.get(), kGrowth, /*backing_store=*/0);
+  H5Pset_file_image(access.get(), bytes->data(), bytes->size());
+  Hdf5Handle file(H5Fopen("network", H5F_ACC_RDONLY, access.get()), H5Fclose);
+  if (!file.is_valid()) throw UserError("has no HDF5 content behind its header");
+  return file;
+}
+
+/// A dataset whose bytes are in this file, and nowhere else.
+Hdf5Handle OpenDataset(hid_t group, const std::string& name) {
+  H5L_info_t link;
+  Hdf5Handle set(
+      H5Lget_info(group, name.c_str(), &link, H5P_DEFAULT) >= 0 && link.type == H5L_TYPE_HARD
+          ? H5Dopen2(group, name.c_str(), H5P_DEFAULT)
+          : H5I_INVALID_HID,
+      H5Dclose);
+  if (!set.is_valid()) throw UserError("has no dataset " + Quoted(name));
+  const Hdf5Handle creation(H5Dget_create_plist(set.get()), H5Pclose);
+  if (H5Pget_external_count(creation.get()) != 0 || H5Pget_layout(creation.get()) == H5D_VIRTUAL) {
+    throw UserError("dataset " + Quoted(name) + " lies in another file");
+  }
+  return set;
+}
+
+std::string ReadText(hid_t file, const std::string& name) {
+  const Hdf5Handle set = OpenDataset(file, name);
+  const Hdf5Handle type(H5Dget_type(set.get()), H5Tclose);
+  const Hdf5Handle space(H5Dget_space(set.get()), H5Sclose);
+  if (H5Tget_class(type.get()) != H5T_STRING || H5Sget_simple_extent_npoints(space.get()) != 1) {
+    throw UserError("dataset " + Quoted(name) + " should be one string");
+  }
+  const Hdf5Handle memory(H5Tcopy(type.get()), H5Tclose);
+  std::string text;
+  bool is_read = false;
+  if (H5Tis_variable_str(type.get()) > 0) {
+    char* read = nullptr;
+    is_read = H5Dread(set.get(), memory.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &read) >= 0;
+    if (read != nullptr) text = read;
+    H5Dvlen_reclaim(memory.get(), space.get(), H5P_DEFAULT, &read);
+  } else if (H5Tget_size(type.get()) <= limits::kJsonBytes) {
+    text.resize(H5Tget_size(type.get()));
+    is_read = H5Dread(set.get(), memory.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) >= 0;
+    text.resize(std::strlen(text.c_str()));
+  }
+  if (!is_read) throw UserError("dataset " + Quoted(name) + " cannot be read");
+  return text;
+}
+
+/// IEEE 754 binary16, which the HDF5 library has no name for.
+Hdf5Handle HalfType() {
+  Hdf5Handle type(H5Tcopy(H5T_IEEE_F32LE), H5Tclose);
+  // Sign, exponent and mantissa: position and size in bits.
+  H5Tset_fields(type.get(), 15, 10, 5, 0, 10);
+  H5Tset_size(type.get(), 2);
+  H5Tset_ebias(type.get(), 15);
+  return type;
+}
+
+/// Exact: every half is a float.
+float WidenHalf(std::uint16_t half) {
+  const std::uint32_t sign = (half & 0x8000u) << 16;
+  const std::uint32_t exponent = (half >> 10) & 0x1fu;
+  const std::uint32_t mantissa = half & 0x3ffu;
+  if (exponent == 0) {
+    const float value = static_cast<float>(mantissa) * 0x1p-24f;
+    return sign != 0 ? -value : value;
+  }
+  constexpr std::uint32_t kBiasDifference = 127 - 15;
+  const std::uint32_t wide = exponent == 0x1f ? 0xffu : exponent + kBiasDifference;
+  return std::bit_cast<float>(sign | wide << 23 | mantissa << 13);
+}
+
+std::vector<int> ReadShape(hid_t set, const std::string& name) {
+  constexpr int kMostDimensions = 4;
+  const Hdf5Handle space(H5Dget_space(set), H5Sclose);
+  const int rank = H5Sget_simple_extent_ndims(space.get());
+  if (rank < 1 || rank > kMostDimensions) {
+    throw UserError("weights " + Quoted(name) + " have " + std::to_string(rank) +
+                    " dimensions and should have 1 to 4");
+  }
+  std::array<hsize_t, kMostDimensions> sizes{};
+  H5Sget_simple_extent_dims(space.get(), sizes.data(), nullptr);
+  std::vector<int> shape;
+  for (int i = 0; i < rank; ++i) {
+    const hsize_t size = sizes[static_cast<std::size_t>(i)];
+    if (size < 1 || size > hsize_t{limits::kChannels}) {
+      throw UserError("weights " + Quoted(name) + " have a dimension of " + std::to_string(size) +
+                      ", and 1 to " + std::to_string(limits::kChannels) + " are accepted");
+    }
+    shape.push_back(static_cast<int>(size));
+  }
+  return shape;
+}
+
+/// `room`: how many numbers are still accepted.
+Weight ReadWeight(hid_t group, const std::string& name, std::int64_t room) {
+  const Hdf5Handle set = OpenDataset(group, name);
+  Weight weight{name, ReadShape(set.get(), name), {}};
+  std::int64_t count = 1;
+  for (const int size : weight.shape) count *= size;
+  if (count > room) {
+    throw UserError("has more than " + std::to_string(limits::kWeights) + " weights");
+  }
+  const Hdf5Handle type(H5Dget_type(set.get()), H5Tclose);
+  weight.values.resize(static_cast<std::size_t>(count));
+  bool is_read = false;
+  if (H5Tequal(type.get(), H5T_IEEE_F32LE) > 0) {
+    is_read = H5Dread(set.get(), H5T_IEEE_F32LE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                      weight.values.data()) >= 0;
+  } else if (H5Tequal(type.get(), HalfType().get()) > 0) {
+    std::vector<std::uint16_t> halves(weight.values.size());
+    is_read = H5Dread(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, halves.data()) >= 0;
+    std::ranges::transform(halves, weight.values.begin(), WidenHalf);
+  } else {
+    throw UserError("weights " + Quoted(name) +
+                    " should be little-endian IEEE floats of 16 or 32 bits");
+  }
+  if (!is_read) throw UserError("weights " + Quoted(name) + " cannot be read");
+  return weight;
+}
+
+std::vector<Weight> ReadWeights(hid_t file) {
+  std::vector<Weight> weights;
+  // A network may have none.
+  if (H5Lexists(file, "weights", H5P_DEFAULT) <= 0) return weights;
+  const Hdf5Handle group(H5Gopen2(file, "weights", H5P_DEFAULT), H5Gclose);
+  if (!group.is_valid()) throw UserError("\"weights\" should be a group");
+  std::vector<std::string> names;
+  const auto add_name = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  if (H5Literate(group.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add_name, &names) < 0) {
+    throw UserError("its weights cannot be listed");
+  }
+  std::int64_t room = limits::kWeights;
+  for (const std::string& name : names) {
+    weights.push_back(ReadWeight(group.get(), name, room));
+    room -= static_cast<std::int64_t>(weights.back().values.size());
+  }
+  return weights;
+}
+
+}  // namespace
+
+Graph ReadNetwork(const std::filesystem::path& path) {
+  try {
+    Bytes bytes = ReadBytes(path);
+    CheckHeader(bytes);
+    const Hdf5Quiet quiet;
+    const Hdf5Handle file = OpenImage(&bytes);
+    const std::string json = ReadText(file.get(), "graph");
+    return ParseGraph(json, ReadWeights(file.get()));
+  } catch (const UserError& reason) {
+    throw UserError(path.string() + ": " + reason.what());
+  }
+}
+
+}  // namespace orb360::nn
