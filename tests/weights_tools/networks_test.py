@@ -1,0 +1,207 @@
+"""The networks' sizes, and what must hold for every panorama they are given."""
+
+import math
+import unittest
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from weights_tools import networks
+from weights_tools.builder import Builder, Description
+from weights_tools.network import Network
+
+HEIGHT, WIDTH = 64, 128
+
+
+def panorama(seed: int = 0, dtype: torch.dtype = torch.float64) -> dict[str, Tensor]:
+    """A random picture with 5 % of its depths."""
+    random = np.random.RandomState(seed)
+    known = random.uniform(size=(1, 1, HEIGHT, WIDTH)) < 0.05
+    arrays = {
+        "image": random.uniform(size=(1, 3, HEIGHT, WIDTH)),
+        "depth": known * random.uniform(1, 80, known.shape),
+        "confidence": known * random.uniform(0.1, 1, known.shape),
+    }
+    return {name: torch.from_numpy(values).to(dtype) for name, values in arrays.items()}
+
+
+def small(padding: str = "wrap_replicate") -> Network:
+    description = networks.depth_completion((8, 12, 20, 24, 36), hidden=10, padding=padding)
+    return Network(description, seed=1)
+
+
+class SizeTest(unittest.TestCase):
+    def check(self, description: Description, parameters: int, giga_macs: float) -> None:
+        self.assertEqual(description.parameters, parameters)
+        trainable = sum(values.numel() for values in Network(description).parameters())
+        self.assertEqual(trainable, parameters)
+        macs = sum(description.multiply_accumulates(512, 1024).values())
+        self.assertEqual(round(macs / 1e9, 2), giga_macs)
+
+    def test_unguided(self) -> None:
+        self.check(networks.unguided(), 481, 0.42)
+
+    def test_encoder_decoder(self) -> None:
+        self.check(networks.encoder_decoder(), 484_203, 10.01)
+
+    def test_multi_stream(self) -> None:
+        self.check(networks.multi_stream(), 356_242, 186.54)
+
+    def test_depth_completion(self) -> None:
+        self.check(networks.depth_completion(), 2_463_014, 12.27)
+
+    def test_layers_of_depth_completion_cost_what_was_planned(self) -> None:
+        planned = {  # millions of multiply-accumulates at 512 x 1024
+            "encoder1": 227, "encoder2": 604 + 2416, "encoder3": 453 + 1359, "encoder4": 227 + 1208,
+            "encoder5": 94 + 472, "4": 313, "3": 705, "2": 1258, "1": 1275, "head": 1367,
+        }
+        counted = dict.fromkeys(planned, 0)
+        for node, macs in networks.depth_completion().multiply_accumulates(512, 1024).items():
+            part = node.partition(".")[0].partition("_")[0]
+            part = part.replace("lateral", "").replace("decoder", "")
+            part = "head" if part.startswith("head") else part
+            if part in counted:
+                counted[part] += macs
+        for part, millions in planned.items():
+            self.assertAlmostEqual(counted[part] / 1e6, millions, delta=1, msg=part)
+
+    def test_costs_are_those_of_the_tensors_that_run(self) -> None:
+        network = small().double()
+        tensors = network.tensors(panorama())
+        weights = network.weights()
+        counted = network.description.multiply_accumulates(HEIGHT, WIDTH)
+        for node in network.description.graph.nodes:
+            if node.weights:
+                pixels = tensors[node.outputs[0]][0, 0].numel()
+                sums = 2 if node.op == "normalized_convolution" else 1
+                expected = sums * pixels * weights[node.weights["weight"]].numel()
+                self.assertEqual(counted[node.name], expected, node.name)
+
+    def test_two_layers_cannot_have_one_name(self) -> None:
+        builder = Builder("twice", 1, "zero")
+        x = builder.convolution("a", builder.input("x", 1), 2)
+        with self.assertRaisesRegex(ValueError, 'two layers named "a"'):
+            builder.convolution("a", x, 2)
+
+
+class SeedTest(unittest.TestCase):
+    def test_the_same_seed_gives_the_same_weights(self) -> None:
+        first, same, other = (Network(networks.unguided(), seed) for seed in (3, 3, 4))
+        for name, weight in first.weights().items():
+            self.assertTrue(torch.equal(weight, same.weights()[name]))
+            self.assertFalse(torch.equal(weight, other.weights()[name]))
+
+    def test_weights_of_normalized_convolutions_stay_positive(self) -> None:
+        network = Network(networks.unguided())
+        for values in network.parameters():
+            values.data -= 3.0
+        for name, weight in network.weights().items():
+            if name.endswith("weight"):
+                self.assertTrue((weight > 0).all())
+
+    def test_weights_survive_loading(self) -> None:
+        network, other = Network(networks.unguided(), 0), Network(networks.unguided(), 1)
+        weights = {name: value.detach().numpy() for name, value in network.weights().items()}
+        other.load(weights)
+        for name, value in other.weights().items():
+            np.testing.assert_allclose(value.detach(), weights[name], rtol=3e-7)
+        with self.assertRaisesRegex(ValueError, 'layer "n1" of "unguided'):
+            other.load({**weights, "n1.weight": weights["n2.weight"]})
+
+
+class DepthCompletionTest(unittest.TestCase):
+    def test_outputs_have_the_size_of_the_picture(self) -> None:
+        outputs = small().double()(panorama())
+        for name in ("log_depth", "log_confidence"):
+            self.assertEqual(outputs[name].shape, (1, 1, HEIGHT, WIDTH))
+        for name in ("median", "log_scale"):
+            self.assertEqual(outputs[name].shape, (1, 1, 1, 1))
+
+    def test_turning_the_camera_turns_the_result(self) -> None:
+        network = small().double()
+        inputs = panorama()
+        outputs = network(inputs)
+        turned = network({name: value.roll(64, -1) for name, value in inputs.items()})
+        for name in ("log_depth", "log_confidence"):
+            # Not exact here: BLAS adds up in another order elsewhere in the picture.
+            difference = (outputs[name].roll(64, -1) - turned[name]).abs().max().item()
+            self.assertLess(difference, 1e-12, name)
+        self.assertEqual(outputs["median"], turned["median"])
+        difference = (outputs["log_scale"] - turned["log_scale"]).abs().item()
+        self.assertLess(difference, 1e-12)
+
+    def test_the_unit_of_depth_does_not_matter(self) -> None:
+        network = small().double()
+        inputs = panorama()
+        outputs = network(inputs)
+        scaled = network({**inputs, "depth": inputs["depth"] * 0.1})
+        for name in ("log_depth", "log_confidence", "log_scale"):
+            difference = (outputs[name] - scaled[name]).abs().max().item()
+            self.assertLess(difference, 1e-13, name)
+        self.assertAlmostEqual(scaled["median"].item(), 0.1 * outputs["median"].item())
+
+    def test_is_finite_and_can_be_trained_without_points_and_without_a_picture(self) -> None:
+        inputs = panorama(dtype=torch.float32)
+        for name in inputs:
+            network = small("wrap_cross_pole")
+            outputs = network({**inputs, name: torch.zeros_like(inputs[name])})
+            sum(values.square().mean() for values in outputs.values()).backward()
+            for value in outputs.values():
+                self.assertTrue(value.isfinite().all())
+            for parameter, values in network.named_parameters():
+                self.assertTrue(values.grad.isfinite().all(), parameter)
+
+    def test_every_parameter_matters(self) -> None:
+        network = small().double()
+        outputs = network(panorama())
+        sum(values.square().sum() for values in outputs.values()).backward()
+        for parameter, values in network.named_parameters():
+            self.assertGreater(values.grad.abs().max().item(), 0.0, parameter)
+
+
+class PublishedTest(unittest.TestCase):
+    def test_a_lone_point_is_spread_over_94_pixels(self) -> None:
+        network = Network(networks.unguided()).double()
+        depth = torch.zeros(1, 1, 192, 192, dtype=torch.float64)
+        depth[..., 96, 96] = 5.0
+        certain = network({"depth": depth, "confidence": (depth > 0).double()})["confidence"]
+        reached = certain[0, 0] > 0
+        self.assertEqual(reached.any(dim=1).sum(), 94)
+        self.assertEqual(reached.any(dim=0).sum(), 94)
+
+    def test_guided_networks_start_from_the_unguided_one(self) -> None:
+        inputs = panorama()
+        alone = Network(networks.unguided()).double()
+        propagated = alone({name: inputs[name] for name in ("depth", "confidence")})
+        for describe in (networks.encoder_decoder, networks.multi_stream):
+            guided = Network(describe()).double()
+            weights = {name: w.detach() for name, w in alone.weights().items()}
+            own = {name: w.detach() for name, w in guided.weights().items()}
+            guided.load({**own, **weights})
+            tensors = guided.tensors(inputs)
+            difference = tensors["propagated"] - propagated["depth"]
+            self.assertLess(difference.abs().max().item(), 1e-12)
+
+    def test_the_encoder_decoder_sees_the_raw_points_last(self) -> None:
+        tensors = Network(networks.encoder_decoder()).double().tensors(panorama())
+        last = tensors["decoder0.concatenated"]
+        self.assertEqual(last.shape, (1, 33, HEIGHT, WIDTH))
+        self.assertTrue(torch.equal(last[:, 32:], tensors["depth"]))
+        expected = torch.cat([tensors[n] for n in ("propagated", "image", "propagated.c")], 1)
+        self.assertTrue(torch.equal(tensors["fused"], expected))
+
+    def test_certainty_is_the_logarithm_of_confidence_over_eight_decades(self) -> None:
+        network = small().double()
+        inputs = panorama()
+        inputs["confidence"] *= 1e-7
+        tensors = network.tensors(inputs)
+        c = tensors["propagated.c"].clamp(min=1e-300)
+        expected = (1 + c.log10() / 8).clamp(0, 1)
+        difference = (tensors["certainty"] - expected).abs().max().item()
+        self.assertLess(difference, 1e-14)
+        self.assertGreater(math.log10(c.max().item()), -8)
+
+
+if __name__ == "__main__":
+    unittest.main()

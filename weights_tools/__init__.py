@@ -1,0 +1,1 @@
+"""The PyTorch twin of orb360's networks: builds them, writes them to files, dumps references."""

@@ -1,0 +1,94 @@
+"""A network that can be trained: a description with parameters."""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+import torch
+import torch.nn.functional as F
+from torch import Tensor, nn
+
+from weights_tools.builder import Description, Layer
+from weights_tools.graph import run
+
+# Sharpness of the softplus that keeps the weights of normalized convolutions positive in training.
+SOFTPLUS_BETA = 10.0
+
+
+class Network(nn.Module):
+    """Parameters are named layers.LAYER.weight and layers.LAYER.bias."""
+
+    def __init__(self, description: Description, seed: int = 0) -> None:
+        super().__init__()
+        self.description = description
+        self.layers = nn.ModuleDict(
+            {layer.name: nn.ParameterDict() for layer in description.layers}
+        )
+        generator = np.random.RandomState(seed)  # the same numbers in every version of NumPy
+        self.load(
+            {
+                f"{layer.name}.{role}": values
+                for layer in description.layers
+                for role, values in _initial(layer, generator).items()
+            }
+        )
+
+    def load(self, weights: Mapping[str, np.ndarray]) -> None:
+        """Takes weights as they stand in a file."""
+        for layer in self.description.layers:
+            weight = torch.as_tensor(weights[f"{layer.name}.weight"])
+            bias = torch.as_tensor(weights[f"{layer.name}.bias"])
+            if tuple(weight.shape) != layer.shape or tuple(bias.shape) != (layer.outputs,):
+                raise ValueError(
+                    f'layer "{layer.name}" of "{self.description.graph.name}" has the shape '
+                    f"{layer.shape}, but the weights have {tuple(weight.shape)}"
+                )
+            if layer.is_normalized:
+                weight = _inverse_softplus(weight.double()).to(weight.dtype)
+            self.layers[layer.name]["weight"] = nn.Parameter(weight.clone())
+            self.layers[layer.name]["bias"] = nn.Parameter(bias.clone())
+
+    def weights(self) -> dict[str, Tensor]:
+        """Weights as operations take them and files hold them."""
+        result = {}
+        for layer in self.description.layers:
+            weight = self.layers[layer.name]["weight"]
+            if layer.is_normalized:
+                weight = F.softplus(weight, beta=SOFTPLUS_BETA)
+            result[f"{layer.name}.weight"] = weight
+            result[f"{layer.name}.bias"] = self.layers[layer.name]["bias"]
+        return result
+
+    def tensors(self, inputs: Mapping[str, Tensor]) -> dict[str, Tensor]:
+        """What every node writes, by name."""
+        return run(self.description.graph, self.weights(), inputs)
+
+    def forward(self, inputs: Mapping[str, Tensor]) -> dict[str, Tensor]:
+        tensors = self.tensors(inputs)
+        return {port["name"]: tensors[port["tensor"]] for port in self.description.graph.outputs}
+
+
+def _initial(layer: Layer, generator: np.random.RandomState) -> dict[str, np.ndarray]:
+    """Uniform numbers only: they are made of whole ones and equal on every processor."""
+    if layer.is_normalized:
+        # A mean that prefers near points, a little different in each channel.
+        size = layer.shape[-1]
+        offset = np.arange(size) - size // 2
+        sigma = max(size / 4, 0.5)  # pixels: the corners count little, but they count
+        bump = np.exp(-(offset[:, None] ** 2 + offset**2) / (2 * sigma**2))
+        weight = bump * generator.uniform(0.5, 1.5, layer.shape)
+        bias = generator.uniform(-0.01, 0.01, layer.outputs)
+    else:
+        # He et al., "Delving Deep into Rectifiers": keeps the variance from layer to layer.
+        fan_in = layer.weights / layer.outputs
+        bound = layer.gain * math.sqrt(6 / ((1 + layer.slope**2) * fan_in))
+        weight = generator.uniform(-bound, bound, layer.shape)
+        bias = generator.uniform(-1, 1, layer.outputs) * layer.gain / math.sqrt(fan_in)
+    return {"weight": weight.astype(np.float32), "bias": bias.astype(np.float32)}
+
+
+def _inverse_softplus(weight: Tensor) -> Tensor:
+    # ln(e^{beta w} - 1) = beta w + ln(1 - e^{-beta w}), which does not overflow.
+    tiny = torch.finfo(torch.float32).tiny  # what a weight of zero becomes
+    scaled = SOFTPLUS_BETA * weight.clamp(min=tiny)
+    return (scaled + torch.log(-torch.expm1(-scaled))) / SOFTPLUS_BETA

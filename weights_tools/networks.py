@@ -1,0 +1,199 @@
+"""The published networks and the project's own, as descriptions.
+
+Widths are parameters so that tests can run small copies; the defaults are the networks themselves.
+"""
+
+from collections.abc import Sequence
+
+from weights_tools.builder import Builder, Description, Layer, Pair, Symbol
+
+# For people who read a file: what its inputs and outputs are.
+METRES = {"image": "RGB in 0..1", "depth": "metres, 0 where unknown", "confidence": "0..1"}
+LOG_DEPTH = {
+    "image": "RGB in 0..1",
+    "depth": "any unit, 0 where unknown",
+    "confidence": "0..1",
+    "median": "the depths' median, which the network divides them by",
+    "log_depth": "ln of depth over median",
+    "log_confidence": "ln of the confidence in log_depth",
+    "log_scale": "ln of the median's length in camera heights",
+}
+
+
+def unguided() -> Description:
+    """Confidence propagation without an image; Eldesokey et al. 2019: 481 parameters."""
+    b = Builder("unguided normalized convolutions", 8, "zero")
+    pair = _unguided(b, Pair(b.input("depth", 1), b.input("confidence", 1)))
+    return b.build({"depth": pair.x, "confidence": pair.c}, METRES)
+
+
+def _unguided(b: Builder, sparse: Pair) -> Pair:
+    n1 = b.normalized_layer("n1", 1, 2, 5)
+    n2, n3 = (b.normalized_layer(name, 2, 2, 5) for name in ("n2", "n3"))
+    n4, n5, n6 = (b.normalized_layer(name, 4, 2, 3) for name in ("n4", "n5", "n6"))
+    n7 = b.normalized_layer("n7", 2, 1, 1)
+
+    level = b.normalized_convolution("level0.n1", sparse, n1)
+    level = b.normalized_convolution("level0.n2", level, n2)
+    level0 = b.normalized_convolution("level0", level, n3)
+    level = b.confidence_pool("level1.pool", level0, "quarter")
+    level = b.normalized_convolution("level1.n2", level, n2)
+    level1 = b.normalized_convolution("level1", level, n3)
+    level = b.confidence_pool("level2.pool", level1, "quarter")
+    level2 = b.normalized_convolution("level2", level, n2)
+    level = b.confidence_pool("level3.pool", level2, "quarter")
+    level3 = b.normalized_convolution("level3", level, n2)
+
+    def join(name: str, first: Pair, second: Pair, layer: Layer) -> Pair:
+        both = b.concatenate_pairs(f"{name}.concatenated", first, second)
+        return b.normalized_convolution(name, both, layer)
+
+    up = b.upsample_nearest_pair("level3.up", level3)
+    decoded = join("decoded2", level2, up, n4)
+    up = b.upsample_nearest_pair("decoded2.up", decoded)
+    decoded = join("decoded1", level1, up, n5)
+    up = b.upsample_nearest_pair("decoded1.up", decoded)
+    decoded = join("decoded0", up, level0, n6)  # the other order, as published
+    return b.normalized_convolution("propagated", decoded, n7)
+
+
+def encoder_decoder(encoder: int = 80, decoder: Sequence[int] = (64, 64, 32, 32)) -> Description:
+    """The image guides from the start, as the paper describes it: 484,203 parameters."""
+    b = Builder("guided encoder-decoder", 32, "zero")
+    image, sparse = _image_and_points(b)
+    propagated = _unguided(b, sparse)
+
+    x = b.concatenate("fused", propagated.x, image, propagated.c)
+    skips = []
+    for i in range(1, 6):
+        x = b.convolution(f"encoder{i}", x, encoder, stride=2, slope=0)
+        skips.append(x)
+    skips = [sparse.x, *skips[:-1]]
+    for i, outputs in zip(range(4, -1, -1), [*decoder, 1], strict=True):
+        up = b.upsample_nearest(f"decoder{i}.up", x)
+        both = b.concatenate(f"decoder{i}.concatenated", up, skips[i])
+        x = b.convolution(f"decoder{i}", both, outputs, slope=0.2)
+    return b.build({"depth": x, "confidence": propagated.c}, METRES)
+
+
+def multi_stream(depth: int = 16, image: int = 64, narrow: int = 32) -> Description:
+    """Depth and image meet late, at full resolution throughout: 356,242 parameters."""
+    b = Builder("guided multi-stream", 8, "zero")
+    picture, sparse = _image_and_points(b)
+    propagated = _unguided(b, sparse)
+
+    def stream(name: str, x: Symbol, widths: Sequence[int]) -> Symbol:
+        for i, width in enumerate(widths, 1):
+            x = b.convolution(f"{name}{i}", x, width, slope=0)
+        return x
+
+    coloured = b.concatenate("coloured", picture, propagated.c)
+    x = b.concatenate(
+        "streams",
+        stream("depth", propagated.x, [depth] * 6),
+        stream("image", coloured, [image] * 6),
+    )
+    x = stream("joint", x, [image] * 3 + [narrow] * 3)
+    x = b.convolution("completed", x, 1, size=1)
+    return b.build({"depth": x, "confidence": propagated.c}, METRES)
+
+
+def depth_completion(
+    widths: Sequence[int] = (32, 64, 96, 128, 160),
+    hidden: int = 64,
+    padding: str = "wrap_replicate",
+) -> Description:
+    """The project's own: 2.46 million parameters, 12.27 GMAC at 512 x 1024."""
+    b = Builder("panoramic depth completion", 64, padding)
+    image, sparse = _image_and_points(b)
+    points, median = b.median_log("points", sparse.x, sparse.c)
+    propagated = _propagate(b, points)
+
+    encoded = _encode(b, _features(b, propagated, image), widths)
+    x = _decode(b, encoded)
+
+    x = b.convolution("head1", x, x.channels, slope=_LEAK)
+    # Small at first: the propagated depth is a good start.
+    heads = b.convolution("head2", x, 2 + 36, size=1, gain=0.1)
+    bounded = b.pointwise("tanh", "residual.tanh", b.slice("residual.raw", heads, 0, 1))
+    residual = b.pointwise("affine", "residual", bounded, scale=2.0, offset=0.0)
+    coarse = b.pointwise("add", "coarse", b.average_pool("propagated.half", propagated.x), residual)
+    log_depth = b.convex_upsample("log_depth", coarse, b.slice("shares", heads, 2, 36))
+    log_confidence = b.upsample_bilinear("log_confidence", b.slice("confident", heads, 1, 1))
+
+    x = b.global_average_pool("global.mean", encoded[-1])
+    log_scale = b.dense("global2", b.dense("global1", x, hidden, slope=_LEAK), 1)
+    outputs = {
+        "log_depth": log_depth,
+        "log_confidence": log_confidence,
+        "median": median,
+        "log_scale": log_scale,
+    }
+    return b.build(outputs, LOG_DEPTH)
+
+
+_LEAK = 0.1  # slope of the activations below zero
+_LEVELS = 7  # fewer leave pixels of a panorama that see none of SLAM's points
+
+
+def _image_and_points(b: Builder) -> tuple[Symbol, Pair]:
+    return b.input("image", 3), Pair(b.input("depth", 1), b.input("confidence", 1))
+
+
+def _propagate(b: Builder, points: Pair) -> Pair:
+    """A dense first guess from the points alone, with its confidence."""
+    first, second = b.normalized_layer("n1", 1, 2, 5), b.normalized_layer("n2", 2, 2, 5)
+    shared = b.normalized_layer("n3", 2, 2, 5)
+    level = b.normalized_convolution("level0.n1", points, first)
+    levels = [b.normalized_convolution("level0", level, second)]
+    for i in range(1, _LEVELS):
+        # With a quarter of the confidence at each level none would be left at the last.
+        pooled = b.confidence_pool(f"level{i}.pool", levels[-1], "sqrt")
+        levels.append(b.normalized_convolution(f"level{i}", pooled, shared))
+    decoded = levels.pop()
+    for i, skip in reversed(list(enumerate(levels))):
+        up = b.upsample_nearest_pair(f"propagated{i}.up", decoded)
+        both = b.concatenate_pairs(f"propagated{i}.concatenated", skip, up)
+        layer = b.normalized_layer(f"propagated{i}", 4, 2, 3)
+        decoded = b.normalized_convolution(f"propagated{i}", both, layer)
+    last = b.normalized_layer("propagated", 2, 1, 1)
+    return b.normalized_convolution("propagated", decoded, last)
+
+
+def _features(b: Builder, propagated: Pair, image: Symbol) -> Symbol:
+    """[z, 1 + log10(c) / 8 within 0 and 1, R, G, B, sin(latitude)]."""
+    decades, ln_10 = 8, 2.302585092994046
+    # Clamped before the logarithm, which then is finite and has a derivative.
+    c = b.pointwise("clamp", "certainty.clamped", propagated.c, minimum=10.0**-decades, maximum=1.0)
+    c = b.pointwise("log", "certainty.log", c)
+    certainty = b.pointwise("affine", "certainty", c, scale=1 / (decades * ln_10), offset=1.0)
+    latitude = b.latitude_sine("latitude", propagated.x)
+    return b.concatenate("features", propagated.x, certainty, image, latitude)
+
+
+def _encode(b: Builder, x: Symbol, widths: Sequence[int]) -> list[Symbol]:
+    """Halves the size five times; a residual block or two behind each but the first."""
+    encoded = []
+    for i, (width, blocks) in enumerate(zip(widths, (0, 1, 1, 2, 2), strict=True), 1):
+        x = b.convolution(f"encoder{i}", x, width, stride=2, slope=_LEAK)
+        for block in range(1, blocks + 1):
+            x = _residual_block(b, f"encoder{i}_block{block}", x)
+        encoded.append(x)
+    return encoded
+
+
+def _residual_block(b: Builder, name: str, x: Symbol) -> Symbol:
+    inner = b.convolution(f"{name}_first", x, x.channels, slope=_LEAK)
+    inner = b.convolution(f"{name}_second", inner, x.channels)
+    return b.activation(name, b.pointwise("add", f"{name}.sum", x, inner), _LEAK)
+
+
+def _decode(b: Builder, encoded: Sequence[Symbol]) -> Symbol:
+    """Up again, adding what was there on the way down, to half the picture's size."""
+    x = encoded[-1]
+    for i, skip in reversed(list(enumerate(encoded[:-1], 1))):
+        lateral = b.convolution(f"lateral{i}", x, skip.channels, size=1)
+        up = b.upsample_bilinear(f"lateral{i}.up", lateral)
+        x = b.pointwise("add", f"decoder{i}.sum", skip, up)
+        x = b.convolution(f"decoder{i}", x, x.channels, slope=_LEAK)
+    return x
