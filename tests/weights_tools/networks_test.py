@@ -113,9 +113,9 @@ class SeedTest(unittest.TestCase):
 class DepthCompletionTest(unittest.TestCase):
     def test_outputs_have_the_size_of_the_picture(self) -> None:
         outputs = small().double()(panorama())
-        for name in ("log_depth", "log_confidence"):
+        for name in ("log_depth", "confidence"):
             self.assertEqual(outputs[name].shape, (1, 1, HEIGHT, WIDTH))
-        for name in ("median", "log_scale"):
+        for name in ("scale", "log_metric_scale"):
             self.assertEqual(outputs[name].shape, (1, 1, 1, 1))
 
     def test_turning_the_camera_turns_the_result(self) -> None:
@@ -123,12 +123,12 @@ class DepthCompletionTest(unittest.TestCase):
         inputs = panorama()
         outputs = network(inputs)
         turned = network({name: value.roll(64, -1) for name, value in inputs.items()})
-        for name in ("log_depth", "log_confidence"):
+        for name in ("log_depth", "confidence"):
             # Not exact here: BLAS adds up in another order elsewhere in the picture.
             difference = (outputs[name].roll(64, -1) - turned[name]).abs().max().item()
             self.assertLess(difference, 1e-12, name)
-        self.assertEqual(outputs["median"], turned["median"])
-        difference = (outputs["log_scale"] - turned["log_scale"]).abs().item()
+        self.assertEqual(outputs["scale"], turned["scale"])
+        difference = (outputs["log_metric_scale"] - turned["log_metric_scale"]).abs().item()
         self.assertLess(difference, 1e-12)
 
     def test_the_unit_of_depth_does_not_matter(self) -> None:
@@ -136,10 +136,10 @@ class DepthCompletionTest(unittest.TestCase):
         inputs = panorama()
         outputs = network(inputs)
         scaled = network({**inputs, "depth": inputs["depth"] * 0.1})
-        for name in ("log_depth", "log_confidence", "log_scale"):
+        for name in ("log_depth", "confidence", "log_metric_scale"):
             difference = (outputs[name] - scaled[name]).abs().max().item()
             self.assertLess(difference, 1e-13, name)
-        self.assertAlmostEqual(scaled["median"].item(), 0.1 * outputs["median"].item())
+        self.assertAlmostEqual(scaled["scale"].item(), 0.1 * outputs["scale"].item())
 
     def test_is_finite_and_can_be_trained_without_points_and_without_a_picture(self) -> None:
         inputs = panorama(dtype=torch.float32)
