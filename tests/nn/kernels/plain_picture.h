@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <random>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -84,6 +86,17 @@ class FilledTensor : public TensorMemory {
       }
     }
   }
+};
+
+/// Memory that a kernel may use while it runs, every byte 0xff at first: NaN, which would spread.
+struct Scratch {
+  explicit Scratch(std::size_t size) : memory(size + kAlignment, std::byte{0xff}) {
+    void* start = memory.data();
+    std::size_t room = memory.size();
+    bytes = {static_cast<std::byte*>(std::align(kAlignment, size, start, room)), size};
+  }
+  std::vector<std::byte> memory;
+  std::span<std::byte> bytes;
 };
 
 /// Every value is within `tolerance` of what is expected, NaN where NaN is expected; the worst

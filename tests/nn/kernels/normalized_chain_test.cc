@@ -1,11 +1,14 @@
-#include "nn/kernels/normalized_convolution.h"
+#include "nn/kernels/normalized_chain.h"
 
 #include <limits>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "nn/base/check.h"
+#include "nn/kernels/upsample.h"
 #include "tests/dispatch_targets.h"
 #include "tests/nn/kernels/plain_picture.h"
 
@@ -37,6 +40,15 @@ struct Weights {
   std::vector<float> weight;
   std::vector<float> bias;
 };
+
+// Runs a convolution by itself.
+void RunSingle(const NormalizedConvolution& kernel, const TensorView& x, const TensorView& c,
+               const TensorView& y, const TensorView& y_confidence, int threads) {
+  const NormalizedChain chain({kernel});
+  const Scratch scratch(chain.ScratchBytes(x.shape.width, threads));
+  const NormalizedInput input{{x, c}};
+  chain.Run({&input, 1}, {y, y_confidence}, scratch.bytes, threads);
+}
 
 struct Expected {
   explicit Expected(const Shape& shape) : y(shape), c(shape), y_bound(shape), c_bound(shape) {}
@@ -97,17 +109,17 @@ void ExpectAsExpected(const Layer& layer, Padding padding, const PlainPicture& x
   const Weights weights(layer);
   const Expected expected = Reference(weights, layer, padding, x, c);
   const NormalizedConvolution kernel = weights.Kernel(layer, padding);
-  const FilledTensor input(x, Layout::kPlanar, kernel.halo());
-  const FilledTensor confidence(c, Layout::kPlanar, kernel.halo());
+  const FilledTensor input(x, Layout::kPlanar, 0);
+  const FilledTensor confidence(c, Layout::kPlanar, 0);
   const TensorFormat format{expected.y.shape, Layout::kPlanar, DataType::kFloat, 0};
   const TensorMemory y(format);
   const TensorMemory y_confidence(format);
-  kernel.Run(input.view, confidence.view, y.view, y_confidence.view, 1);
+  RunSingle(kernel, input.view, confidence.view, y.view, y_confidence.view, 1);
   ExpectNear(y.view, expected.y, expected.y_bound);
   ExpectNear(y_confidence.view, expected.c, expected.c_bound);
   const TensorMemory other_y(format);
   const TensorMemory other_confidence(format);
-  kernel.Run(input.view, confidence.view, other_y.view, other_confidence.view, 2);
+  RunSingle(kernel, input.view, confidence.view, other_y.view, other_confidence.view, 2);
   ExpectSameBits(other_y.view, y.view);
   ExpectSameBits(other_confidence.view, y_confidence.view);
 }
@@ -117,7 +129,7 @@ TEST(NormalizedConvolution, IsTheWeightedMeanForEverySizePaddingAndInstructionSe
     for (const Layer& layer : kLayers) {
       for (const Padding padding : kPaddings) {
         for (const auto& [rows, columns] :
-             {std::pair{1, 1}, {1, 2}, {2, 1}, {7, 6}, {5, 33}, {13, 160}, {3, 601}}) {
+             {std::pair{1, 1}, {1, 2}, {2, 1}, {7, 6}, {5, 33}, {37, 160}, {3, 601}}) {
           if (padding == Padding::kWrapCrossPole && columns % 2 != 0) continue;
           SCOPED_TRACE(testing::Message() << layer.inputs << " to " << layer.outputs << ", kernel "
                                           << layer.size << ", padding " << static_cast<int>(padding)
@@ -137,12 +149,12 @@ TEST(NormalizedConvolution, GivesTheBiasAndNoConfidenceWhereNothingIsKnown) {
       const Shape shape{layer.inputs, 4, 18};
       const Weights weights(layer);
       const NormalizedConvolution kernel = weights.Kernel(layer, Padding::kWrapReplicate);
-      const FilledTensor x(RandomPicture(shape, -3.0f, 3.0f, 7), Layout::kPlanar, kernel.halo());
-      const FilledTensor c(PlainPicture(shape), Layout::kPlanar, kernel.halo());
+      const FilledTensor x(RandomPicture(shape, -3.0f, 3.0f, 7), Layout::kPlanar, 0);
+      const FilledTensor c(PlainPicture(shape), Layout::kPlanar, 0);
       const TensorFormat format{{layer.outputs, 4, 18}, Layout::kPlanar, DataType::kFloat, 0};
       const TensorMemory y(format);
       const TensorMemory y_confidence(format);
-      kernel.Run(x.view, c.view, y.view, y_confidence.view, 1);
+      RunSingle(kernel, x.view, c.view, y.view, y_confidence.view, 1);
       PlainPicture bias(format.shape);
       for (int i = 0; i < static_cast<int>(bias.values.size()); ++i) {
         bias.values[i] = weights.bias[i / (4 * 18)];
@@ -168,12 +180,12 @@ TEST(NormalizedConvolution, SpreadsWhatIsNotANumberAsFarAsTheWindow) {
         c.at(layer.inputs - 1, row, column) = 0;
         const Weights weights(layer);
         const NormalizedConvolution kernel = weights.Kernel(layer, Padding::kZero);
-        const FilledTensor input(x, Layout::kPlanar, kernel.halo());
-        const FilledTensor confidence(c, Layout::kPlanar, kernel.halo());
+        const FilledTensor input(x, Layout::kPlanar, 0);
+        const FilledTensor confidence(c, Layout::kPlanar, 0);
         const TensorFormat format{{layer.outputs, 9, 40}, Layout::kPlanar, DataType::kFloat, 0};
         const TensorMemory y(format);
         const TensorMemory y_confidence(format);
-        kernel.Run(input.view, confidence.view, y.view, y_confidence.view, 1);
+        RunSingle(kernel, input.view, confidence.view, y.view, y_confidence.view, 1);
         for (int o = 0; o < layer.outputs; ++o) {
           for (int v = 0; v < 9; ++v) {
             for (int u = 0; u < 40; ++u) {
@@ -194,18 +206,18 @@ TEST(NormalizedConvolution, IsEquivariantToAnOffset) {
   const Shape shape{2, 20, 64};
   const NormalizedConvolution kernel = Weights(layer).Kernel(layer, Padding::kWrapReplicate);
   const PlainPicture x = RandomPicture(shape, -3.0f, 3.0f, 7);
-  const FilledTensor c(SparseConfidence(shape), Layout::kPlanar, kernel.halo());
+  const FilledTensor c(SparseConfidence(shape), Layout::kPlanar, 0);
   PlainPicture shifted = x;
   const double offset = 2.5;
   for (double& value : shifted.values) value = static_cast<float>(value + offset);
-  const FilledTensor first(x, Layout::kPlanar, kernel.halo());
-  const FilledTensor second(shifted, Layout::kPlanar, kernel.halo());
+  const FilledTensor first(x, Layout::kPlanar, 0);
+  const FilledTensor second(shifted, Layout::kPlanar, 0);
   const TensorFormat format{shape, Layout::kPlanar, DataType::kFloat, 0};
   const TensorMemory y(format);
   const TensorMemory shifted_y(format);
   const TensorMemory y_confidence(format);
-  kernel.Run(first.view, c.view, y.view, y_confidence.view, 1);
-  kernel.Run(second.view, c.view, shifted_y.view, y_confidence.view, 1);
+  RunSingle(kernel, first.view, c.view, y.view, y_confidence.view, 1);
+  RunSingle(kernel, second.view, c.view, shifted_y.view, y_confidence.view, 1);
   PlainPicture expected(shape);
   PlainPicture tolerance(shape);
   for (int o = 0; o < 2; ++o) {
@@ -220,18 +232,98 @@ TEST(NormalizedConvolution, IsEquivariantToAnOffset) {
   ExpectNear(shifted_y.view, expected, tolerance);
 }
 
+// What a chain must give: every layer by itself, with inputs up-sampled and concatenated before.
+TEST(NormalizedChain, GivesTheBitsOfItsLayersForAnyNumberOfThreads) {
+  constexpr Layer kChain[] = {{2, 4, 3}, {2, 2, 5}, {3, 2, 7}, {2, 3, 1}, {2, 2, 5}, {1, 2, 1}};
+  ForEachDispatchTarget([&] {
+    for (const Padding padding : kPaddings) {
+      for (const auto& [rows, columns] : {std::pair{2, 2}, {4, 6}, {14, 34}, {64, 18}, {66, 128}}) {
+        SCOPED_TRACE(testing::Message() << "padding " << static_cast<int>(padding) << ", " << rows
+                                        << " x " << columns);
+        std::vector<NormalizedConvolution> layers;
+        for (const Layer& layer : kChain) layers.push_back(Weights(layer).Kernel(layer, padding));
+        const NormalizedChain chain(layers);
+
+        const Shape half{2, rows / 2, columns / 2};
+        const Shape whole{2, rows, columns};
+        const FilledTensor low_x(RandomPicture(half, -3.0f, 3.0f, 1), Layout::kPlanar, 0);
+        const FilledTensor low_c(SparseConfidence(half), Layout::kPlanar, 1);
+        const FilledTensor high_x(RandomPicture(whole, -3.0f, 3.0f, 2), Layout::kPlanar, 2);
+        const FilledTensor high_c(SparseConfidence(whole), Layout::kPlanar, 0);
+
+        const TensorFormat concatenated{{4, rows, columns}, Layout::kPlanar, DataType::kFloat, 0};
+        auto x = std::make_unique<TensorMemory>(concatenated);
+        auto c = std::make_unique<TensorMemory>(concatenated);
+        UpsampleNearest(low_x.view, ChannelSlice(x->view, 0, 2), 1);
+        UpsampleNearest(low_c.view, ChannelSlice(c->view, 0, 2), 1);
+        Reorder(high_x.view, ChannelSlice(x->view, 2, 2));
+        Reorder(high_c.view, ChannelSlice(c->view, 2, 2));
+        for (const NormalizedConvolution& layer : layers) {
+          const TensorFormat format{
+              {layer.outputs(), rows, columns}, Layout::kPlanar, DataType::kFloat, 0};
+          auto next_x = std::make_unique<TensorMemory>(format);
+          auto next_c = std::make_unique<TensorMemory>(format);
+          RunSingle(layer, x->view, c->view, next_x->view, next_c->view, 1);
+          x = std::move(next_x);
+          c = std::move(next_c);
+        }
+
+        const NormalizedInput inputs[] = {{{low_x.view, low_c.view}, true},
+                                          {{high_x.view, high_c.view}, false}};
+        for (const int threads : {1, 2, 4}) {
+          const TensorFormat format{{1, rows, columns}, Layout::kPlanar, DataType::kFloat, 0};
+          const TensorMemory y(format);
+          const TensorMemory y_confidence(format);
+          const Scratch scratch(chain.ScratchBytes(columns, threads));
+          chain.Run(inputs, {y.view, y_confidence.view}, scratch.bytes, threads);
+          ExpectSameBits(y.view, x->view);
+          ExpectSameBits(y_confidence.view, c->view);
+        }
+      }
+    }
+  });
+}
+
 TEST(NormalizedConvolution, RefusesWeightsAndTensorsThatDoNotFit) {
   const std::vector<float> weight(2 * 3 * 3 * 3, 1.0f);
   const std::vector<float> bias(2);
   EXPECT_THROW(NormalizedConvolution(weight, bias, 2, 3, 2, Padding::kZero), ContractError);
   EXPECT_THROW(NormalizedConvolution(weight, bias, 2, 2, 3, Padding::kZero), ContractError);
   EXPECT_THROW(NormalizedConvolution(weight, weight, 2, 3, 3, Padding::kZero), ContractError);
-  const NormalizedConvolution kernel(weight, bias, 2, 3, 3, Padding::kZero);
+}
+
+TEST(NormalizedChain, RefusesTensorsThatDoNotFit) {
+  const Layer layer{2, 3, 3};
+  const NormalizedChain chain({Weights(layer).Kernel(layer, Padding::kWrapCrossPole)});
   const TensorMemory three({{3, 4, 4}, Layout::kPlanar, DataType::kFloat, 1});
   const TensorMemory two({{2, 4, 4}, Layout::kPlanar, DataType::kFloat, 0});
+  const TensorMemory large({{2, 8, 8}, Layout::kPlanar, DataType::kFloat, 0});
   const TensorMemory blocked({{2, 4, 4}, Layout::kBlocked, DataType::kFloat, 0});
-  EXPECT_THROW(kernel.Run(two.view, three.view, two.view, two.view, 1), ContractError);
-  EXPECT_THROW(kernel.Run(three.view, three.view, two.view, blocked.view, 1), ContractError);
+  const TensorMemory odd_in({{3, 4, 5}, Layout::kPlanar, DataType::kFloat, 0});
+  const TensorMemory odd_out({{2, 4, 5}, Layout::kPlanar, DataType::kFloat, 0});
+  const Scratch scratch(chain.ScratchBytes(8, 1));
+  const auto run = [&](const TensorMemory& in, bool doubled, const TensorMemory& out) {
+    const NormalizedInput input{{in.view, in.view}, doubled};
+    chain.Run({&input, 1}, {out.view, out.view}, scratch.bytes, 1);
+  };
+  run(three, false, two);
+  run(three, true, large);
+  EXPECT_THROW(run(two, false, two), ContractError);
+  EXPECT_THROW(run(three, true, two), ContractError);
+  EXPECT_THROW(run(three, false, large), ContractError);
+  EXPECT_THROW(run(three, false, blocked), ContractError);
+  EXPECT_THROW(run(odd_in, false, odd_out), ContractError);
+  const NormalizedInput input{{three.view, three.view}};
+  EXPECT_THROW(chain.Run({&input, 1}, {two.view, two.view}, scratch.bytes.first(64), 1),
+               ContractError);
+  EXPECT_THROW(chain.Run({}, {two.view, two.view}, scratch.bytes, 1), ContractError);
+}
+
+TEST(NormalizedChain, RefusesLayersThatDoNotFit) {
+  const NormalizedConvolution first = Weights({2, 1, 3}).Kernel({2, 1, 3}, Padding::kZero);
+  const NormalizedConvolution second = Weights({1, 3, 3}).Kernel({1, 3, 3}, Padding::kZero);
+  EXPECT_THROW(NormalizedChain({}), ContractError);
+  EXPECT_THROW(NormalizedChain({first, second}), ContractError);
 }
 
 }  // namespace

@@ -1,0 +1,254 @@
+#include "nn/kernels/normalized_chain.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "nn/base/check.h"
+#include "nn/kernels/normalized_rows.h"
+
+namespace orb360::nn {
+namespace {
+
+constexpr int kBand = 16;  // rows that are worth a thread
+
+int RoundUp(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
+
+// The rows that one layer reads, as products and confidences with their padding: the latest few of
+// the picture, and all rows beyond its top and bottom edge.
+class RowWindow {
+ public:
+  RowWindow(const NormalizedConvolution& layer, int height, int width, float* memory)
+      : layer_(layer), height_(height), width_(width), memory_(memory) {
+    if (layer.padding() == Padding::kZero) {
+      float* beyond = memory + rows() * SlotFloats(layer, width);
+      std::fill_n(beyond, 2 * layer.reach() * SlotFloats(layer, width), 0.0f);
+    }
+  }
+
+  static std::size_t Floats(const NormalizedConvolution& layer, int width) {
+    return (Rows(layer) + 2 * layer.reach()) * SlotFloats(layer, width);
+  }
+
+  /// Where row y of the picture is to be written.
+  NormalizedRow Writable(int y) const { return Slot(y & (rows() - 1)); }
+
+  /// To be called when row y has been written: adds its padding, and the rows beyond the poles that
+  /// continue it.
+  void Finish(int y) const {
+    const NormalizedRow row = Writable(y);
+    Wrap(row);
+    if (layer_.padding() != Padding::kWrapCrossPole) return;
+    for (int i = 0; i < layer_.reach(); ++i) {
+      // A picture lower than the padding is left at the other pole again.
+      const int beyond = i % (2 * height_);
+      const int from_pole = beyond < height_ ? beyond : 2 * height_ - 1 - beyond;
+      const int shift = beyond < height_ ? width_ / 2 : 0;
+      if (y == from_pole) CopyTurned(row, shift, Beyond(-1 - i));
+      if (y == height_ - 1 - from_pole) CopyTurned(row, shift, Beyond(height_ + i));
+    }
+  }
+
+  /// Row y, which may lie up to reach() rows beyond the edge.
+  NormalizedRow Readable(int y) const {
+    if (y >= 0 && y < height_) return Writable(y);
+    if (layer_.padding() == Padding::kWrapReplicate) return Writable(y < 0 ? 0 : height_ - 1);
+    return Beyond(y);
+  }
+
+ private:
+  // A window of two output rows covers size + 1 rows, and one row more may be there already.
+  static int Rows(const NormalizedConvolution& layer) {
+    return static_cast<int>(std::bit_ceil(static_cast<unsigned>(layer.size() + 2)));
+  }
+  static std::size_t RowFloats(int width) {
+    return RoundUp(width, kNormalizedTile) + 2 * kNormalizedRowMargin;
+  }
+  static std::size_t SlotFloats(const NormalizedConvolution& layer, int width) {
+    return 2 * layer.inputs() * RowFloats(width);
+  }
+
+  int rows() const { return Rows(layer_); }
+  NormalizedRow Slot(int slot) const {
+    const auto stride = static_cast<std::ptrdiff_t>(RowFloats(width_));
+    float* start = memory_ + slot * SlotFloats(layer_, width_) + kNormalizedRowMargin;
+    return {start, start + layer_.inputs() * stride, stride, stride};
+  }
+  NormalizedRow Beyond(int y) const {
+    return Slot(y < 0 ? rows() - 1 - y : rows() + layer_.reach() + y - height_);
+  }
+
+  // Calls edit(row) for every channel of products and of confidences.
+  template <typename Edit>
+  void ForEachChannel(const NormalizedRow& row, const Edit& edit) const {
+    for (int i = 0; i < layer_.inputs(); ++i) {
+      edit(row.x + i * row.x_stride);
+      edit(row.c + i * row.c_stride);
+    }
+  }
+  void Wrap(const NormalizedRow& row) const {
+    ForEachChannel(row, [&](float* values) {
+      const bool is_zero = layer_.padding() == Padding::kZero;
+      for (int i = 0; i < layer_.reach(); ++i) {
+        // A picture narrower than the padding goes around more than once.
+        values[-1 - i] = is_zero ? 0 : values[width_ - 1 - i % width_];
+        values[width_ + i] = is_zero ? 0 : values[i % width_];
+      }
+    });
+  }
+  void CopyTurned(const NormalizedRow& from, int shift, const NormalizedRow& to) const {
+    // Products and confidences lie alike in every slot.
+    ForEachChannel(from, [&](const float* values) {
+      float* turned = to.x + (values - from.x);
+      std::copy(values + shift, values + width_, turned);
+      std::copy(values, values + shift, turned + width_ - shift);
+    });
+    Wrap(to);
+  }
+
+  const NormalizedConvolution& layer_;
+  int height_;
+  int width_;
+  float* memory_;
+};
+
+// Rows first <= y < last of a chain's output, computed on one thread: every row of every layer when
+// the layer after it needs it.
+class Band {
+ public:
+  Band(std::span<const NormalizedConvolution> layers, std::span<const NormalizedInput> inputs,
+       const ConfidentTensor& output, int first, int last, float* memory)
+      : layers_(layers), inputs_(inputs), output_(output) {
+    const auto [channels, height, width] = output.x.shape;
+    for (std::size_t s = layers.size(); s-- > 0;) {
+      last_[s] = last;
+      first = std::max(first - layers[s].reach(), 0);
+      last = std::min(last + layers[s].reach(), height);
+      next_[s] = first;
+      windows_[s].emplace(layers[s], height, width, memory);
+      memory += RowWindow::Floats(layers[s], width);
+    }
+  }
+
+  void Run(int first, int last) {
+    for (int y = first; y < last; y += 2) {
+      const int rows = std::min(2, last - y);
+      NormalizedRow out[2];
+      for (int i = 0; i < rows; ++i) {
+        out[i] = {output_.x.row<float>(0, y + i), output_.c.row<float>(0, y + i),
+                  output_.x.plane_stride, output_.c.plane_stride};
+      }
+      Compute(layers_.size() - 1, y, rows, out);
+    }
+  }
+
+ private:
+  // Rows y to y + rows - 1 that layer s gives.
+  void Compute(std::size_t s, int y, int rows, const NormalizedRow* out) {
+    const NormalizedConvolution& layer = layers_[s];
+    const auto [channels, height, width] = output_.x.shape;
+    const int end = std::min(y + rows + layer.reach(), height);
+    while (next_[s] < end) Append(s);
+    NormalizedRow in[NormalizedConvolution::kMaxSize + 1];
+    for (int r = 0; r < layer.size() + rows - 1; ++r) {
+      in[r] = windows_[s]->Readable(y + r - layer.reach());
+    }
+    NormalizedRows(layer, in, rows, width, out, s + 1 < layers_.size());
+  }
+
+  // The next row, or two, that layer s reads.
+  void Append(std::size_t s) {
+    const RowWindow& window = *windows_[s];
+    const int y = next_[s];
+    if (s == 0) {
+      Gather(y, window.Writable(y));
+      next_[0] = y + 1;
+    } else {
+      const int rows = std::min(2, last_[s - 1] - y);
+      const NormalizedRow out[2] = {window.Writable(y), window.Writable(y + 1)};
+      Compute(s - 1, y, rows, out);
+      next_[s] = y + rows;
+    }
+    for (int done = y; done < next_[s]; ++done) window.Finish(done);
+  }
+
+  void Gather(int y, const NormalizedRow& row) const {
+    std::ptrdiff_t channel = 0;
+    for (const auto& [tensor, doubled] : inputs_) {
+      for (int i = 0; i < tensor.x.shape.channels; ++i, ++channel) {
+        const int from = doubled ? y / 2 : y;
+        MultiplyRow(tensor.x.row<float>(i, from), tensor.c.row<float>(i, from),
+                    output_.x.shape.width, doubled, row.x + channel * row.x_stride,
+                    row.c + channel * row.c_stride);
+      }
+    }
+  }
+
+  std::span<const NormalizedConvolution> layers_;
+  std::span<const NormalizedInput> inputs_;
+  const ConfidentTensor& output_;
+  std::array<std::optional<RowWindow>, NormalizedChain::kMaxLayers> windows_;  // what they read
+  std::array<int, NormalizedChain::kMaxLayers> next_{};  // row that each window gets next
+  std::array<int, NormalizedChain::kMaxLayers> last_{};  // behind the last row of each output
+};
+
+std::size_t BandFloats(std::span<const NormalizedConvolution> layers, int width) {
+  std::size_t floats = 0;
+  for (const NormalizedConvolution& layer : layers) floats += RowWindow::Floats(layer, width);
+  return floats;
+}
+
+void CheckPlanar(const ConfidentTensor& tensor) {
+  ORB360_CHECK(tensor.x.layout == Layout::kPlanar && tensor.x.type == DataType::kFloat);
+  ORB360_CHECK(tensor.c.layout == Layout::kPlanar && tensor.c.type == DataType::kFloat);
+  ORB360_CHECK(tensor.x.shape == tensor.c.shape);
+}
+
+}  // namespace
+
+NormalizedChain::NormalizedChain(std::vector<NormalizedConvolution> layers)
+    : layers_(std::move(layers)) {
+  ORB360_CHECK(!layers_.empty() && layers_.size() <= kMaxLayers, layers_.size());
+  for (std::size_t i = 1; i < layers_.size(); ++i) {
+    ORB360_CHECK(layers_[i].inputs() == layers_[i - 1].outputs(), i);
+  }
+}
+
+std::size_t NormalizedChain::ScratchBytes(int width, int threads) const {
+  return sizeof(float) * threads * BandFloats(layers_, width);
+}
+
+void NormalizedChain::Run(std::span<const NormalizedInput> inputs, const ConfidentTensor& output,
+                          std::span<std::byte> scratch, int threads) const {
+  CheckPlanar(output);
+  const auto [channels, height, width] = output.x.shape;
+  ORB360_CHECK(channels == layers_.back().outputs(), channels);
+  int read = 0;
+  for (const auto& [tensor, doubled] : inputs) {
+    CheckPlanar(tensor);
+    const int factor = doubled ? 2 : 1;
+    ORB360_CHECK(height == factor * tensor.x.shape.height, height, tensor.x.shape.height);
+    ORB360_CHECK(width == factor * tensor.x.shape.width, width, tensor.x.shape.width);
+    read += tensor.x.shape.channels;
+  }
+  ORB360_CHECK(read == layers_.front().inputs(), read, layers_.front().inputs());
+  for (const NormalizedConvolution& layer : layers_) {
+    ORB360_CHECK(layer.padding() != Padding::kWrapCrossPole || width % 2 == 0, width);
+  }
+  ORB360_CHECK(scratch.size() >= ScratchBytes(width, threads), scratch.size());
+  ORB360_CHECK(reinterpret_cast<std::uintptr_t>(scratch.data()) % kAlignment == 0);
+  const std::size_t band_floats = BandFloats(layers_, width);
+  auto* memory = reinterpret_cast<float*>(scratch.data());
+  const int bands = std::clamp(height / kBand, 1, threads);
+#pragma omp parallel for num_threads(bands) schedule(static)
+  for (int i = 0; i < bands; ++i) {
+    const int first = height * i / bands;
+    const int last = height * (i + 1) / bands;
+    Band(layers_, inputs, output, first, last, memory + i * band_floats).Run(first, last);
+  }
+}
+
+}  // namespace orb360::nn

@@ -1,0 +1,184 @@
+#include "nn/kernels/normalized_rows.h"
+
+#include <type_traits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "nn/kernels/normalized_rows.cc"
+#include <hwy/foreach_target.h>
+// foreach_target must come first.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace orb360::nn {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// At most a cache line, so that a vector never reaches over the end of a tensor's row.
+using D = hn::CappedTag<float, 16>;
+using V = hn::Vec<D>;
+
+// y or y * c', and c', of one vector of columns.
+HWY_INLINE void Finish(const NormalizedConvolution& layer, int o, V n, V d_sum, int u,
+                       const NormalizedRow& out, bool as_products) {
+  const D d;
+  const V y = hn::Add(hn::Div(n, hn::Add(d_sum, hn::Set(d, 1e-20f))), hn::Set(d, layer.bias()[o]));
+  const V c = hn::Mul(d_sum, hn::Set(d, layer.inverse_sum()[o]));
+  hn::StoreU(as_products ? hn::Mul(y, c) : y, d, out.x + o * out.x_stride + u);
+  hn::StoreU(c, d, out.c + o * out.c_stride + u);
+}
+
+// A register tile of kRows rows of kVectors vectors and all outputs. With two rows, two vectors and
+// two outputs its 16 sums hide the latency of the multiply-adds (4 cycles, two of them in each) and
+// a tap of one input costs 8 loads, 4 of them across cache lines, for 16 multiply-adds: 6 cycles of
+// loading for 8 of arithmetic. One row would need 9, and a third would not fit 16 registers of AVX2
+// by far.
+template <int kSize, int kInputs, int kOutputs, int kRows, int kVectors>
+HWY_INLINE void Tile(const NormalizedConvolution& layer, const NormalizedRow* in, int u,
+                     int vectors, const NormalizedRow* out, bool as_products) {
+  const D d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  V n[kRows][kOutputs][kVectors];
+  V sum[kRows][kOutputs][kVectors];
+  for (int y = 0; y < kRows; ++y) {
+    for (int o = 0; o < kOutputs; ++o) {
+      for (int v = 0; v < kVectors; ++v) n[y][o][v] = sum[y][o][v] = hn::Zero(d);
+    }
+  }
+  // Adds row r of the input to rows `first` to `last` of the output.
+  const auto add = [&](auto first, auto last, int r) HWY_ATTR {
+    for (int i = 0; i < kInputs; ++i) {
+      const float* products = in[r].x + i * in[r].x_stride + u - kSize / 2;
+      const float* confidences = in[r].c + i * in[r].c_stride + u - kSize / 2;
+      const float* row_weight = layer.weight() + (r * kInputs + i) * kSize * kOutputs;
+      for (int tap = 0; tap < kSize; ++tap) {
+        V p[kVectors];
+        V c[kVectors];
+        for (int v = 0; v < kVectors; ++v) {
+          p[v] = hn::LoadU(d, products + tap + v * lanes);
+          c[v] = hn::LoadU(d, confidences + tap + v * lanes);
+        }
+        for (int y = first; y <= last; ++y) {
+          for (int o = 0; o < kOutputs; ++o) {
+            const V w = hn::Set(d, row_weight[(tap - y * kInputs * kSize) * kOutputs + o]);
+            for (int v = 0; v < kVectors; ++v) {
+              n[y][o][v] = hn::MulAdd(w, p[v], n[y][o][v]);
+              sum[y][o][v] = hn::MulAdd(w, c[v], sum[y][o][v]);
+            }
+          }
+        }
+      }
+    }
+  };
+  using Zero = std::integral_constant<int, 0>;
+  using Last = std::integral_constant<int, kRows - 1>;
+  if constexpr (kRows == 2) add(Zero{}, Zero{}, 0);
+  for (int r = kRows - 1; r < kSize; ++r) add(Zero{}, Last{}, r);
+  if constexpr (kRows == 2) add(Last{}, Last{}, kSize);
+  for (int y = 0; y < kRows; ++y) {
+    for (int o = 0; o < kOutputs; ++o) {
+      for (int v = 0; v < kVectors; ++v) {
+        if (v < vectors)
+          Finish(layer, o, n[y][o][v], sum[y][o][v], u + v * lanes, out[y], as_products);
+      }
+    }
+  }
+}
+
+template <int kSize, int kInputs, int kOutputs>
+void FixedRows(const NormalizedConvolution& layer, const NormalizedRow* in, int rows, int width,
+               const NormalizedRow* out, bool as_products) {
+  constexpr int kVectors = 2;
+  const int lanes = static_cast<int>(hn::Lanes(D()));
+  for (int u = 0; u < width; u += kVectors * lanes) {
+    const int vectors = u + lanes < width ? 2 : 1;
+    if (rows == 2) {
+      Tile<kSize, kInputs, kOutputs, 2, kVectors>(layer, in, u, vectors, out, as_products);
+    } else {
+      Tile<kSize, kInputs, kOutputs, 1, kVectors>(layer, in, u, vectors, out, as_products);
+    }
+  }
+}
+
+// Any number of channels and any size; the sums are added up in the order of Tile.
+void AnyRows(const NormalizedConvolution& layer, const NormalizedRow* in, int rows, int width,
+             const NormalizedRow* out, bool as_products) {
+  const D d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const int reach = layer.reach();
+  for (int y = 0; y < rows; ++y) {
+    for (int o = 0; o < layer.outputs(); ++o) {
+      for (int u = 0; u < width; u += lanes) {
+        V n = hn::Zero(d);
+        V sum = hn::Zero(d);
+        const float* weight = layer.weight() + o;
+        for (int r = y; r < y + layer.size(); ++r) {
+          for (int i = 0; i < layer.inputs(); ++i) {
+            const float* products = in[r].x + i * in[r].x_stride + u - reach;
+            const float* confidences = in[r].c + i * in[r].c_stride + u - reach;
+            for (int tap = 0; tap < layer.size(); ++tap, weight += layer.outputs()) {
+              const V w = hn::Set(d, *weight);
+              n = hn::MulAdd(w, hn::LoadU(d, products + tap), n);
+              sum = hn::MulAdd(w, hn::LoadU(d, confidences + tap), sum);
+            }
+          }
+        }
+        Finish(layer, o, n, sum, u, out[y], as_products);
+      }
+    }
+  }
+}
+
+// The layers of the published unguided network and of the one with seven levels have sizes known to
+// the compiler.
+void NormalizedRows(const NormalizedConvolution& layer, const NormalizedRow* in, int rows,
+                    int width, const NormalizedRow* out, bool as_products) {
+  const auto is = [&](int size, int inputs, int outputs) {
+    return layer.size() == size && layer.inputs() == inputs && layer.outputs() == outputs;
+  };
+  if (is(5, 2, 2)) return FixedRows<5, 2, 2>(layer, in, rows, width, out, as_products);
+  if (is(3, 4, 2)) return FixedRows<3, 4, 2>(layer, in, rows, width, out, as_products);
+  if (is(5, 1, 2)) return FixedRows<5, 1, 2>(layer, in, rows, width, out, as_products);
+  if (is(1, 2, 1)) return FixedRows<1, 2, 1>(layer, in, rows, width, out, as_products);
+  AnyRows(layer, in, rows, width, out, as_products);
+}
+
+void MultiplyRow(const float* x, const float* c, int width, bool doubled, float* product,
+                 float* confidence) {
+  const D d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const int count = doubled ? (width + 1) / 2 : width;
+  for (int u = 0; u < count; u += lanes) {
+    const V v_c = hn::LoadU(d, c + u);
+    const V v_p = hn::Mul(hn::LoadU(d, x + u), v_c);
+    if (doubled) {
+      hn::StoreInterleaved2(v_p, v_p, d, product + 2 * u);
+      hn::StoreInterleaved2(v_c, v_c, d, confidence + 2 * u);
+    } else {
+      hn::StoreU(v_p, d, product + u);
+      hn::StoreU(v_c, d, confidence + u);
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace orb360::nn
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace orb360::nn {
+
+HWY_EXPORT(NormalizedRows);
+HWY_EXPORT(MultiplyRow);
+
+void NormalizedRows(const NormalizedConvolution& layer, const NormalizedRow* in, int rows,
+                    int width, const NormalizedRow* out, bool as_products) {
+  HWY_DYNAMIC_DISPATCH(NormalizedRows)(layer, in, rows, width, out, as_products);
+}
+
+void MultiplyRow(const float* x, const float* c, int width, bool doubled, float* product,
+                 float* confidence) {
+  HWY_DYNAMIC_DISPATCH(MultiplyRow)(x, c, width, doubled, product, confidence);
+}
+
+}  // namespace orb360::nn
+#endif

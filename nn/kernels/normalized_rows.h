@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+
+#include "nn/kernels/normalized_convolution.h"
+
+namespace orb360::nn {
+
+// The arithmetic of NormalizedChain on single rows.
+
+/// Floats that rows of NormalizedRow hold in front of column 0 and at least behind the last one.
+constexpr int kNormalizedRowMargin = 16;
+
+/// NormalizedRows writes whole tiles of this many columns into rows of products.
+constexpr int kNormalizedTile = 32;
+
+/// The channels of one row of values with confidences. For channel i, column 0 of the values is at
+/// `x + i * x_stride`.
+struct NormalizedRow {
+  float* x = nullptr;
+  float* c = nullptr;
+  std::ptrdiff_t x_stride = 0;
+  std::ptrdiff_t c_stride = 0;
+};
+
+/// Computes one or two rows of output. `in` are the rows that their windows cover, from the top:
+/// size() rows, and one more for two rows of output. There x is the product of value and
+/// confidence, both with reach() columns of padding at either side.
+///
+/// If `as_products`, x of the output is the product as well, and both rows may be overwritten up to
+/// the next multiple of kNormalizedTile; otherwise up to the next multiple of kAlignment.
+void NormalizedRows(const NormalizedConvolution& layer, const NormalizedRow* in, int rows,
+                    int width, const NormalizedRow* out, bool as_products);
+
+/// Forms a row of one channel as NormalizedRows reads it, without its padding, from `width` values
+/// and confidences, or if `doubled` from half as many, each standing for two columns.
+void MultiplyRow(const float* x, const float* c, int width, bool doubled, float* product,
+                 float* confidence);
+
+}  // namespace orb360::nn
