@@ -24,14 +24,7 @@ class Network(nn.Module):
         self.layers = nn.ModuleDict(
             {layer.name: nn.ParameterDict() for layer in description.layers}
         )
-        generator = np.random.RandomState(seed)  # the same numbers in every version of NumPy
-        self.load(
-            {
-                f"{layer.name}.{role}": values
-                for layer in description.layers
-                for role, values in _initial(layer, generator).items()
-            }
-        )
+        self.load(initial_weights(description, seed))
 
     def load(self, weights: Mapping[str, np.ndarray]) -> None:
         """Takes weights as they stand in a file."""
@@ -66,6 +59,16 @@ class Network(nn.Module):
     def forward(self, inputs: Mapping[str, Tensor]) -> dict[str, Tensor]:
         tensors = self.tensors(inputs)
         return {port["name"]: tensors[port["tensor"]] for port in self.description.graph.outputs}
+
+
+def initial_weights(description: Description, seed: int) -> dict[str, np.ndarray]:
+    """Weights as they stand in a file, the same on every machine."""
+    generator = np.random.RandomState(seed)  # the same numbers in every version of NumPy
+    return {
+        f"{layer.name}.{role}": values
+        for layer in description.layers
+        for role, values in _initial(layer, generator).items()
+    }
 
 
 def _initial(layer: Layer, generator: np.random.RandomState) -> dict[str, np.ndarray]:

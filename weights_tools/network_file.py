@@ -4,7 +4,8 @@ The same network gives the same bytes: no time stamps, one order, one version of
 """
 
 import hashlib
-import os
+import json
+import math
 import struct
 from collections.abc import Mapping
 from pathlib import Path
@@ -48,13 +49,12 @@ def write(
         with h5py.File(
             temporary, "w", libver=("earliest", "v108"), userblock_size=_HEADER_BYTES
         ) as file:
-            text = graph.to_json().encode()
-            string = np.array(text, h5py.string_dtype("utf-8", len(text)))
-            file.create_dataset("graph", data=string, track_times=False)
-            _write_group(file, "weights", _narrow(weights, dtype))
-            for case, arrays in (tensors or {}).items():
-                packing = {"compression": "gzip", "compression_opts": 9, "shuffle": True}
-                _write_group(file, f"tensors/{case}", _narrow(arrays, np.float32), **packing)
+            _write_text(file, "graph", graph.to_json())
+            group = file.create_group("weights")
+            for name, values in sorted(_narrow(weights, dtype).items()):
+                group.create_dataset(name, data=values, track_times=False)
+            if tensors:
+                _write_tensors(file, tensors)
         _seal(temporary)
         temporary.replace(path)
     finally:
@@ -70,10 +70,32 @@ def _narrow(arrays: Arrays, dtype: type[np.floating]) -> Arrays:
     return narrow
 
 
-def _write_group(file: h5py.File, name: str, arrays: Arrays, **packing: object) -> None:
-    group = file.create_group(name)
-    for key, values in sorted(arrays.items()):
-        group.create_dataset(key, data=values, track_times=False, **packing)
+def _write_text(file: h5py.File, name: str, text: str) -> None:
+    content = text.encode()
+    string = np.array(content, h5py.string_dtype("utf-8", len(content)))
+    file.create_dataset(name, data=string, track_times=False)
+
+
+def _write_tensors(file: h5py.File, tensors: Mapping[str, Arrays]) -> None:
+    """One dataset of all numbers and what they are: HDF5 spends kilobytes on each dataset."""
+    arrays = {
+        (case, name): values
+        for case, named in tensors.items()
+        for name, values in _narrow(named, np.float32).items()
+    }
+    index = [
+        {"case": case, "name": name, "shape": values.shape}
+        for (case, name), values in arrays.items()
+    ]
+    _write_text(file, "tensors/index", json.dumps(index, separators=(",", ":")))
+    file["tensors"].create_dataset(
+        "values",
+        data=np.concatenate([values.ravel() for values in arrays.values()]),
+        track_times=False,
+        compression="gzip",
+        compression_opts=9,
+        shuffle=True,
+    )
 
 
 def _seal(path: Path) -> None:
@@ -94,11 +116,17 @@ def read(path: Path) -> NetworkFile:
 def read_tensors(path: Path) -> dict[str, dict[str, np.ndarray]]:
     """Tensors by case and name, if the file has any."""
     _check_header(path)
+    tensors: dict[str, dict[str, np.ndarray]] = {}
     with h5py.File(path, "r") as file:
-        return {
-            case: {name: values[()] for name, values in group.items()}
-            for case, group in file.get("tensors", {}).items()
-        }
+        if "tensors" not in file:
+            return tensors
+        values, begin = file["tensors/values"][()], 0
+        for entry in json.loads(file["tensors/index"][()]):
+            end = begin + math.prod(entry["shape"])
+            named = tensors.setdefault(entry["case"], {})
+            named[entry["name"]] = values[begin:end].reshape(entry["shape"])
+            begin = end
+    return tensors
 
 
 def _check_header(path: Path) -> None:

@@ -104,7 +104,9 @@ def depth_completion(
     padding: str = "wrap_replicate",
 ) -> Description:
     """The project's own: 2.46 million parameters, 12.27 GMAC at 512 x 1024."""
-    b = Builder("panoramic depth completion", 64, padding)
+    # 64 of the picture's pixels are one at the last level, which must be even to cross the poles.
+    multiple = 128 if padding == "wrap_cross_pole" else 64
+    b = Builder("panoramic depth completion", multiple, padding)
     image, sparse = _image_and_points(b)
     points, scale = b.median_log("points", sparse.x, sparse.c)
     propagated = _propagate(b, points)
