@@ -1,0 +1,221 @@
+// Times every layer of the networks beside oneDNN and ONNX Runtime: runs take turns, so that what
+// else the machine does meets all of them, answers are compared, and times are medians.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <map>
+#include <random>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+#include <hwy/highway.h>
+#include <nlohmann/json.hpp>
+
+#include "benchmarks/nn/contender.h"
+#include "benchmarks/nn/fma_peak.h"
+#include "benchmarks/nn/layers.h"
+#include "nn/base/check.h"
+
+namespace orb360::nn {
+namespace {
+
+struct Options {
+  std::vector<std::string> networks = {"completion"};
+  std::vector<int> heights = {512, 1024};  // of the panorama
+  std::string layer;                       // only layers whose name has this in it
+  std::string type = "float";
+  std::string onnxruntime;
+  int threads = 2;
+  int runs = 20;
+  double seconds = 0.5;  // for a layer, if more than `runs` fit
+  bool best = false;     // minima instead of medians
+  bool json = false;
+};
+
+std::vector<float> Random(std::size_t count, float scale, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<float> uniform(-scale, scale);
+  std::vector<float> values(count);
+  for (float& value : values) value = uniform(generator);
+  return values;
+}
+
+Problem MakeProblem(const Layer& layer, int panorama_height) {
+  const int taps = layer.in_channels * layer.kernel * layer.kernel;
+  const int height = panorama_height / layer.reduction;
+  return {layer, height, 2 * height,
+          // Outputs as large as inputs, as in a network.
+          Random(static_cast<std::size_t>(layer.out_channels) * taps,
+                 std::sqrt(3.0f / static_cast<float>(taps)), 1),
+          Random(layer.out_channels, 1, 2),
+          Random(static_cast<std::size_t>(layer.in_channels) * height * 2 * height, 1, 3)};
+}
+
+double Typical(std::vector<double> values, bool best) {
+  ORB360_CHECK(!values.empty());
+  std::sort(values.begin(), values.end());
+  return best ? values.front() : values[values.size() / 2];
+}
+
+// The largest difference over the root of the mean square of `right`.
+double Difference(const std::vector<float>& left, const std::vector<float>& right) {
+  ORB360_CHECK(left.size() == right.size(), left.size(), right.size());
+  double worst = 0, square = 0;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    worst = std::max(worst, std::abs(double{left[i]} - right[i]));
+    square += double{right[i]} * right[i];
+  }
+  return worst / std::sqrt(square / static_cast<double>(left.size()));
+}
+
+struct Result {
+  std::string network;
+  Problem problem;  // without its numbers
+  std::map<std::string, double> milliseconds;
+  double peak = 0;  // GFLOP/s
+  double gflops(const std::string& who) const {
+    return 2e-6 * problem.macs() / milliseconds.at(who);
+  }
+};
+
+Result Measure(const std::string& network, const Layer& layer, int panorama_height,
+               const Options& options) {
+  Problem problem = MakeProblem(layer, panorama_height);
+  const DataType type = options.type == "bf16" ? DataType::kBFloat16 : DataType::kFloat;
+  std::map<std::string, std::unique_ptr<Contender>> contenders;
+  contenders["orb360"] = MakeOrb360(problem, type, options.threads);
+  contenders["oneDNN"] = MakeOneDnn(problem, type, options.threads);
+  if (!options.onnxruntime.empty() && type == DataType::kFloat) {
+    contenders["ORT"] = MakeOnnxRuntime(problem, options.onnxruntime, options.threads);
+  }
+  std::erase_if(contenders, [](const auto& entry) { return entry.second == nullptr; });
+  for (const auto& [name, contender] : contenders) contender->Run();  // answers, and warms up
+  const std::vector<float> answer = contenders["orb360"]->Answer();
+  for (const auto& [name, contender] : contenders) {
+    // Sums of a few thousand terms in another order; bfloat16 has 8 bits.
+    const double tolerance = type == DataType::kFloat ? 1e-4 : 3e-2;
+    const double difference = Difference(answer, contender->Answer());
+    if (!(difference < tolerance)) {
+      throw std::runtime_error(layer.name + ": " + name + " gives another answer, by " +
+                               std::to_string(difference));
+    }
+  }
+  std::vector<double> peaks;
+  const auto start = std::chrono::steady_clock::now();
+  const auto is_over = [&] {
+    return std::chrono::steady_clock::now() - start >
+           std::chrono::duration<double>(options.seconds);
+  };
+  for (int run = 0; run < options.runs || !is_over(); ++run) {
+    peaks.push_back(1 / MeasureFmaPeak(options.threads));
+    for (const auto& [name, contender] : contenders) {
+      // OpenMP's threads wait busily for a while after their work; another library's turn must
+      // begin after that (scripts/bench makes the while short).
+      if (name == "ORT") std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      contender->Run();
+    }
+  }
+  Result result{network, std::move(problem), {}, 1 / Typical(peaks, options.best)};
+  result.problem.weight = result.problem.bias = result.problem.input = {};
+  for (const auto& [name, contender] : contenders) {
+    // The first run was to warm up.
+    std::vector<double> times = contender->Milliseconds();
+    times.erase(times.begin());
+    result.milliseconds[name] = Typical(std::move(times), options.best);
+  }
+  return result;
+}
+
+void PrintTable(const std::vector<Result>& results) {
+  std::printf("%-16s %-18s %5s %9s %8s %8s %8s %9s %6s %8s %8s\n", "network", "layer", "rows",
+              "MMAC", "orb360", "oneDNN", "ORT", "GFLOP/s", "peak", "/oneDNN", "/ORT");
+  for (const Result& result : results) {
+    const auto& times = result.milliseconds;
+    const auto column = [&](const char* name, double scale) {
+      return times.contains(name) ? times.at(name) * scale : std::nan("");
+    };
+    const double own = times.at("orb360");
+    std::printf("%-16s %-18s %5d %9.1f %8.3f %8.3f %8.3f %9.1f %5.1f%% %8.3f %8.3f\n",
+                result.network.c_str(), result.problem.layer.name.c_str(), result.problem.height,
+                result.problem.macs() / 1e6, own, column("oneDNN", 1), column("ORT", 1),
+                result.gflops("orb360"), 100 * result.gflops("orb360") / result.peak,
+                own / column("oneDNN", 1), own / column("ORT", 1));
+  }
+}
+
+nlohmann::json Summary(const std::vector<Result>& results) {
+  std::map<std::string, double> log_ratio;
+  std::map<std::string, int> count;
+  double worst = 0, lowest = 1;
+  for (const Result& result : results) {
+    const double own = result.milliseconds.at("orb360");
+    double best = std::numeric_limits<double>::infinity();
+    for (const auto& [name, time] : result.milliseconds) {
+      if (name == "orb360") continue;
+      log_ratio[name] += std::log(own / time);
+      ++count[name];
+      best = std::min(best, time);
+    }
+    constexpr double kWorthComparing = 20e6;  // MACs: below, the start of the threads is measured
+    if (result.problem.macs() >= kWorthComparing) worst = std::max(worst, own / best);
+    const Layer& layer = result.problem.layer;
+    if (layer.kernel == 3 && std::min(layer.in_channels, layer.out_channels) >= 32) {
+      lowest = std::min(lowest, result.gflops("orb360") / result.peak);
+    }
+  }
+  nlohmann::json summary;
+  if (count["oneDNN"] > 0) {
+    summary["conv_vs_onednn_geomean"] = std::exp(log_ratio["oneDNN"] / count["oneDNN"]);
+  }
+  if (count["ORT"] > 0) summary["conv_vs_ort_geomean"] = std::exp(log_ratio["ORT"] / count["ORT"]);
+  summary["conv_vs_best_worst_layer"] = worst;
+  summary["peak_share"] = lowest;
+  return summary;
+}
+
+int Main(int argc, char** argv) {
+  Options options;
+  CLI::App app("Convolutions of the networks' layers beside oneDNN and ONNX Runtime");
+  app.add_option("--network", options.networks, "completion, encoder-decoder, multi-stream");
+  app.add_option("--height", options.heights, "heights of the panorama in pixels");
+  app.add_option("--layer", options.layer, "only layers with this in their name");
+  app.add_option("--type", options.type)->check(CLI::IsMember({"float", "bf16"}));
+  app.add_option("--onnxruntime", options.onnxruntime, "path of libonnxruntime.so");
+  app.add_option("--threads", options.threads)->check(CLI::PositiveNumber);
+  app.add_option("--runs", options.runs, "at least")->check(CLI::PositiveNumber);
+  app.add_option("--seconds", options.seconds, "for a layer, at least");
+  app.add_flag("--best", options.best, "minima instead of medians, for a busy machine");
+  app.add_flag("--json", options.json, "print only the summary, as JSON");
+  CLI11_PARSE(app, argc, argv);
+  std::vector<Result> results;
+  for (const LayerList& list : {kCompletionLayers, kEncoderDecoderLayers, kMultiStreamLayers}) {
+    if (std::count(options.networks.begin(), options.networks.end(), list.network) == 0) continue;
+    for (const int height : options.heights) {
+      for (const Layer& layer : list.layers) {
+        if (layer.name.find(options.layer) == std::string::npos) continue;
+        results.push_back(Measure(list.network, layer, height, options));
+        if (!options.json) std::cerr << '.' << std::flush;
+      }
+    }
+  }
+  if (results.empty()) throw std::runtime_error("no such layer");
+  if (!options.json) {
+    std::cerr << '\n';
+    PrintTable(results);
+  }
+  std::cout << Summary(results).dump(2) << '\n';
+  return 0;
+}
+
+}  // namespace
+}  // namespace orb360::nn
+
+int main(int argc, char** argv) {
+  try {
+    return orb360::nn::Main(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
+}
