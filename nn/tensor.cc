@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "nn/base/bfloat16.h"
 #include "nn/base/check.h"
 
 namespace orb360::nn {
@@ -16,24 +17,16 @@ std::ptrdiff_t PixelStride(const TensorView& tensor) {
 }
 
 float LoadFloat(const void* data, DataType type, std::ptrdiff_t index) {
-  if (type == DataType::kFloat) return static_cast<const float*>(data)[index];
-  const std::uint32_t bits = std::uint32_t{static_cast<const std::uint16_t*>(data)[index]} << 16;
-  float value;
-  std::memcpy(&value, &bits, sizeof(value));
-  return value;
+  return type == DataType::kFloat ? static_cast<const float*>(data)[index]
+                                  : ToFloat(static_cast<const BFloat16*>(data)[index]);
 }
 
 void StoreFloat(void* data, DataType type, std::ptrdiff_t index, float value) {
   if (type == DataType::kFloat) {
     static_cast<float*>(data)[index] = value;
-    return;
+  } else {
+    static_cast<BFloat16*>(data)[index] = ToBFloat16(value);
   }
-  std::uint32_t bits;
-  std::memcpy(&bits, &value, sizeof(bits));
-  const bool is_nan = (bits & 0x7fffffffu) > 0x7f800000u;
-  // Rounding a NaN could carry into its exponent; it stays a (quiet) NaN instead.
-  const std::uint32_t rounded = is_nan ? bits | 0x400000u : bits + 0x7fffu + ((bits >> 16) & 1);
-  static_cast<std::uint16_t*>(data)[index] = static_cast<std::uint16_t>(rounded >> 16);
 }
 
 // Where a channel of a pixel lies, counted from `data`.

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+
+#include "nn/graph/backend.h"
+
+namespace orb360::nn {
+
+/// Numbers in which convolutions multiply; they add in 32 bits in any case.
+enum class Precision : std::uint8_t { kFloat, kBFloat16 };
+
+/// The kernels of nn/kernels.
+class CpuBackend : public Backend {
+ public:
+  explicit CpuBackend(int threads) : threads_(threads) {}
+
+  NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const override;
+  Step MakeStep(const Graph& graph, const FusedNode& node) const override;
+  Step MakeCopy(int from_first, int to_first, int count) const override;
+
+ private:
+  int threads_;
+};
+
+}  // namespace orb360::nn

@@ -1,0 +1,119 @@
+#include "nn/graph/executor.h"
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+
+#include "nn/base/check.h"
+#include "nn/graph/fusion.h"
+#include "nn/graph/limits.h"
+#include "nn/kernels/copy_channels.h"
+
+namespace orb360::nn {
+namespace {
+
+std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+
+std::size_t SizeOf(const Shape& shape) {
+  return static_cast<std::size_t>(shape.channels) * Index(shape.height) * Index(shape.width);
+}
+
+void CheckPictureSize(const Graph& graph, int height, int width) {
+  const auto is_allowed = [&](int side) {
+    return side > 0 && side <= limits::kPictureSide && side % graph.size_multiple == 0;
+  };
+  if (is_allowed(height) && is_allowed(width)) return;
+  throw UserError("network \"" + graph.name + "\" takes pictures whose sides are multiples of " +
+                  std::to_string(graph.size_multiple) + " and at most " +
+                  std::to_string(limits::kPictureSide) + ", not " + std::to_string(width) + "x" +
+                  std::to_string(height));
+}
+
+/// Floats without gaps as a tensor. Nobody writes through it when it stands for an input.
+TensorView DenseView(const float* data, const Shape& shape) {
+  return {const_cast<float*>(data),  // NOLINT: as above
+          shape,
+          Layout::kPlanar,
+          DataType::kFloat,
+          0,
+          shape.width,
+          std::ptrdiff_t{shape.width} * shape.height};
+}
+
+}  // namespace
+
+Executor::Workspace::Workspace(const Executor& executor) {
+  const Placement& placement = executor.placement_;
+  try {
+    memory_.resize(placement.bytes);
+  } catch (const std::bad_alloc&) {
+    throw UserError("a network needs " + std::to_string(placement.bytes >> 20) +
+                    " MiB of memory for a picture of this size, and there is less; use a smaller "
+                    "picture");
+  }
+  const Lowered& lowered = executor.lowered_;
+  for (std::size_t i = 0; i < lowered.values.size(); ++i) {
+    views_.push_back(
+        ViewOf(placement.places[i], lowered.values[i].format.shape.channels, memory_.data()));
+  }
+  const auto views = [&](const std::vector<int>& values) {
+    std::vector<TensorView> list;
+    for (const int value : values) list.push_back(views_[Index(value)]);
+    return list;
+  };
+  for (const Instruction& instruction : lowered.instructions) {
+    bound_.push_back({views(instruction.inputs), views(instruction.outputs)});
+  }
+}
+
+Executor::Executor(const Graph& graph, int height, int width, const ExecutorOptions& options) {
+  ORB360_CHECK(options.threads >= 1, options.threads);
+  CheckPictureSize(graph, height, width);
+  const CpuBackend backend(options.threads);
+  lowered_ = Lower(graph, options.keeps_tensors ? KeepNodes(graph) : FuseNodes(graph), backend,
+                   height, width);
+  placement_ = PlaceValues(lowered_, options.keeps_tensors);
+  const auto shape = [&](int tensor) {
+    return ShapeFor(graph.tensors[Index(tensor)], height, width);
+  };
+  for (const int tensor : graph.inputs) {
+    inputs_.push_back({graph.tensors[Index(tensor)].name, shape(tensor)});
+  }
+  for (const Graph::Output& output : graph.outputs) {
+    outputs_.push_back({output.name, shape(output.tensor)});
+  }
+  if (!options.keeps_tensors) return;
+  for (const Tensor& tensor : graph.tensors) tensors_.push_back(tensor.name);
+}
+
+void Executor::Run(std::span<const std::span<const float>> inputs,
+                   std::span<const std::span<float>> outputs, Workspace* workspace) const {
+  ORB360_CHECK(inputs.size() == inputs_.size(), inputs.size(), inputs_.size());
+  ORB360_CHECK(outputs.size() == outputs_.size(), outputs.size(), outputs_.size());
+  ORB360_CHECK(workspace->bound_.size() == lowered_.instructions.size());
+  constexpr int kOneThread = 1;  // copying is as fast as memory with one
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const Shape& shape = inputs_[i].shape;
+    ORB360_CHECK(inputs[i].size() == SizeOf(shape), inputs_[i].name, inputs[i].size());
+    CopyChannels(DenseView(inputs[i].data(), shape), 0,
+                 workspace->views_[Index(lowered_.inputs[i])], 0, shape.channels, kOneThread);
+  }
+  for (std::size_t i = 0; i < lowered_.instructions.size(); ++i) {
+    lowered_.instructions[i].step(workspace->bound_[i].inputs, workspace->bound_[i].outputs);
+  }
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const Shape& shape = outputs_[i].shape;
+    ORB360_CHECK(outputs[i].size() == SizeOf(shape), outputs_[i].name, outputs[i].size());
+    CopyChannels(workspace->views_[Index(lowered_.outputs[i])], 0,
+                 DenseView(outputs[i].data(), shape), 0, shape.channels, kOneThread);
+  }
+}
+
+TensorView Executor::Find(const Workspace& workspace, std::string_view tensor) const {
+  const auto found = std::ranges::find(tensors_, tensor);
+  ORB360_CHECK(found != tensors_.end(), tensor);
+  const auto index = static_cast<std::size_t>(found - tensors_.begin());
+  return workspace.views_[Index(lowered_.value_of_tensor[index])];
+}
+
+}  // namespace orb360::nn

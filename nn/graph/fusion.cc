@@ -1,0 +1,130 @@
+#include "nn/graph/fusion.h"
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+namespace orb360::nn {
+namespace {
+
+constexpr int kNobody = -1;
+constexpr int kSeveral = -2;  // or an output of the graph
+
+std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+
+/// The slope of an operation that a convolution can do in the same pass.
+std::optional<float> SlopeOf(const Operation& operation) {
+  if (std::holds_alternative<ReluOp>(operation)) return 0.0f;
+  if (const auto* relu = std::get_if<LeakyReluOp>(&operation)) return relu->slope;
+  return {};
+}
+
+class Fusion {
+ public:
+  explicit Fusion(const Graph& graph)
+      : graph_(graph),
+        writer_(graph.tensors.size(), kNobody),
+        reader_(graph.tensors.size(), kNobody),
+        is_merged_(graph.nodes.size()) {
+    const auto read = [&](int tensor, int reader) {
+      int& known = reader_[Index(tensor)];
+      known = known == kNobody ? reader : kSeveral;
+    };
+    for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+      for (const int tensor : graph.nodes[i].inputs) read(tensor, static_cast<int>(i));
+      for (const int tensor : graph.nodes[i].outputs) writer_[Index(tensor)] = static_cast<int>(i);
+    }
+    for (const Graph::Output& output : graph.outputs) read(output.tensor, kSeveral);
+  }
+
+  std::vector<FusedNode> Run() {
+    // A fused node runs where its last part stood: everything it reads is there by then.
+    std::vector<std::optional<FusedNode>> at(graph_.nodes.size());
+    for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
+      if (is_merged_[i]) continue;
+      FusedNode fused{graph_.nodes[i]};
+      std::size_t position = i;
+      if (std::holds_alternative<ConvolutionOp>(fused.node.operation)) {
+        MergeAddition(&fused, &position);
+        MergeActivation(&fused, &position);
+      }
+      at[position] = std::move(fused);
+    }
+    return Needed(std::move(at));
+  }
+
+ private:
+  /// The only reader of what the node writes, if there is just one.
+  int OnlyReader(const FusedNode& fused) const {
+    return reader_[Index(fused.node.outputs.front())];
+  }
+
+  void Merge(int reader, FusedNode* fused, std::size_t* position) {
+    fused->node.outputs = graph_.nodes[Index(reader)].outputs;
+    is_merged_[Index(reader)] = true;
+    *position = Index(reader);
+  }
+
+  void MergeAddition(FusedNode* fused, std::size_t* position) {
+    const int reader = OnlyReader(*fused);
+    if (reader < 0 || is_merged_[Index(reader)]) return;
+    const Node& addition = graph_.nodes[Index(reader)];
+    if (!std::holds_alternative<AddOp>(addition.operation)) return;
+    const bool is_first = addition.inputs[0] == fused->node.outputs.front();
+    const int other = addition.inputs[is_first ? 1 : 0];
+    // Of two convolutions the later one adds.
+    const int writer = writer_[Index(other)];
+    const bool is_for_the_other =
+        writer > static_cast<int>(*position) && reader_[Index(other)] == reader &&
+        std::holds_alternative<ConvolutionOp>(graph_.nodes[Index(writer)].operation);
+    if (is_for_the_other) return;
+    fused->node.inputs.push_back(other);
+    fused->adds_residual = true;
+    Merge(reader, fused, position);
+  }
+
+  void MergeActivation(FusedNode* fused, std::size_t* position) {
+    const int reader = OnlyReader(*fused);
+    if (reader < 0 || is_merged_[Index(reader)]) return;
+    const std::optional<float> slope = SlopeOf(graph_.nodes[Index(reader)].operation);
+    if (!slope) return;
+    fused->slope = *slope;
+    Merge(reader, fused, position);
+  }
+
+  /// Those that the graph's outputs depend on, in order.
+  std::vector<FusedNode> Needed(std::vector<std::optional<FusedNode>> at) const {
+    std::vector<bool> is_needed(graph_.tensors.size());
+    for (const Graph::Output& output : graph_.outputs) is_needed[Index(output.tensor)] = true;
+    for (std::size_t i = at.size(); i-- > 0;) {
+      if (!at[i]) continue;
+      bool writes_needed = false;
+      for (const int tensor : at[i]->node.outputs) writes_needed |= is_needed[Index(tensor)];
+      if (!writes_needed) {
+        at[i].reset();
+        continue;
+      }
+      for (const int tensor : at[i]->node.inputs) is_needed[Index(tensor)] = true;
+    }
+    std::vector<FusedNode> nodes;
+    for (std::optional<FusedNode>& node : at) {
+      if (node) nodes.push_back(std::move(*node));
+    }
+    return nodes;
+  }
+
+  const Graph& graph_;
+  std::vector<int> writer_;  // node of each tensor
+  std::vector<int> reader_;  // likewise, or how many there are
+  std::vector<bool> is_merged_;
+};
+
+}  // namespace
+
+std::vector<FusedNode> FuseNodes(const Graph& graph) { return Fusion(graph).Run(); }
+
+std::vector<FusedNode> KeepNodes(const Graph& graph) {
+  return {graph.nodes.begin(), graph.nodes.end()};
+}
+
+}  // namespace orb360::nn

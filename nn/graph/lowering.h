@@ -1,0 +1,47 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "nn/graph/backend.h"
+#include "nn/graph/fusion.h"
+#include "nn/graph/graph.h"
+#include "nn/tensor.h"
+
+namespace orb360::nn {
+
+/// A tensor of the graph in one format, for one size of picture.
+struct Value {
+  int tensor = 0;
+  TensorFormat format;  // with the halo that its readers need
+  /// The value it is a part of (a member of a concatenation, a slice), and from which channel on;
+  /// -1 for a value with memory of its own.
+  int whole = -1;
+  int first_channel = 0;
+};
+
+/// One step and the values it works on.
+struct Instruction {
+  std::string name;  // of the node, or of the tensor that is copied
+  Step step;
+  std::vector<int> inputs;       // indices of values
+  std::vector<int> outputs;      // likewise; several instructions may fill parts of one value
+  std::vector<int> replaceable;  // NodeNeeds::replaceable
+};
+
+/// A graph as what is to be done, before anything has a place.
+struct Lowered {
+  std::vector<Value> values;
+  std::vector<Instruction> instructions;
+  std::vector<int> inputs;           // values, in the graph's order
+  std::vector<int> outputs;          // likewise
+  std::vector<int> value_of_tensor;  // -1 for a tensor that fusion has left out
+};
+
+/// Chooses formats, and adds copies where a reader needs another format than was written and where
+/// a concatenation or a slice cannot be a view.
+Lowered Lower(const Graph& graph, std::span<const FusedNode> nodes, const Backend& backend,
+              int height, int width);
+
+}  // namespace orb360::nn

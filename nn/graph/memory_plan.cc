@@ -1,0 +1,54 @@
+#include "nn/graph/memory_plan.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "nn/base/check.h"
+#include "nn/tensor.h"
+
+namespace orb360::nn {
+namespace {
+
+std::size_t Aligned(std::size_t bytes) {
+  return (bytes + kAlignment - 1) / kAlignment * kAlignment;
+}
+
+bool Meet(const Lifetime& a, const Lifetime& b) { return a.first <= b.last && b.first <= a.last; }
+
+}  // namespace
+
+MemoryPlan PlanMemory(std::span<const Lifetime> pieces) {
+  std::vector<std::size_t> order(pieces.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(
+      order, [&](std::size_t a, std::size_t b) { return pieces[a].bytes > pieces[b].bytes; });
+
+  MemoryPlan plan{std::vector<std::size_t>(pieces.size()), 0};
+  std::vector<std::size_t> placed;  // by offset
+  for (const std::size_t piece : order) {
+    ORB360_CHECK(pieces[piece].first <= pieces[piece].last, pieces[piece].first);
+    const std::size_t bytes = Aligned(pieces[piece].bytes);
+    std::size_t best = 0;
+    std::size_t best_gap = std::numeric_limits<std::size_t>::max();
+    std::size_t end = 0;  // of what lies before and is needed at the same time
+    for (const std::size_t other : placed) {
+      if (!Meet(pieces[piece], pieces[other])) continue;
+      const std::size_t start = plan.offsets[other];
+      if (start >= end + bytes && start - end < best_gap) {
+        best = end;
+        best_gap = start - end;
+      }
+      end = std::max(end, start + Aligned(pieces[other].bytes));
+    }
+    if (best_gap == std::numeric_limits<std::size_t>::max()) best = end;
+    plan.offsets[piece] = best;
+    plan.bytes = std::max(plan.bytes, best + bytes);
+    const auto behind = std::ranges::upper_bound(
+        placed, best, {}, [&](std::size_t other) { return plan.offsets[other]; });
+    placed.insert(behind, piece);
+  }
+  return plan;
+}
+
+}  // namespace orb360::nn

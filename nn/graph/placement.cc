@@ -1,0 +1,167 @@
+#include "nn/graph/placement.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace orb360::nn {
+namespace {
+
+std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+
+/// A value that is no part of another one, with everything in it.
+struct Whole {
+  int halo = 0;
+  Lifetime life{0, std::numeric_limits<int>::max(), -1};
+};
+
+class Placer {
+ public:
+  Placer(const Lowered& lowered, bool keeps_values)
+      : lowered_(lowered),
+        keeps_values_(keeps_values),
+        whole_of_(lowered.values.size()),
+        first_channel_(lowered.values.size()),
+        wholes_(lowered.values.size()),
+        piece_of_(lowered.values.size()) {}
+
+  Placement Run() {
+    FindWholes();
+    FindLifetimes();
+    std::iota(piece_of_.begin(), piece_of_.end(), 0);
+    if (!keeps_values_) ReplaceInputs();
+    return Pack();
+  }
+
+ private:
+  const Value& value(int index) const { return lowered_.values[Index(index)]; }
+  Whole& WholeOf(int index) { return wholes_[Index(whole_of_[Index(index)])]; }
+
+  void FindWholes() {
+    for (std::size_t i = 0; i < lowered_.values.size(); ++i) {
+      int whole = static_cast<int>(i);
+      int first = 0;
+      while (value(whole).whole >= 0) {
+        first += value(whole).first_channel;
+        whole = value(whole).whole;
+      }
+      whole_of_[i] = whole;
+      first_channel_[i] = first;
+      int& halo = wholes_[Index(whole)].halo;
+      halo = std::max(halo, lowered_.values[i].format.halo);
+    }
+  }
+
+  /// Steps are counted from 1: inputs are written before (0), outputs are read after the last.
+  void FindLifetimes() {
+    const auto needed_at = [&](int index, int step) {
+      Lifetime& life = WholeOf(index).life;
+      life.first = std::min(life.first, step);
+      life.last = std::max(life.last, step);
+    };
+    for (const int input : lowered_.inputs) needed_at(input, 0);
+    int step = 0;
+    for (const Instruction& instruction : lowered_.instructions) {
+      ++step;
+      for (const int input : instruction.inputs) needed_at(input, step);
+      for (const int output : instruction.outputs) needed_at(output, step);
+    }
+    for (const int output : lowered_.outputs) needed_at(output, step + 1);
+    if (!keeps_values_) return;
+    for (Whole& whole : wholes_) whole.life.last = step + 1;
+  }
+
+  int Piece(int whole) const {
+    while (piece_of_[Index(whole)] != whole) whole = piece_of_[Index(whole)];
+    return whole;
+  }
+
+  void ReplaceInputs() {
+    int step = 0;
+    for (const Instruction& instruction : lowered_.instructions) {
+      ++step;
+      for (const int candidate : instruction.replaceable) {
+        const int input = instruction.inputs[Index(candidate)];
+        if (!CanReplace(instruction, input, step)) continue;
+        const int output = instruction.outputs.front();
+        const int piece = Piece(input);
+        piece_of_[Index(output)] = piece;
+        wholes_[Index(piece)].life.last = wholes_[Index(output)].life.last;
+        int& halo = wholes_[Index(piece)].halo;
+        halo = std::max(halo, wholes_[Index(output)].halo);
+        break;
+      }
+    }
+  }
+
+  bool CanReplace(const Instruction& instruction, int input, int step) {
+    const int output = instruction.outputs.front();
+    TensorFormat from = value(input).format;
+    TensorFormat to = value(output).format;
+    from.halo = to.halo = 0;
+    const bool are_alike =
+        from.shape == to.shape && from.layout == to.layout && from.type == to.type;
+    // Both whole, one used last and the other first at this step.
+    if (!are_alike || whole_of_[Index(input)] != input || whole_of_[Index(output)] != output ||
+        wholes_[Index(Piece(input))].life.last != step ||
+        wholes_[Index(output)].life.first != step || Piece(output) != output) {
+      return false;
+    }
+    // What else is read must not be overwritten on the way, unless it is read at the same place.
+    for (std::size_t i = 0; i < instruction.inputs.size(); ++i) {
+      const bool is_replaceable = std::ranges::find(instruction.replaceable, static_cast<int>(i)) !=
+                                  instruction.replaceable.end();
+      const int other = whole_of_[Index(instruction.inputs[i])];
+      if (!is_replaceable && Piece(other) == Piece(input)) return false;
+    }
+    return true;
+  }
+
+  Placement Pack() {
+    Placement placement;
+    std::vector<std::size_t> piece_number(wholes_.size());
+    for (std::size_t i = 0; i < wholes_.size(); ++i) {
+      const auto index = static_cast<int>(i);
+      if (whole_of_[i] != index) continue;
+      TensorFormat format = value(index).format;
+      format.halo = wholes_[i].halo;
+      placement.separate_bytes += format.bytes();
+      if (piece_of_[i] != index) continue;
+      Lifetime life = wholes_[i].life;
+      life.bytes = format.bytes();
+      piece_number[i] = placement.pieces.size();
+      placement.pieces.push_back(life);
+    }
+    MemoryPlan plan = PlanMemory(placement.pieces);
+    for (std::size_t i = 0; i < lowered_.values.size(); ++i) {
+      const int whole = whole_of_[i];
+      const int piece = Piece(whole);
+      TensorFormat format = value(whole).format;
+      format.halo = wholes_[Index(piece)].halo;
+      placement.places.push_back(
+          {format, plan.offsets[piece_number[Index(piece)]], first_channel_[i]});
+    }
+    placement.offsets = std::move(plan.offsets);
+    placement.bytes = plan.bytes;
+    return placement;
+  }
+
+  const Lowered& lowered_;
+  const bool keeps_values_;
+  std::vector<int> whole_of_;       // by value
+  std::vector<int> first_channel_;  // by value, of its whole
+  std::vector<Whole> wholes_;       // by value; of those that are whole
+  std::vector<int> piece_of_;       // by whole: the one whose memory it takes over, or itself
+};
+
+}  // namespace
+
+Placement PlaceValues(const Lowered& lowered, bool keeps_values) {
+  return Placer(lowered, keeps_values).Run();
+}
+
+TensorView ViewOf(const Placement::Place& place, int channels, std::byte* memory) {
+  return ChannelSlice(place.whole.View(memory + place.offset), place.first_channel, channels);
+}
+
+}  // namespace orb360::nn

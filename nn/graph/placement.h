@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "nn/graph/lowering.h"
+#include "nn/graph/memory_plan.h"
+
+namespace orb360::nn {
+
+/// Where the values of a network lie in one block of memory.
+struct Placement {
+  /// By value: its format with the halo of what it is a part of, where that starts, and the first
+  /// of its channels therein.
+  struct Place {
+    TensorFormat whole;
+    std::size_t offset = 0;  // bytes
+    int first_channel = 0;
+  };
+  std::vector<Place> places;
+  std::vector<Lifetime> pieces;      // of memory, for whoever wants to check the plan
+  std::vector<std::size_t> offsets;  // of the pieces
+  std::size_t bytes = 0;             // of the block
+  std::size_t separate_bytes = 0;    // if every value had memory of its own all the time
+};
+
+/// Plans the memory of a lowered graph: parts lie in their wholes, results replace what is read for
+/// the last time where the kernel allows it, the rest is packed by lifetime (memory_plan.h).
+/// `keeps_values`: every value keeps its memory to the end instead.
+Placement PlaceValues(const Lowered& lowered, bool keeps_values);
+
+/// The value in the block that starts at `memory`.
+TensorView ViewOf(const Placement::Place& place, int channels, std::byte* memory);
+
+}  // namespace orb360::nn

@@ -1,0 +1,93 @@
+#include "nn/kernels/copy_channels.h"
+
+#include <cstring>
+
+#include "nn/base/bfloat16.h"
+#include "nn/base/check.h"
+
+namespace orb360::nn {
+namespace {
+
+float Converted(float value, const float*) { return value; }
+BFloat16 Converted(float value, const BFloat16*) { return ToBFloat16(value); }
+
+// Channels of a pixel that lie next to each other.
+int StepOf(const TensorView& tensor) {
+  return tensor.layout == Layout::kBlocked ? BlockOf(tensor.type) : 1;
+}
+
+// What the copied channels of one row have in common.
+struct Row {
+  int y;
+  int from_first;
+  int to_first;
+  int count;
+};
+
+// One by one: any layouts, any types.
+template <typename From, typename To>
+void CopySingly(const TensorView& from, const TensorView& to, const Row& row) {
+  const int from_step = StepOf(from);
+  const int to_step = StepOf(to);
+  for (int i = 0; i < row.count; ++i) {
+    const int source = row.from_first + i;
+    const int target = row.to_first + i;
+    const From* read = from.row<From>(source / from_step, row.y) + source % from_step;
+    To* write = to.row<To>(target / to_step, row.y) + target % to_step;
+    for (int x = 0; x < to.shape.width; ++x) {
+      write[x * to_step] = Converted(ToFloat(read[x * from_step]), write);
+    }
+  }
+  if (row.to_first + row.count != to.shape.channels) return;
+  for (int channel = to.shape.channels; channel % to_step != 0; ++channel) {
+    To* write = to.row<To>(channel / to_step, row.y) + channel % to_step;
+    for (int x = 0; x < to.shape.width; ++x) write[x * to_step] = To{};
+  }
+}
+
+// Whole planes of the same kind.
+void CopyPlanes(const TensorView& from, const TensorView& to, const Row& row) {
+  const int step = StepOf(to);
+  const std::size_t pixel = static_cast<std::size_t>(step) * SizeOf(to.type);
+  const auto at = [&](const TensorView& tensor, int plane) {
+    return static_cast<std::byte*>(tensor.data) +
+           (plane * tensor.plane_stride + row.y * tensor.row_stride) *
+               static_cast<std::ptrdiff_t>(SizeOf(tensor.type));
+  };
+  for (int i = 0; i < row.count; i += step) {
+    std::memcpy(at(to, (row.to_first + i) / step), at(from, (row.from_first + i) / step),
+                pixel * static_cast<std::size_t>(to.shape.width));
+  }
+}
+
+bool AreWholePlanes(const TensorView& from, int from_first, const TensorView& to, int to_first,
+                    int count) {
+  const int step = StepOf(to);
+  // A last block that is not full has zeros behind, which `to` needs there, too.
+  const bool ends_whole = count % step == 0 || (from_first + count == from.shape.channels &&
+                                                to_first + count == to.shape.channels);
+  return from.layout == to.layout && from.type == to.type && from_first % step == 0 &&
+         to_first % step == 0 && ends_whole;
+}
+
+}  // namespace
+
+void CopyChannels(const TensorView& from, int from_first, const TensorView& to, int to_first,
+                  int count, int threads) {
+  ORB360_CHECK(from.shape.height == to.shape.height && from.shape.width == to.shape.width);
+  ORB360_CHECK(from_first >= 0 && count > 0 && from_first + count <= from.shape.channels,
+               from_first, count, from.shape.channels);
+  ORB360_CHECK(to_first >= 0 && to_first + count <= to.shape.channels, to_first, count,
+               to.shape.channels);
+  const bool are_planes = AreWholePlanes(from, from_first, to, to_first, count);
+  const bool from_float = from.type == DataType::kFloat;
+  const bool to_float = to.type == DataType::kFloat;
+  const auto copy = are_planes ? CopyPlanes
+                    : from_float
+                        ? (to_float ? CopySingly<float, float> : CopySingly<float, BFloat16>)
+                        : (to_float ? CopySingly<BFloat16, float> : CopySingly<BFloat16, BFloat16>);
+#pragma omp parallel for num_threads(threads) schedule(static)
+  for (int y = 0; y < to.shape.height; ++y) copy(from, to, {y, from_first, to_first, count});
+}
+
+}  // namespace orb360::nn

@@ -1,0 +1,96 @@
+#include "nn/kernels/copy_channels.h"
+
+#include <gtest/gtest.h>
+
+#include "nn/base/bfloat16.h"
+#include "nn/base/check.h"
+#include "tests/nn/kernels/plain_picture.h"
+
+namespace orb360::nn {
+namespace {
+
+constexpr Layout kLayouts[] = {Layout::kPlanar, Layout::kBlocked};
+constexpr DataType kTypes[] = {DataType::kFloat, DataType::kBFloat16};
+
+TEST(CopyChannels, MovesAnyChannelsBetweenAnyLayouts) {
+  const PlainPicture source = RandomPicture({50, 3, 7}, -1, 1, 1);
+  struct Range {
+    int from, to, count, channels;  // the last: of the target
+  };
+  for (const Layout from_layout : kLayouts) {
+    for (const Layout to_layout : kLayouts) {
+      for (const Range& range : {Range{0, 0, 50, 50}, Range{16, 32, 16, 48}, Range{3, 5, 20, 40},
+                                 Range{49, 0, 1, 1}, Range{32, 16, 18, 34}, Range{32, 0, 18, 20}}) {
+        for (const int threads : {1, 2}) {
+          const FilledTensor from(source, from_layout, 1);
+          PlainPicture expected = RandomPicture({range.channels, 3, 7}, 2, 3, 2);
+          const FilledTensor to(expected, to_layout, 0);
+          CopyChannels(from.view, range.from, to.view, range.to, range.count, threads);
+          for (int i = 0; i < range.count; ++i) {
+            for (int y = 0; y < 3; ++y) {
+              for (int x = 0; x < 7; ++x) {
+                expected.at(range.to + i, y, x) = source.at(range.from + i, y, x);
+              }
+            }
+          }
+          SCOPED_TRACE(testing::Message() << range.from << " to " << range.to);
+          ExpectEqual(to.view, expected);
+        }
+      }
+    }
+  }
+}
+
+TEST(CopyChannels, ClearsWhatFillsUpTheLastBlock) {
+  for (const DataType type : kTypes) {
+    const FilledTensor from(RandomPicture({5, 2, 2}, 1, 2, 1), Layout::kPlanar, 0);
+    const TensorMemory to({{20, 2, 2}, Layout::kBlocked, type, 0});  // not a zero anywhere
+    CopyChannels(from.view, 0, to.view, 15, 5, 1);
+    const TensorMemory back({{20, 2, 2}, Layout::kBlocked, DataType::kFloat, 0});
+    Reorder(to.view, back.view);
+    EXPECT_NE(At(back.view, 14, 1, 1), 0);
+    const int block = BlockOf(type);
+    for (int lane = 20 % block; lane < block; ++lane) {
+      const std::ptrdiff_t at = block + lane;  // of the second pixel of a row
+      const int plane = 20 / block;
+      EXPECT_EQ(type == DataType::kFloat ? to.view.row<float>(plane, 1)[at]
+                                         : ToFloat(to.view.row<BFloat16>(plane, 1)[at]),
+                0)
+          << lane;
+    }
+  }
+}
+
+TEST(CopyChannels, RoundsToBFloat16AndBack) {
+  const PlainPicture source = RandomPicture({40, 2, 3}, -1, 1, 1);
+  for (const Layout layout : kLayouts) {
+    for (const int first : {0, 7}) {
+      const FilledTensor from(source, layout, 0);
+      const TensorMemory half({{33, 2, 3}, Layout::kBlocked, DataType::kBFloat16, 1});
+      const TensorMemory back({{33, 2, 3}, layout, DataType::kFloat, 0});
+      CopyChannels(from.view, first, half.view, 0, 33, 2);
+      CopyChannels(half.view, 0, back.view, 0, 33, 2);
+      PlainPicture expected({33, 2, 3});
+      for (int c = 0; c < 33; ++c) {
+        for (int y = 0; y < 2; ++y) {
+          for (int x = 0; x < 3; ++x) {
+            expected.at(c, y, x) =
+                ToFloat(ToBFloat16(static_cast<float>(source.at(first + c, y, x))));
+          }
+        }
+      }
+      ExpectEqual(back.view, expected);
+    }
+  }
+}
+
+TEST(CopyChannels, RefusesChannelsThatAreNotThere) {
+  const TensorMemory a({{4, 2, 2}, Layout::kPlanar, DataType::kFloat, 0});
+  const TensorMemory b({{4, 2, 3}, Layout::kPlanar, DataType::kFloat, 0});
+  EXPECT_THROW(CopyChannels(a.view, 2, a.view, 0, 3, 1), ContractError);
+  EXPECT_THROW(CopyChannels(a.view, 0, a.view, 3, 2, 1), ContractError);
+  EXPECT_THROW(CopyChannels(a.view, 0, b.view, 0, 1, 1), ContractError);
+}
+
+}  // namespace
+}  // namespace orb360::nn
