@@ -1,13 +1,8 @@
 #pragma once
 
-#include <cstdint>
-
 #include "nn/graph/backend.h"
 
 namespace orb360::nn {
-
-/// Numbers in which convolutions multiply; they add in 32 bits in any case.
-enum class Precision : std::uint8_t { kFloat, kBFloat16 };
 
 /// The kernels of nn/kernels.
 class CpuBackend : public Backend {

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "nn/base/check.h"
+#include "nn/graph/cpu_backend.h"
 #include "nn/graph/fusion.h"
 #include "nn/graph/limits.h"
 #include "nn/kernels/copy_channels.h"

@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "nn/base/aligned_vector.h"
-#include "nn/graph/backend.h"
-#include "nn/graph/cpu_backend.h"
 #include "nn/graph/graph.h"
 #include "nn/graph/lowering.h"
 #include "nn/graph/placement.h"
@@ -18,7 +16,6 @@ namespace orb360::nn {
 
 struct ExecutorOptions {
   int threads = 1;
-  Precision precision = Precision::kFloat;
   /// Runs every node by itself and keeps what each of them writes (Executor::Find): to look inside,
   /// not to be fast.
   bool keeps_tensors = false;

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "tests/nn/graph/network_builder.h"
+#include "tests/nn/kernels/plain_picture.h"
+
+namespace orb360::nn {
+
+/// A network of some `nodes` nodes of every operation, wired at random. All values stay moderate,
+/// so that rounding errors do. Inputs: `image` (3 channels), `depth`, `confidence`;
+/// size_multiple 8.
+NetworkBuilder RandomNetwork(int nodes, unsigned seed);
+
+/// Inputs for it: a picture in 0..1 and a sparse depth with its confidence.
+std::vector<PlainPicture> RandomInputs(int height, int width, unsigned seed);
+
+}  // namespace orb360::nn
