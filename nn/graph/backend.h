@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -31,10 +32,16 @@ struct NodeNeeds {
   std::vector<int> replaceable;
 };
 
-/// One kernel with its packed weights. Runs on tensors of the formats that were asked for, from
+/// One kernel with its packed weights, for tensors of the formats that were asked for. Runs from
 /// several threads at once, without allocating.
-using Step =
-    std::function<void(std::span<const TensorView> inputs, std::span<const TensorView> outputs)>;
+struct Step {
+  using Run =
+      std::function<void(std::span<const TensorView> inputs, std::span<const TensorView> outputs,
+                         std::span<std::byte> scratch)>;
+  Run run;
+  /// Of memory aligned to kAlignment that a run needs for itself.
+  std::size_t scratch_bytes = 0;
+};
 
 /// What runs on a kind of processor. The only way from a graph to kernels: whoever implements it
 /// can execute every network. Concatenation and slices need no kernel but MakeCopy's.
@@ -46,7 +53,8 @@ class Backend {
   virtual ~Backend() = default;
 
   virtual NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const = 0;
-  virtual Step MakeStep(const Graph& graph, const FusedNode& node) const = 0;
+  /// For pictures of that size.
+  virtual Step MakeStep(const Graph& graph, const FusedNode& node, int height, int width) const = 0;
   /// Copies `count` channels of the only input to the only output, between any formats.
   virtual Step MakeCopy(int from_first, int to_first, int count) const = 0;
 };

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "nn/base/check.h"
 #include "nn/kernels/average_pool.h"
@@ -14,7 +15,7 @@
 #include "nn/kernels/elementwise.h"
 #include "nn/kernels/latitude_sine.h"
 #include "nn/kernels/median_log.h"
-#include "nn/kernels/normalized_convolution.h"
+#include "nn/kernels/normalized_chain.h"
 #include "nn/kernels/upsample.h"
 
 namespace orb360::nn {
@@ -22,6 +23,7 @@ namespace {
 
 using Layouts = PortNeeds::Layouts;
 using Views = std::span<const TensorView>;
+using Scratch = std::span<std::byte>;
 
 constexpr PortNeeds kPlanar{.layouts = Layouts::kPlanar};
 constexpr PortNeeds kFree{};
@@ -37,8 +39,7 @@ class Needs {
   Needs(const Graph& graph, const FusedNode& fused) : graph_(graph), fused_(fused) {}
 
   NodeNeeds operator()(const NormalizedConvolutionOp&) const {
-    const int halo = KernelSize(graph_, fused_.node) / 2;
-    return {{WithHalo(kPlanar, halo), WithHalo(kPlanar, halo)}, {kPlanar, kPlanar}, {}};
+    return {{kPlanar, kPlanar}, {kPlanar, kPlanar}, {}};
   }
   NodeNeeds operator()(const ConfidencePoolOp&) const {
     return {{kPlanar, kPlanar}, {kPlanar, kPlanar}, {}};
@@ -78,29 +79,20 @@ class Needs {
   const FusedNode& fused_;
 };
 
-class StepMaker {
+class RunMaker {
  public:
-  StepMaker(const Graph& graph, const FusedNode& fused, int threads)
+  RunMaker(const Graph& graph, const FusedNode& fused, int threads)
       : graph_(graph), fused_(fused), threads_(threads) {}
 
-  Step operator()(const NormalizedConvolutionOp& op) const {
-    const Weight& weight = this->weight(0);
-    const auto kernel = std::make_shared<const NormalizedConvolution>(
-        weight.values, this->weight(1).values, weight.shape[0], weight.shape[1], weight.shape[3],
-        op.padding);
-    return [kernel, threads = threads_](Views in, Views out) {
-      kernel->Run(in[0], in[1], out[0], out[1], threads);
-    };
-  }
-  Step operator()(const ConfidencePoolOp& op) const {
+  Step::Run operator()(const ConfidencePoolOp& op) const {
     const ConfidenceRule rule = op.rule == ConfidencePoolOp::Rule::kQuarter
                                     ? ConfidenceRule::kQuarter
                                     : ConfidenceRule::kSquareRoot;
-    return [rule, threads = threads_](Views in, Views out) {
+    return [rule, threads = threads_](Views in, Views out, Scratch) {
       ConfidencePool(in[0], in[1], out[0], out[1], rule, threads);
     };
   }
-  Step operator()(const ConvolutionOp& op) const {
+  Step::Run operator()(const ConvolutionOp& op) const {
     const Weight& weight = this->weight(0);
     const ConvolutionSpec spec{.in_channels = weight.shape[1],
                                .out_channels = weight.shape[0],
@@ -110,78 +102,81 @@ class StepMaker {
                                .slope = fused_.slope};
     const auto kernel =
         std::make_shared<const Convolution>(spec, weight.values, this->weight(1).values);
-    return [kernel, adds = fused_.adds_residual, threads = threads_](Views in, Views out) {
+    return [kernel, adds = fused_.adds_residual, threads = threads_](Views in, Views out, Scratch) {
       kernel->Run(in[0], adds ? &in[1] : nullptr, out[0], threads);
     };
   }
-  Step operator()(const DenseOp&) const {
+  Step::Run operator()(const DenseOp&) const {
     const Weight& weight = this->weight(0);
     const auto kernel = std::make_shared<const Dense>(weight.values, this->weight(1).values,
                                                       weight.shape[0], weight.shape[1]);
-    return [kernel](Views in, Views out) { kernel->Run(in[0], out[0]); };
+    return [kernel](Views in, Views out, Scratch) { kernel->Run(in[0], out[0]); };
   }
-  Step operator()(const UpsampleNearestOp&) const { return Simple(UpsampleNearest); }
-  Step operator()(const UpsampleBilinearOp& op) const {
-    return [padding = op.padding, threads = threads_](Views in, Views out) {
+  Step::Run operator()(const UpsampleNearestOp&) const { return Simple(UpsampleNearest); }
+  Step::Run operator()(const UpsampleBilinearOp& op) const {
+    return [padding = op.padding, threads = threads_](Views in, Views out, Scratch) {
       UpsampleBilinear(in[0], out[0], padding, threads);
     };
   }
-  Step operator()(const ConvexUpsampleOp& op) const {
-    return [padding = op.padding, threads = threads_](Views in, Views out) {
+  Step::Run operator()(const ConvexUpsampleOp& op) const {
+    return [padding = op.padding, threads = threads_](Views in, Views out, Scratch) {
       ConvexUpsample(in[0], in[1], out[0], padding, threads);
     };
   }
-  Step operator()(const AveragePoolOp&) const { return Simple(AveragePool); }
-  Step operator()(const GlobalAveragePoolOp&) const { return Simple(GlobalAveragePool); }
-  Step operator()(const ReluOp&) const { return Simple(Relu); }
-  Step operator()(const TanhOp&) const { return Simple(Tanh); }
-  Step operator()(const SigmoidOp&) const { return Simple(Sigmoid); }
-  Step operator()(const SoftplusOp&) const { return Simple(Softplus); }
-  Step operator()(const ExpOp&) const { return Simple(Exp); }
-  Step operator()(const LogOp&) const { return Simple(Log); }
-  Step operator()(const LeakyReluOp& op) const {
-    return [op, threads = threads_](Views in, Views out) {
+  Step::Run operator()(const AveragePoolOp&) const { return Simple(AveragePool); }
+  Step::Run operator()(const GlobalAveragePoolOp&) const { return Simple(GlobalAveragePool); }
+  Step::Run operator()(const ReluOp&) const { return Simple(Relu); }
+  Step::Run operator()(const TanhOp&) const { return Simple(Tanh); }
+  Step::Run operator()(const SigmoidOp&) const { return Simple(Sigmoid); }
+  Step::Run operator()(const SoftplusOp&) const { return Simple(Softplus); }
+  Step::Run operator()(const ExpOp&) const { return Simple(Exp); }
+  Step::Run operator()(const LogOp&) const { return Simple(Log); }
+  Step::Run operator()(const LeakyReluOp& op) const {
+    return [op, threads = threads_](Views in, Views out, Scratch) {
       LeakyRelu(in[0], op.slope, out[0], threads);
     };
   }
-  Step operator()(const ClampOp& op) const {
-    return [op, threads = threads_](Views in, Views out) {
+  Step::Run operator()(const ClampOp& op) const {
+    return [op, threads = threads_](Views in, Views out, Scratch) {
       Clamp(in[0], op.minimum, op.maximum, out[0], threads);
     };
   }
-  Step operator()(const AffineOp& op) const {
-    return [op, threads = threads_](Views in, Views out) {
+  Step::Run operator()(const AffineOp& op) const {
+    return [op, threads = threads_](Views in, Views out, Scratch) {
       Affine(in[0], op.scale, op.offset, out[0], threads);
     };
   }
-  Step operator()(const AddOp&) const { return OfTwo(Add); }
-  Step operator()(const MultiplyOp&) const { return OfTwo(Multiply); }
-  Step operator()(const MedianLogOp&) const {
-    return [threads = threads_](Views in, Views out) {
+  Step::Run operator()(const AddOp&) const { return OfTwo(Add); }
+  Step::Run operator()(const MultiplyOp&) const { return OfTwo(Multiply); }
+  Step::Run operator()(const MedianLogOp&) const {
+    return [threads = threads_](Views in, Views out, Scratch) {
       MedianLog(in[0], in[1], out[0], out[1], out[2], threads);
     };
   }
-  Step operator()(const LatitudeSineOp&) const {
-    return [](Views, Views out) { LatitudeSine(out[0]); };
+  Step::Run operator()(const LatitudeSineOp&) const {
+    return [](Views, Views out, Scratch) { LatitudeSine(out[0]); };
   }
-  Step operator()(const ConcatenateOp&) const { return NotHere(); }
-  Step operator()(const SliceOp&) const { return NotHere(); }
+  Step::Run operator()(const NormalizedConvolutionOp&) const { return NotHere(); }
+  Step::Run operator()(const ConcatenateOp&) const { return NotHere(); }
+  Step::Run operator()(const SliceOp&) const { return NotHere(); }
 
  private:
   const Weight& weight(std::size_t i) const {
     return graph_.weights[static_cast<std::size_t>(fused_.node.weights[i])];
   }
-  Step Simple(void (*function)(const TensorView&, const TensorView&, int)) const {
-    return
-        [function, threads = threads_](Views in, Views out) { function(in[0], out[0], threads); };
+  Step::Run Simple(void (*function)(const TensorView&, const TensorView&, int)) const {
+    return [function, threads = threads_](Views in, Views out, Scratch) {
+      function(in[0], out[0], threads);
+    };
   }
-  Step OfTwo(void (*function)(const TensorView&, const TensorView&, const TensorView&, int)) const {
-    return [function, threads = threads_](Views in, Views out) {
+  Step::Run OfTwo(void (*function)(const TensorView&, const TensorView&, const TensorView&,
+                                   int)) const {
+    return [function, threads = threads_](Views in, Views out, Scratch) {
       function(in[0], in[1], out[0], threads);
     };
   }
-  static Step NotHere() {
-    ORB360_CHECK(false, "views and copies are not for a backend");
+  static Step::Run NotHere() {
+    ORB360_CHECK(false, "made elsewhere");
     return {};
   }
 
@@ -190,20 +185,41 @@ class StepMaker {
   int threads_;
 };
 
+Step MakeChain(const Graph& graph, const Node& node, int width, int threads) {
+  const auto weight = [&](std::size_t i) -> const Weight& {
+    return graph.weights[static_cast<std::size_t>(node.weights[i])];
+  };
+  const std::vector<int>& shape = weight(0).shape;
+  std::vector<NormalizedConvolution> layers;
+  layers.emplace_back(weight(0).values, weight(1).values, shape[0], shape[1], shape[3],
+                      std::get<NormalizedConvolutionOp>(node.operation).padding);
+  const auto chain = std::make_shared<const NormalizedChain>(std::move(layers));
+  return {[chain, threads](Views in, Views out, Scratch scratch) {
+            const NormalizedInput input{{in[0], in[1]}};
+            chain->Run({&input, 1}, {out[0], out[1]}, scratch, threads);
+          },
+          chain->ScratchBytes(width, threads)};
+}
+
 }  // namespace
 
 NodeNeeds CpuBackend::NeedsOf(const Graph& graph, const FusedNode& node) const {
   return std::visit(Needs(graph, node), node.node.operation);
 }
 
-Step CpuBackend::MakeStep(const Graph& graph, const FusedNode& node) const {
-  return std::visit(StepMaker(graph, node, threads_), node.node.operation);
+Step CpuBackend::MakeStep(const Graph& graph, const FusedNode& fused, int height, int width) const {
+  if (std::holds_alternative<NormalizedConvolutionOp>(fused.node.operation)) {
+    const auto output = static_cast<std::size_t>(fused.node.outputs.front());
+    const Shape shape = ShapeFor(graph.tensors[output], height, width);
+    return MakeChain(graph, fused.node, shape.width, threads_);
+  }
+  return {std::visit(RunMaker(graph, fused, threads_), fused.node.operation)};
 }
 
 Step CpuBackend::MakeCopy(int from_first, int to_first, int count) const {
-  return [=, threads = threads_](Views in, Views out) {
+  return {[=, threads = threads_](Views in, Views out, Scratch) {
     CopyChannels(in[0], from_first, out[0], to_first, count, threads);
-  };
+  }};
 }
 
 }  // namespace orb360::nn

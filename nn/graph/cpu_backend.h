@@ -10,7 +10,7 @@ class CpuBackend : public Backend {
   explicit CpuBackend(int threads) : threads_(threads) {}
 
   NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const override;
-  Step MakeStep(const Graph& graph, const FusedNode& node) const override;
+  Step MakeStep(const Graph& graph, const FusedNode& node, int height, int width) const override;
   Step MakeCopy(int from_first, int to_first, int count) const override;
 
  private:

@@ -62,8 +62,11 @@ Executor::Workspace::Workspace(const Executor& executor) {
     for (const int value : values) list.push_back(views_[Index(value)]);
     return list;
   };
-  for (const Instruction& instruction : lowered.instructions) {
-    bound_.push_back({views(instruction.inputs), views(instruction.outputs)});
+  const std::span<std::byte> memory(memory_);
+  for (std::size_t i = 0; i < lowered.instructions.size(); ++i) {
+    const Instruction& instruction = lowered.instructions[i];
+    bound_.push_back({views(instruction.inputs), views(instruction.outputs),
+                      memory.subspan(placement.scratch[i], instruction.step.scratch_bytes)});
   }
 }
 
@@ -100,7 +103,8 @@ void Executor::Run(std::span<const std::span<const float>> inputs,
                  workspace->views_[Index(lowered_.inputs[i])], 0, shape.channels, kOneThread);
   }
   for (std::size_t i = 0; i < lowered_.instructions.size(); ++i) {
-    lowered_.instructions[i].step(workspace->bound_[i].inputs, workspace->bound_[i].outputs);
+    const auto& [in, out, scratch] = workspace->bound_[i];
+    lowered_.instructions[i].step.run(in, out, scratch);
   }
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const Shape& shape = outputs_[i].shape;

@@ -33,9 +33,10 @@ class Executor {
 
    private:
     friend class Executor;
-    struct Bound {  // the tensors of one instruction
+    struct Bound {  // what one instruction works on
       std::vector<TensorView> inputs;
       std::vector<TensorView> outputs;
+      std::span<std::byte> scratch;
     };
     AlignedVector<std::byte> memory_;
     std::vector<TensorView> views_;  // by value

@@ -92,7 +92,8 @@ class Lowering {
   void AddNode(const FusedNode& fused, const NodeNeeds& needs) {
     const Node& node = fused.node;
     const Format of_result = formats_[Index(node.outputs.front())];
-    Instruction instruction{node.name, backend_.MakeStep(graph_, fused), {}, {}, needs.replaceable};
+    Instruction instruction{
+        node.name, backend_.MakeStep(graph_, fused, height_, width_), {}, {}, needs.replaceable};
     for (std::size_t i = 0; i < node.inputs.size(); ++i) {
       instruction.inputs.push_back(ForInput(node.inputs[i], needs.inputs[i], of_result));
     }

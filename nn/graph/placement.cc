@@ -132,7 +132,16 @@ class Placer {
       piece_number[i] = placement.pieces.size();
       placement.pieces.push_back(life);
     }
+    const std::size_t first_scratch = placement.pieces.size();
+    int step = 0;
+    for (const Instruction& instruction : lowered_.instructions) {
+      ++step;
+      placement.pieces.push_back({instruction.step.scratch_bytes, step, step});
+      placement.separate_bytes += instruction.step.scratch_bytes;
+    }
     MemoryPlan plan = PlanMemory(placement.pieces);
+    placement.scratch.assign(plan.offsets.begin() + static_cast<std::ptrdiff_t>(first_scratch),
+                             plan.offsets.end());
     for (std::size_t i = 0; i < lowered_.values.size(); ++i) {
       const int whole = whole_of_[i];
       const int piece = Piece(whole);

@@ -18,10 +18,11 @@ struct Placement {
     int first_channel = 0;
   };
   std::vector<Place> places;
+  std::vector<std::size_t> scratch;  // by instruction: where its scratch starts, bytes
   std::vector<Lifetime> pieces;      // of memory, for whoever wants to check the plan
   std::vector<std::size_t> offsets;  // of the pieces
   std::size_t bytes = 0;             // of the block
-  std::size_t separate_bytes = 0;    // if every value had memory of its own all the time
+  std::size_t separate_bytes = 0;    // if every value and scratch had memory of its own
 };
 
 /// Plans the memory of a lowered graph: parts lie in their wholes, results replace what is read for
