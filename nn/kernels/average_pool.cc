@@ -2,50 +2,111 @@
 
 #include "nn/base/check.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "nn/kernels/average_pool.cc"
+#include <hwy/foreach_target.h>
+// foreach_target must come first.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace orb360::nn {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr int kBlock = BlockOf(DataType::kFloat);
+
+template <class D, class V>
+HWY_INLINE V Mean(D d, V top_left, V top_right, V bottom_left, V bottom_right) {
+  const V sum = hn::Add(hn::Add(top_left, top_right), hn::Add(bottom_left, bottom_right));
+  return hn::Mul(hn::Set(d, 0.25f), sum);
+}
+
+void AverageRow(const float* top, const float* bottom, bool is_blocked, int count, float* to) {
+  if (is_blocked) {
+    const hn::CappedTag<float, kBlock> d;
+    for (int u = 0; u < count; ++u) {
+      for (int i = 0; i < kBlock; i += static_cast<int>(hn::Lanes(d))) {
+        const int left = 2 * u * kBlock + i;
+        const int right = left + kBlock;
+        hn::Store(Mean(d, hn::Load(d, top + left), hn::Load(d, top + right),
+                       hn::Load(d, bottom + left), hn::Load(d, bottom + right)),
+                  d, to + u * kBlock + i);
+      }
+    }
+    return;
+  }
+  // Half a cache line comes from a whole one, so that no vector reaches over the end of a row.
+  const hn::CappedTag<float, kBlock / 2> d;
+  for (int u = 0; u < count; u += static_cast<int>(hn::Lanes(d))) {
+    hn::Vec<decltype(d)> top_left, top_right, bottom_left, bottom_right;
+    hn::LoadInterleaved2(d, top + 2 * u, top_left, top_right);
+    hn::LoadInterleaved2(d, bottom + 2 * u, bottom_left, bottom_right);
+    hn::Store(Mean(d, top_left, top_right, bottom_left, bottom_right), d, to + u);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace orb360::nn
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace orb360::nn {
 namespace {
 
-// Floats of one pixel of a plane.
-int Step(const TensorView& tensor) {
-  return tensor.layout == Layout::kBlocked ? BlockOf(tensor.type) : 1;
+constexpr int kBlock = BlockOf(DataType::kFloat);
+
+// The means of one plane, in double precision.
+void PlaneMeans(const TensorView& x, int plane, double* mean) {
+  const int step = x.layout == Layout::kBlocked ? kBlock : 1;
+  for (int v = 0; v < x.shape.height; ++v) {
+    const float* row = x.row<float>(plane, v);
+    for (int u = 0; u < x.shape.width; ++u) {
+      for (int i = 0; i < step; ++i) mean[i] += row[u * step + i];
+    }
+  }
+  for (int i = 0; i < step; ++i) mean[i] /= static_cast<double>(x.shape.height) * x.shape.width;
 }
 
 }  // namespace
+
+HWY_EXPORT(AverageRow);
 
 void AveragePool(const TensorView& x, const TensorView& y, int threads) {
   ORB360_CHECK(x.type == DataType::kFloat && y.type == DataType::kFloat && x.layout == y.layout);
   const auto [channels, rows, columns] = y.shape;
   ORB360_CHECK((x.shape == Shape{channels, 2 * rows, 2 * columns}));
-  const int step = Step(x);
+  const auto average_row = HWY_DYNAMIC_DISPATCH(AverageRow);
+  const bool is_blocked = x.layout == Layout::kBlocked;
+  const int planes = y.planes();
 #pragma omp parallel for num_threads(threads) schedule(static)
-  for (int line = 0; line < y.planes() * rows; ++line) {
-    const float* top = x.row<float>(line / rows, 2 * (line % rows));
-    const float* bottom = top + x.row_stride;
-    float* to = y.row<float>(line / rows, line % rows);
-    for (int u = 0; u < columns; ++u) {
-      for (int i = 0; i < step; ++i) {
-        const int a = 2 * u * step + i;
-        to[u * step + i] = 0.25f * ((top[a] + top[a + step]) + (bottom[a] + bottom[a + step]));
-      }
-    }
+  for (int line = 0; line < planes * rows; ++line) {
+    const int plane = line / rows;
+    const int v = line % rows;
+    average_row(x.row<float>(plane, 2 * v), x.row<float>(plane, 2 * v + 1), is_blocked, columns,
+                y.row<float>(plane, v));
   }
 }
 
 void GlobalAveragePool(const TensorView& x, const TensorView& y, int threads) {
   ORB360_CHECK(x.type == DataType::kFloat && y.type == DataType::kFloat);
   ORB360_CHECK((y.shape == Shape{x.shape.channels, 1, 1}));
-  const int from_step = Step(x);
-  const int to_step = Step(y);
+  const int from_step = x.layout == Layout::kBlocked ? kBlock : 1;
+  const int to_step = y.layout == Layout::kBlocked ? kBlock : 1;
+  const int channels = y.planes() * to_step;  // with those that fill up the last block
+  const int planes = x.planes();
 #pragma omp parallel for num_threads(threads) schedule(static)
-  for (int channel = 0; channel < y.planes() * to_step; ++channel) {
-    double sum = 0;
-    for (int v = 0; v < x.shape.height && channel < x.shape.channels; ++v) {
-      const float* row = x.row<float>(channel / from_step, v) + channel % from_step;
-      for (int u = 0; u < x.shape.width; ++u) sum += row[u * from_step];
+  for (int plane = 0; plane < planes; ++plane) {
+    double mean[kBlock] = {};
+    PlaneMeans(x, plane, mean);
+    for (int i = 0; i < from_step && plane * from_step + i < channels; ++i) {
+      const int channel = plane * from_step + i;
+      y.row<float>(channel / to_step, 0)[channel % to_step] = static_cast<float>(mean[i]);
     }
-    y.row<float>(channel / to_step, 0)[channel % to_step] =
-        static_cast<float>(sum / (static_cast<double>(x.shape.height) * x.shape.width));
+  }
+  for (int channel = planes * from_step; channel < channels; ++channel) {
+    y.row<float>(channel / to_step, 0)[channel % to_step] = 0;
   }
 }
 
 }  // namespace orb360::nn
+#endif

@@ -1,10 +1,56 @@
 #include "nn/kernels/confidence_pool.h"
 
-#include <cmath>
-
 #include "nn/base/check.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "nn/kernels/confidence_pool.cc"
+#include <hwy/foreach_target.h>
+// foreach_target must come first.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
 namespace orb360::nn {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Half a cache line of results come from a whole one, so that no vector reaches over the end of a
+// tensor's row.
+using D = hn::CappedTag<float, 8>;
+using V = hn::Vec<D>;
+
+void PoolRow(const float* x, std::ptrdiff_t x_stride, const float* c, std::ptrdiff_t c_stride,
+             int columns, ConfidenceRule rule, float* y, float* y_confidence) {
+  const D d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  for (int u = 0; u < columns; u += lanes) {
+    V values[4];  // of the square, row by row
+    V confidences[4];
+    for (int row = 0; row < 2; ++row) {
+      hn::LoadInterleaved2(d, x + row * x_stride + 2 * u, values[2 * row], values[2 * row + 1]);
+      hn::LoadInterleaved2(d, c + row * c_stride + 2 * u, confidences[2 * row],
+                           confidences[2 * row + 1]);
+    }
+    V value = values[0];
+    V best = confidences[0];
+    for (int k = 1; k < 4; ++k) {
+      const auto is_better = hn::Gt(confidences[k], best);
+      value = hn::IfThenElse(is_better, values[k], value);
+      best = hn::IfThenElse(is_better, confidences[k], best);
+    }
+    hn::StoreU(value, d, y + u);
+    const bool is_quarter = rule == ConfidenceRule::kQuarter;
+    hn::StoreU(is_quarter ? hn::Mul(best, hn::Set(d, 0.25f)) : hn::Sqrt(best), d, y_confidence + u);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace orb360::nn
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace orb360::nn {
+
+HWY_EXPORT(PoolRow);
 
 void ConfidencePool(const TensorView& x, const TensorView& c, const TensorView& y,
                     const TensorView& y_confidence, ConfidenceRule rule, int threads) {
@@ -14,25 +60,15 @@ void ConfidencePool(const TensorView& x, const TensorView& c, const TensorView& 
   const auto [channels, rows, columns] = y.shape;
   ORB360_CHECK((x.shape == Shape{channels, 2 * rows, 2 * columns}));
   ORB360_CHECK(c.shape == x.shape && y_confidence.shape == y.shape);
+  const auto pool_row = HWY_DYNAMIC_DISPATCH(PoolRow);
 #pragma omp parallel for num_threads(threads) schedule(static)
   for (int line = 0; line < channels * rows; ++line) {
     const int channel = line / rows;
     const int v = line % rows;
-    for (int u = 0; u < columns; ++u) {
-      float best = c.row<float>(channel, 2 * v)[2 * u];
-      float value = x.row<float>(channel, 2 * v)[2 * u];
-      for (int k = 1; k < 4; ++k) {
-        const float candidate = c.row<float>(channel, 2 * v + k / 2)[2 * u + k % 2];
-        if (candidate > best) {
-          best = candidate;
-          value = x.row<float>(channel, 2 * v + k / 2)[2 * u + k % 2];
-        }
-      }
-      y.row<float>(channel, v)[u] = value;
-      y_confidence.row<float>(channel, v)[u] =
-          rule == ConfidenceRule::kQuarter ? best / 4 : std::sqrt(best);
-    }
+    pool_row(x.row<float>(channel, 2 * v), x.row_stride, c.row<float>(channel, 2 * v), c.row_stride,
+             columns, rule, y.row<float>(channel, v), y_confidence.row<float>(channel, v));
   }
 }
 
 }  // namespace orb360::nn
+#endif

@@ -14,8 +14,9 @@ enum class ConfidenceRule : std::uint8_t {
 
 /// Halves a picture: for each channel and 2 x 2 square, x and c from where c is largest, the first
 /// in row-major order among equals; then the rule is applied to c. Height and width of the inputs
-/// must be even. Planar floats; no halo is read or written. A NaN among the confidences is never
-/// the largest unless it stands first.
+/// must be even. Planar floats; no halo is read, and rows of the outputs may be overwritten up to
+/// the next multiple of kAlignment. A NaN among the confidences is never the largest unless it
+/// stands first.
 void ConfidencePool(const TensorView& x, const TensorView& c, const TensorView& y,
                     const TensorView& y_confidence, ConfidenceRule rule, int threads);
 

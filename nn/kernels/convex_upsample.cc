@@ -1,11 +1,72 @@
 #include "nn/kernels/convex_upsample.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "nn/base/check.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "nn/kernels/convex_upsample.cc"
+#include <hwy/foreach_target.h>
+// foreach_target must come first.
+#include <hwy/highway.h>
+
+#include "nn/kernels/math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
 namespace orb360::nn {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// At most a cache line, so that no vector reaches over the end of a row of the inputs.
+using D = hn::CappedTag<float, 16>;
+using V = hn::Vec<D>;
+
+// The mean of `neighbour` that the nine weights at `weights`, a plane apart, ask for.
+HWY_INLINE V Mix(const float* weights, std::ptrdiff_t plane_stride, const V (&neighbour)[9]) {
+  const D d;
+  V weight[9];
+  for (int k = 0; k < 9; ++k) weight[k] = hn::Load(d, weights + k * plane_stride);
+  V largest = weight[0];
+  for (int k = 1; k < 9; ++k) largest = hn::Max(largest, weight[k]);
+  V sum = hn::Zero(d);
+  V value = hn::Zero(d);
+  for (int k = 0; k < 9; ++k) {
+    const V share = UnlessNan(weight[k], hn::Exp(d, hn::Sub(weight[k], largest)));
+    sum = hn::Add(sum, share);
+    value = hn::MulAdd(share, neighbour[k], value);
+  }
+  return hn::Div(value, sum);
+}
+
+// Two rows of output from row v of the input.
+void ConvexRows(const TensorView& x, const TensorView& weights, int v, const TensorView& y) {
+  const D d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const int columns = x.shape.width;
+  for (int u = 0; u < columns; u += lanes) {
+    V neighbour[9];
+    for (int k = 0; k < 9; ++k) {
+      neighbour[k] = hn::LoadU(d, x.row<float>(0, v + k / 3 - 1) + u + k % 3 - 1);
+    }
+    for (int i = 0; i < 2; ++i) {
+      const V left = Mix(weights.row<float>(18 * i, v) + u, weights.plane_stride, neighbour);
+      const V right = Mix(weights.row<float>(18 * i + 9, v) + u, weights.plane_stride, neighbour);
+      // The last two vectors of a row of output may reach over its end.
+      HWY_ALIGN float both[32];
+      hn::StoreInterleaved2(left, right, d, both);
+      std::copy_n(both, 2 * std::min(lanes, columns - u), y.row<float>(0, 2 * v + i) + 2 * u);
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace orb360::nn
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace orb360::nn {
+
+HWY_EXPORT(ConvexRows);
 
 void ConvexUpsample(const TensorView& x, const TensorView& weights, const TensorView& y,
                     Padding padding, int threads) {
@@ -17,25 +78,10 @@ void ConvexUpsample(const TensorView& x, const TensorView& weights, const Tensor
   ORB360_CHECK((weights.shape == Shape{kConvexUpsampleWeights, rows, columns}));
   ORB360_CHECK((y.shape == Shape{1, 2 * rows, 2 * columns}));
   FillHalo(x, padding, kConvexUpsampleHalo);
+  const auto convex_rows = HWY_DYNAMIC_DISPATCH(ConvexRows);
 #pragma omp parallel for num_threads(threads) schedule(static)
-  for (int v = 0; v < rows; ++v) {
-    for (int part = 0; part < 4; ++part) {
-      for (int u = 0; u < columns; ++u) {
-        float largest = weights.row<float>(9 * part, v)[u];
-        for (int k = 1; k < 9; ++k) {
-          largest = std::max(largest, weights.row<float>(9 * part + k, v)[u]);
-        }
-        float sum = 0;
-        float value = 0;
-        for (int k = 0; k < 9; ++k) {
-          const float weight = std::exp(weights.row<float>(9 * part + k, v)[u] - largest);
-          sum += weight;
-          value += weight * x.row<float>(0, v + k / 3 - 1)[u + k % 3 - 1];
-        }
-        y.row<float>(0, 2 * v + part / 2)[2 * u + part % 2] = value / sum;
-      }
-    }
-  }
+  for (int v = 0; v < rows; ++v) convex_rows(x, weights, v, y);
 }
 
 }  // namespace orb360::nn
+#endif

@@ -36,8 +36,9 @@ class NormalizedChain {
 
   /// Runs on the concatenation of `inputs`, in their order. The output has the height and width of
   /// the inputs, or twice those of inputs that are doubled, and must not be one of them. No halo is
-  /// read or written. `scratch`, of ScratchBytes(), is aligned to kAlignment. The same bits for any
-  /// number of threads.
+  /// read, and rows of the output may be overwritten up to the next multiple of kAlignment.
+  /// `scratch`, of ScratchBytes(), is aligned to kAlignment. The same bits for any number of
+  /// threads.
   void Run(std::span<const NormalizedInput> inputs, const ConfidentTensor& output,
            std::span<std::byte> scratch, int threads) const;
 

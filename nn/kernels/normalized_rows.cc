@@ -1,5 +1,7 @@
 #include "nn/kernels/normalized_rows.h"
 
+#include <algorithm>
+#include <atomic>
 #include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
@@ -25,6 +27,14 @@ HWY_INLINE void Finish(const NormalizedConvolution& layer, int o, V n, V d_sum, 
   const V c = hn::Mul(d_sum, hn::Set(d, layer.inverse_sum()[o]));
   hn::StoreU(as_products ? hn::Mul(y, c) : y, d, out.x + o * out.x_stride + u);
   hn::StoreU(c, d, out.c + o * out.c_stride + u);
+}
+
+template <int kFirst, int kEnd, class Function>
+HWY_INLINE void ForEach(const Function& function) {
+  if constexpr (kFirst < kEnd) {
+    function(std::integral_constant<int, kFirst>{});
+    ForEach<kFirst + 1, kEnd>(function);
+  }
 }
 
 // A register tile of kRows rows of kVectors vectors and all outputs. With two rows, two vectors and
@@ -57,6 +67,9 @@ HWY_INLINE void Tile(const NormalizedConvolution& layer, const NormalizedRow* in
           p[v] = hn::LoadU(d, products + tap + v * lanes);
           c[v] = hn::LoadU(d, confidences + tap + v * lanes);
         }
+        // Else GCC folds every load into each of the multiply-adds that use it, which then wait for
+        // loads across cache lines.
+        std::atomic_signal_fence(std::memory_order_acq_rel);
         for (int y = first; y <= last; ++y) {
           for (int o = 0; o < kOutputs; ++o) {
             const V w = hn::Set(d, row_weight[(tap - y * kInputs * kSize) * kOutputs + o]);
@@ -69,11 +82,12 @@ HWY_INLINE void Tile(const NormalizedConvolution& layer, const NormalizedRow* in
       }
     }
   };
-  using Zero = std::integral_constant<int, 0>;
-  using Last = std::integral_constant<int, kRows - 1>;
-  if constexpr (kRows == 2) add(Zero{}, Zero{}, 0);
-  for (int r = kRows - 1; r < kSize; ++r) add(Zero{}, Last{}, r);
-  if constexpr (kRows == 2) add(Last{}, Last{}, kSize);
+  // Row r of the input is row r - y of the window of output y.
+  ForEach<0, kSize + kRows - 1>([&](auto r) HWY_ATTR {
+    using First = std::integral_constant<int, std::max(0, r - kSize + 1)>;
+    using Last = std::integral_constant<int, std::min<int>(kRows - 1, r)>;
+    add(First{}, Last{}, r);
+  });
   for (int y = 0; y < kRows; ++y) {
     for (int o = 0; o < kOutputs; ++o) {
       for (int v = 0; v < kVectors; ++v) {
@@ -91,7 +105,9 @@ void FixedRows(const NormalizedConvolution& layer, const NormalizedRow* in, int 
   const int lanes = static_cast<int>(hn::Lanes(D()));
   for (int u = 0; u < width; u += kVectors * lanes) {
     const int vectors = u + lanes < width ? 2 : 1;
-    if (rows == 2) {
+    if (rows == 3) {
+      Tile<kSize, kInputs, kOutputs, 3, kVectors>(layer, in, u, vectors, out, as_products);
+    } else if (rows == 2) {
       Tile<kSize, kInputs, kOutputs, 2, kVectors>(layer, in, u, vectors, out, as_products);
     } else {
       Tile<kSize, kInputs, kOutputs, 1, kVectors>(layer, in, u, vectors, out, as_products);

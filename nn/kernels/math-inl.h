@@ -1,0 +1,75 @@
+// Per-target include guard: foreach_target includes this once for each instruction set.
+#if defined(ORB360_NN_KERNELS_MATH_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORB360_NN_KERNELS_MATH_INL_H_
+#undef ORB360_NN_KERNELS_MATH_INL_H_
+#else
+#define ORB360_NN_KERNELS_MATH_INL_H_
+#endif
+
+#include <limits>
+
+#include <hwy/contrib/math/math-inl.h>
+
+// Highway's functions of vectors of floats, made total: NaN stays NaN, and what lies beyond the
+// range they are documented for goes to its limit. Errors are in units in the last place of results
+// that are normal numbers, half a unit of rounding left out.
+HWY_BEFORE_NAMESPACE();
+namespace orb360::nn {
+namespace HWY_NAMESPACE {
+
+template <class V, class F>
+HWY_INLINE V UnlessNan(V x, F y) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  return hn::IfThenElse(hn::Eq(x, x), y, x);
+}
+
+/// e^x, within 1 unit.
+template <class D, class V>
+HWY_INLINE V TotalExp(D d, V x) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  // Highway's is right up to 104, which is infinity already.
+  return UnlessNan(x, hn::Exp(d, hn::Min(x, hn::Set(d, 104.0f))));
+}
+
+/// ln x, within 4 units; -infinity at zero, NaN below.
+template <class D, class V>
+HWY_INLINE V TotalLog(D d, V x) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const V zero = hn::Zero(d);
+  const V infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+  const V nan = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
+  V y = hn::IfThenElse(hn::Eq(x, infinity), x, hn::Log(d, x));
+  y = hn::IfThenElse(hn::Eq(x, zero), hn::Neg(infinity), y);
+  return UnlessNan(x, hn::IfThenElse(hn::Lt(x, zero), nan, y));
+}
+
+/// tanh x, within 4 units.
+template <class D, class V>
+HWY_INLINE V TotalTanh(D d, V x) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  return UnlessNan(x, hn::Tanh(d, x));
+}
+
+/// 1 / (1 + e^-x), within 3 units.
+template <class D, class V>
+HWY_INLINE V TotalSigmoid(D d, V x) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const V one = hn::Set(d, 1.0f);
+  const V e = hn::Exp(d, hn::Neg(hn::Abs(x)));  // at most 1, so nothing overflows
+  const V numerator = hn::IfThenElse(hn::Lt(x, hn::Zero(d)), e, one);
+  return UnlessNan(x, hn::Div(numerator, hn::Add(one, e)));
+}
+
+/// ln(1 + e^x), within 4 units.
+template <class D, class V>
+HWY_INLINE V TotalSoftplus(D d, V x) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const V e = hn::Exp(d, hn::Neg(hn::Abs(x)));
+  return UnlessNan(x, hn::Add(hn::Max(x, hn::Zero(d)), hn::Log1p(d, e)));
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace orb360::nn
+HWY_AFTER_NAMESPACE();
+
+#endif
