@@ -57,8 +57,7 @@ class Api {
 
   template <typename... Arguments>
   void Call(Function function, Arguments... arguments) const {
-    Handle status =
-        reinterpret_cast<Handle (*)(Arguments...)>(table_[function])(arguments...);
+    Handle status = reinterpret_cast<Handle (*)(Arguments...)>(table_[function])(arguments...);
     if (status == nullptr) return;
     const std::string message =
         reinterpret_cast<const char* (*)(Handle)>(table_[kGetErrorMessage])(status);

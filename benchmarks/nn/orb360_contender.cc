@@ -13,13 +13,13 @@ class Orb360 : public Contender {
   Orb360(const Problem& problem, DataType type, int threads)
       : threads_(threads),
         convolution_({problem.layer.in_channels, problem.layer.out_channels, problem.layer.kernel,
-                      problem.layer.stride},
+                      problem.layer.stride, Padding::kZero, 1, type},
                      problem.weight, problem.bias) {
     const Shape shape{problem.layer.in_channels, problem.height, problem.width};
-    const bool is_stem = shape.channels <= kMaxPlanarChannels && type == DataType::kFloat;
+    const bool is_stem = shape.channels <= kMaxPlanarChannels;
     const TensorFormat planar{shape, Layout::kPlanar, DataType::kFloat, 0};
-    const TensorFormat input{shape, is_stem ? Layout::kPlanar : Layout::kBlocked, type,
-                             problem.layer.kernel / 2};
+    const TensorFormat input{shape, is_stem ? Layout::kPlanar : Layout::kBlocked,
+                             is_stem ? DataType::kFloat : type, problem.layer.kernel / 2};
     const TensorFormat output{convolution_.OutputShape(shape), Layout::kBlocked, type, 0};
     AlignedVector<std::byte> planar_memory(planar.bytes());
     const TensorView plain = planar.View(planar_memory.data());

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "nn/base/check.h"
+#include "nn/kernels/convolution_bf16.h"
 #include "nn/kernels/convolution_direct.h"
 
 namespace orb360::nn {
@@ -22,40 +23,51 @@ int RowsInBand(const ConvolutionSpec& spec, const TensorView& input, int rows, i
   return std::max(1, std::min(fitting, rows / (threads * kBandsPerThread)));
 }
 
-}  // namespace
-
-Convolution::Convolution(const ConvolutionSpec& spec, std::span<const float> weight,
-                         std::span<const float> bias)
-    : spec_(spec), groups_(DirectGroups(spec.out_channels)) {
-  ORB360_CHECK(spec.in_channels > 0 && spec.out_channels > 0, spec.in_channels, spec.out_channels);
-  ORB360_CHECK(spec.kernel == 1 || spec.kernel == 3 || spec.kernel == 5, spec.kernel);
-  ORB360_CHECK(spec.stride == 1 || spec.stride == 2, spec.stride);
+AlignedVector<float> PackDirect(const ConvolutionSpec& spec, std::span<const float> weight,
+                                const std::vector<int>& groups) {
   const int taps = spec.kernel * spec.kernel;
-  ORB360_CHECK(
-      weight.size() == static_cast<std::size_t>(spec.out_channels) * spec.in_channels * taps,
-      weight.size());
-  ORB360_CHECK(bias.empty() || bias.size() == static_cast<std::size_t>(spec.out_channels),
-               bias.size());
-  const int planes = (spec.out_channels + kBlock - 1) / kBlock;
-  bias_.resize(static_cast<std::size_t>(planes) * kBlock);
-  std::copy(bias.begin(), bias.end(), bias_.begin());
-  weight_.resize(static_cast<std::size_t>(planes) * kBlock * spec.in_channels * taps);
-  float* next = weight_.data();
+  AlignedVector<float> packed;
   int first_out = 0;
-  for (const int blocks : groups_) {
+  for (const int blocks : groups) {
     for (int first_in = 0; first_in < spec.in_channels; first_in += kBlock) {
       for (int tap = 0; tap < taps; ++tap) {
         for (int i = first_in; i < std::min(first_in + kBlock, spec.in_channels); ++i) {
           for (int o = first_out; o < first_out + blocks * kBlock; ++o) {
-            *next++ =
-                o < spec.out_channels
-                    ? weight[(static_cast<std::size_t>(o) * spec.in_channels + i) * taps + tap]
-                    : 0;
+            const std::size_t filter = static_cast<std::size_t>(o) * spec.in_channels + i;
+            packed.push_back(o < spec.out_channels ? weight[filter * taps + tap] : 0);
           }
         }
       }
     }
     first_out += blocks * kBlock;
+  }
+  return packed;
+}
+
+}  // namespace
+
+Convolution::Convolution(const ConvolutionSpec& spec, std::span<const float> weight,
+                         std::span<const float> bias, BFloat16Unit unit)
+    : spec_(spec), unit_(unit) {
+  ORB360_CHECK(spec.in_channels > 0 && spec.out_channels > 0, spec.in_channels, spec.out_channels);
+  ORB360_CHECK(spec.kernel == 1 || spec.kernel == 3 || spec.kernel == 5, spec.kernel);
+  ORB360_CHECK(spec.stride == 1 || spec.stride == 2, spec.stride);
+  ORB360_CHECK(weight.size() == static_cast<std::size_t>(spec.out_channels) * spec.in_channels *
+                                    spec.kernel * spec.kernel,
+               weight.size());
+  ORB360_CHECK(bias.empty() || bias.size() == static_cast<std::size_t>(spec.out_channels),
+               bias.size());
+  ORB360_CHECK(spec.type == DataType::kFloat || unit != BFloat16Unit::kNone,
+               "this processor has no unit for bfloat16");
+  const int block = BlockOf(spec.type);
+  const int channels = (spec.out_channels + block - 1) / block * block;
+  bias_.resize(channels);
+  std::copy(bias.begin(), bias.end(), bias_.begin());
+  if (spec.type == DataType::kBFloat16 && !is_bfloat16_stem()) {
+    rounded_weight_ = PackBFloat16(weight, spec.out_channels, spec.in_channels, spec.kernel);
+  } else {
+    groups_ = DirectGroups(channels);
+    weight_ = PackDirect(spec, weight, groups_);
   }
 }
 
@@ -64,26 +76,45 @@ Shape Convolution::OutputShape(const Shape& input) const {
           (input.width + spec_.stride - 1) / spec_.stride};
 }
 
-void Convolution::Run(const TensorView& input, const TensorView* residual, const TensorView& output,
-                      int threads) const {
+void Convolution::CheckTensors(const TensorView& input, const TensorView* residual,
+                               const TensorView& output) const {
+  const bool takes_floats = spec_.type == DataType::kFloat || is_bfloat16_stem();
   ORB360_CHECK(input.shape.channels == spec_.in_channels, input.shape.channels, spec_.in_channels);
-  ORB360_CHECK(input.layout == Layout::kBlocked || spec_.in_channels <= kMaxPlanarChannels,
+  ORB360_CHECK(input.type == (takes_floats ? DataType::kFloat : DataType::kBFloat16));
+  ORB360_CHECK(input.layout == Layout::kBlocked
+                   ? !is_bfloat16_stem()
+                   : takes_floats && spec_.in_channels <= kMaxPlanarChannels,
                spec_.in_channels);
   ORB360_CHECK(output.shape == OutputShape(input.shape));
-  ORB360_CHECK(input.type == DataType::kFloat && output.type == DataType::kFloat);
+  ORB360_CHECK(output.type == DataType::kFloat
+                   ? !is_bfloat16_stem()
+                   : spec_.type == DataType::kBFloat16 && output.layout == Layout::kBlocked);
   ORB360_CHECK(residual == nullptr ||
-               (residual->shape == output.shape && residual->layout == output.layout &&
-                residual->type == output.type));
+               (!is_bfloat16_stem() && residual->shape == output.shape &&
+                residual->layout == output.layout && residual->type == output.type));
+}
+
+void Convolution::Run(const TensorView& input, const TensorView* residual, const TensorView& output,
+                      int threads) const {
+  CheckTensors(input, residual, output);
   FillHalo(input, spec_.padding, spec_.kernel / 2);
-  const DirectConvolution run{
-      spec_.kernel,   spec_.stride, spec_.slope, &groups_,
-      weight_.data(), bias_.data(), input,       residual == nullptr ? TensorView{} : *residual,
-      output};
+  const TensorView added = residual == nullptr ? TensorView{} : *residual;
+  const DirectConvolution direct{spec_.kernel, spec_.stride, spec_.slope, &groups_, weight_.data(),
+                                 bias_.data(), input,        added,       output};
+  const BFloat16Convolution rounded{spec_.kernel, spec_.stride, spec_.slope, rounded_weight_.data(),
+                                    bias_.data(), input,        added,       output};
   const int rows = output.shape.height;
   const int band = RowsInBand(spec_, input, rows, threads);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
   for (int first = 0; first < rows; first += band) {
-    RunDirect(run, first, std::min(rows, first + band));
+    const int last = std::min(rows, first + band);
+    if (rounded_weight_.empty()) {
+      RunDirect(direct, first, last);
+    } else if (unit_ == BFloat16Unit::kAmx) {
+      RunAmx(rounded, first, last);
+    } else {
+      RunAvx512BFloat16(rounded, first, last);
+    }
   }
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "nn/base/aligned_vector.h"
+#include "nn/base/cpu.h"
 #include "nn/tensor.h"
 
 namespace orb360::nn {
@@ -17,6 +19,9 @@ struct ConvolutionSpec {
   Padding padding = Padding::kZero;
   /// Of the activation y = x > 0 ? x : slope * x: 1 for none, 0 for ReLU.
   float slope = 1;
+  /// kBFloat16 rounds weights and inputs to bfloat16 and adds up floats: for processors that have
+  /// a BFloat16Unit.
+  DataType type = DataType::kFloat;
 };
 
 /// The most input channels that may lie in kPlanar: pictures and the input of a network.
@@ -25,27 +30,42 @@ constexpr int kMaxPlanarChannels = 8;
 /// A dense convolution with its weights packed in the order the kernel reads them, its bias, and
 /// what usually follows: y = activation(convolution(x) + bias + residual). NaN and infinity spread
 /// to the outputs whose window holds them, and to no others.
+///
+/// | type | input | output |
+/// |---|---|---|
+/// | float | float, blocked; up to kMaxPlanarChannels also planar | float, blocked or planar |
+/// | bfloat16 | bfloat16, blocked | bfloat16, blocked; float, blocked or planar |
+/// | bfloat16, up to kMaxPlanarChannels | float, planar, not rounded | bfloat16, blocked |
 class Convolution {
  public:
   /// `weight` is out_channels x in_channels x kernel x kernel, row by row; `bias` has out_channels
-  /// values or none.
+  /// values or none. `unit` is what a convolution of bfloat16 runs on.
   Convolution(const ConvolutionSpec& spec, std::span<const float> weight,
-              std::span<const float> bias);
+              std::span<const float> bias, BFloat16Unit unit = BestBFloat16Unit());
 
   const ConvolutionSpec& spec() const { return spec_; }
   Shape OutputShape(const Shape& input) const;
 
-  /// Runs on floats. `input` is kBlocked, or kPlanar with up to kMaxPlanarChannels; its halo must
-  /// be at least kernel / 2 and is overwritten with the padding. `output` is kBlocked or kPlanar
-  /// and must not overlap the input. `residual`, if not null, has the output's shape and layout and
-  /// may be the output itself. The same bits for any number of threads.
+  /// The input's halo must be at least kernel / 2 and is overwritten with the padding. `output`
+  /// must not overlap the input. `residual`, if not null, has the output's shape, layout and type
+  /// and may be the output itself; there is none where floats become bfloat16. The same bits for
+  /// any number of threads.
   void Run(const TensorView& input, const TensorView* residual, const TensorView& output,
            int threads) const;
 
  private:
+  // True where floats in planes become blocks of bfloat16.
+  bool is_bfloat16_stem() const {
+    return spec_.type == DataType::kBFloat16 && spec_.in_channels <= kMaxPlanarChannels;
+  }
+  void CheckTensors(const TensorView& input, const TensorView* residual,
+                    const TensorView& output) const;
+
   ConvolutionSpec spec_;
+  BFloat16Unit unit_;
   std::vector<int> groups_;  // blocks of output channels that are computed together
   AlignedVector<float> weight_;
+  AlignedVector<std::uint16_t> rounded_weight_;  // for `unit_`
   AlignedVector<float> bias_;
 };
 

@@ -1,7 +1,7 @@
 #include "nn/kernels/convolution_direct.h"
 
 #include <algorithm>
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 
@@ -67,18 +67,51 @@ struct Row {
   ptrdiff_t out_plane;
   ptrdiff_t residual_plane;
   Layout out_layout;
+  DataType out_type;
+  int first_lane;  // of the first channel in its block of the output
 };
+
+// Rounds to bfloat16, to nearest and ties to even; NaN becomes a quiet one, lest rounding carries
+// into its exponent.
+HWY_INLINE void StoreRounded(V value, std::uint16_t* to) {
+  const hn::RebindToUnsigned<D> du;
+  const hn::RebindToSigned<D> di;
+  const hn::Rebind<std::uint16_t, D> d16;
+  const auto bits = hn::BitCast(du, value);
+  const auto odd = hn::And(hn::ShiftRight<16>(bits), hn::Set(du, 1));
+  const auto rounded = hn::Add(bits, hn::Add(odd, hn::Set(du, 0x7fff)));
+  const auto quiet = hn::Or(bits, hn::Set(du, 0x400000));
+  const auto is_nan = hn::RebindMask(du, hn::IsNaN(value));
+  const auto chosen = hn::ShiftRight<16>(hn::IfThenElse(is_nan, quiet, rounded));
+  hn::StoreU(hn::DemoteTo(d16, hn::BitCast(di, chosen)), d16, to);
+}
 
 // Writes a tile, with what follows the convolution. `residual` is null if there is none.
 template <int kVectors, int kPixels>
 HWY_INLINE void StoreTile(const Row& row, V (&sum)[kVectors][kPixels], const float* residual,
-                          float* out) {
+                          void* out_pixels) {
   const D d;
   const V slope = hn::Set(d, row.slope);
   const auto finish = [&](V value) HWY_ATTR {
     // NaN fails the comparison and stays NaN.
     return hn::IfThenElse(hn::Gt(value, hn::Zero(d)), value, hn::Mul(value, slope));
   };
+  if (row.out_type == DataType::kBFloat16) {
+    constexpr int kOutBlock = BlockOf(DataType::kBFloat16);
+    HWY_UNROLL(16)
+    for (int v = 0; v < kVectors; ++v) {
+      const int channel = row.first_lane + v * kLanes;
+      std::uint16_t* to = static_cast<std::uint16_t*>(out_pixels) +
+                          channel / kOutBlock * row.out_plane + channel % kOutBlock;
+      const auto exists = hn::FirstN(d, std::max(0, row.out_channels - v * kLanes));
+      HWY_UNROLL(28)
+      for (int p = 0; p < kPixels; ++p) {
+        StoreRounded(hn::IfThenElseZero(exists, finish(sum[v][p])), to + p * kOutBlock);
+      }
+    }
+    return;
+  }
+  auto* out = static_cast<float*>(out_pixels);
   if (row.out_layout == Layout::kBlocked) {
     HWY_UNROLL(16)
     for (int v = 0; v < kVectors; ++v) {
@@ -117,7 +150,7 @@ HWY_INLINE void StoreTile(const Row& row, V (&sum)[kVectors][kPixels], const flo
 
 // `kInStep` is the distance of two pixels' inputs: the stride, in blocks if the input is blocked.
 template <int kBlocks, int kPixels, int kInStep>
-void ComputeTile(const Row& row, const float* in, const float* residual, float* out) {
+void ComputeTile(const Row& row, const float* in, const float* residual, void* out) {
   constexpr bool kPlanarInput = kInStep < kBlock;
   constexpr int kVectors = kBlocks * kVectorsPerBlock;
   const D d;
@@ -155,7 +188,7 @@ void ComputeTile(const Row& row, const float* in, const float* residual, float* 
   StoreTile<kVectors, kPixels>(row, sum, residual, out);
 }
 
-using TileFunction = void (*)(const Row&, const float*, const float*, float*);
+using TileFunction = void (*)(const Row&, const float*, const float*, void*);
 
 // The functions for tiles of 1, 2, ... pixels.
 template <int kBlocks, int kInStep, int... kIndex>
@@ -192,7 +225,8 @@ int PreferredBlocks() { return kMaxBlocks; }
 void RunDirectRows(const DirectConvolution& run, int first, int last) {
   const TensorView& output = run.output;
   const int in_block = run.input.layout == Layout::kBlocked ? kBlock : 1;
-  const int out_block = output.layout == Layout::kBlocked ? kBlock : 1;
+  const int out_block = output.layout == Layout::kBlocked ? BlockOf(output.type) : 1;
+  const auto out_pixel_bytes = static_cast<ptrdiff_t>(SizeOf(output.type)) * out_block;
   const int reach = run.kernel / 2;
   const float* weight = run.weight;
   const float* bias = run.bias;
@@ -211,7 +245,9 @@ void RunDirectRows(const DirectConvolution& run, int first, int last) {
                   std::min(blocks * kBlock, output.shape.channels - first_channel),
                   output.plane_stride,
                   run.residual.plane_stride,
-                  output.layout};
+                  output.layout,
+                  output.type,
+                  first_channel % out_block};
     // Tiles of equal width, give or take a pixel: a remainder of few pixels would have too few
     // sums on their way.
     const int width = output.shape.width;
@@ -219,6 +255,9 @@ void RunDirectRows(const DirectConvolution& run, int first, int last) {
     const int tiles = (width + max_pixels - 1) / max_pixels;
     for (int y = first; y < last; ++y) {
       const float* in = run.input.row<float>(0, y * run.stride - reach);
+      std::byte* out = static_cast<std::byte*>(output.data) +
+                       (plane * output.plane_stride + y * output.row_stride) *
+                           static_cast<ptrdiff_t>(SizeOf(output.type));
       for (int t = 0; t < tiles; ++t) {
         const int x = t * width / tiles;
         const int end = (t + 1) * width / tiles;
@@ -226,7 +265,7 @@ void RunDirectRows(const DirectConvolution& run, int first, int last) {
                                run.residual.data == nullptr
                                    ? nullptr
                                    : run.residual.row<float>(plane, y) + x * out_block,
-                               output.row<float>(plane, y) + x * out_block);
+                               out + x * out_pixel_bytes);
       }
     }
     weight += ptrdiff_t{run.kernel} * run.kernel * run.input.shape.channels * blocks * kBlock;

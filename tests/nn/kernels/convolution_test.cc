@@ -34,9 +34,13 @@ struct Case {
   int width = 1;
   Layout input_layout = Layout::kBlocked;
   Layout output_layout = Layout::kBlocked;
+  DataType output_type = DataType::kFloat;
   bool with_bias = true;
   bool with_residual = false;
 
+  bool rounds() const {
+    return spec.type == DataType::kBFloat16 && input_layout == Layout::kBlocked;
+  }
   Shape input_shape() const { return {spec.in_channels, height, width}; }
   Shape output_shape() const {
     return {spec.out_channels, (height + spec.stride - 1) / spec.stride,
@@ -48,10 +52,23 @@ struct Case {
         << spec.stride << " padding " << static_cast<int>(spec.padding) << " slope " << spec.slope
         << ' ' << height << 'x' << width << (input_layout == Layout::kPlanar ? " from planar" : "")
         << (output_layout == Layout::kPlanar ? " to planar" : "") << (with_bias ? " bias" : "")
-        << (with_residual ? " residual" : "");
+        << (with_residual ? " residual" : "")
+        << (spec.type == DataType::kBFloat16 ? " of bfloat16" : "")
+        << (output_type == DataType::kBFloat16 ? " to bfloat16" : "");
     return out.str();
   }
 };
+
+std::vector<float> Rounded(std::vector<float> values) {
+  const Shape shape{1, 1, static_cast<int>(values.size())};
+  TensorMemory plain({shape, Layout::kPlanar, DataType::kFloat, 0});
+  TensorMemory rounded({shape, Layout::kPlanar, DataType::kBFloat16, 0});
+  std::copy(values.begin(), values.end(), plain.view.row<float>(0, 0));
+  Reorder(plain.view, rounded.view);
+  Reorder(rounded.view, plain.view);
+  std::copy_n(plain.view.row<float>(0, 0), values.size(), values.begin());
+  return values;
+}
 
 struct Data {
   explicit Data(const Case& c)
@@ -62,7 +79,13 @@ struct Data {
         input(Random(static_cast<std::size_t>(c.spec.in_channels) * c.height * c.width, 3)),
         residual(Random(static_cast<std::size_t>(c.spec.out_channels) * c.output_shape().height *
                             c.output_shape().width,
-                        4)) {}
+                        4)) {
+    if (c.rounds()) {
+      weight = Rounded(weight);
+      input = Rounded(input);
+    }
+    if (c.output_type == DataType::kBFloat16) residual = Rounded(residual);
+  }
   std::vector<float> weight, bias, input, residual;
 };
 
@@ -78,23 +101,29 @@ void Fill(const TensorView& tensor, const std::vector<float>& values) {
 }
 
 // The output, channel by channel, behind whatever the blocks are filled up with.
-std::vector<float> Compute(const Case& c, const Data& data, int threads) {
-  const Convolution convolution(c.spec, data.weight, data.bias);
+std::vector<float> Compute(const Case& c, const Data& data, int threads,
+                           BFloat16Unit unit = BestBFloat16Unit()) {
+  const Convolution convolution(c.spec, data.weight, data.bias, unit);
   // One pixel more than needed, so that the strides differ from the smallest possible.
-  TensorMemory input({c.input_shape(), c.input_layout, DataType::kFloat, c.spec.kernel / 2 + 1});
-  TensorMemory output({c.output_shape(), c.output_layout, DataType::kFloat, 1});
-  TensorMemory residual({c.output_shape(), c.output_layout, DataType::kFloat, 0});
+  TensorMemory input({c.input_shape(), c.input_layout,
+                      c.rounds() ? DataType::kBFloat16 : DataType::kFloat, c.spec.kernel / 2 + 1});
+  TensorMemory output({c.output_shape(), c.output_layout, c.output_type, 1});
+  TensorMemory residual({c.output_shape(), c.output_layout, c.output_type, 0});
   EXPECT_EQ(convolution.OutputShape(c.input_shape()), c.output_shape());
   Fill(input.view, data.input);
   Fill(residual.view, data.residual);
   convolution.Run(input.view, c.with_residual ? &residual.view : nullptr, output.view, threads);
+  TensorView whole = output.view;
+  if (c.output_layout == Layout::kBlocked) {
+    whole.shape.channels = whole.planes() * BlockOf(c.output_type);
+  }
+  TensorMemory planar({whole.shape, Layout::kPlanar, DataType::kFloat, 0});
+  Reorder(whole, planar.view);
   std::vector<float> values;
-  const int block = c.output_layout == Layout::kBlocked ? BlockOf(DataType::kFloat) : 1;
-  for (int o = 0; o < output.view.planes() * block; ++o) {
-    for (int y = 0; y < c.output_shape().height; ++y) {
-      for (int x = 0; x < c.output_shape().width; ++x) {
-        values.push_back(At(output.view, o, y, x));
-      }
+  for (int o = 0; o < whole.shape.channels; ++o) {
+    for (int y = 0; y < whole.shape.height; ++y) {
+      const float* row = planar.view.row<float>(o, y);
+      values.insert(values.end(), row, row + whole.shape.width);
     }
   }
   return values;
@@ -111,7 +140,7 @@ struct Sum {
 };
 
 Sum Expected(const Case& c, const Data& data, int o, int y, int x) {
-  const auto& [in_channels, out_channels, kernel, stride, padding, slope] = c.spec;
+  const auto& [in_channels, out_channels, kernel, stride, padding, slope, type] = c.spec;
   const int reach = kernel / 2;
   Sum sum;
   for (int i = 0; i < in_channels; ++i) {
@@ -144,10 +173,13 @@ Sum Expected(const Case& c, const Data& data, int o, int y, int x) {
 }
 
 // A sum of n rounded products in any order is off by at most about n units of rounding of the sum
-// of the magnitudes; the activation rounds once more.
+// of the magnitudes; the activation rounds once more, and bfloat16 has 8 bits.
 double Tolerance(const Case& c, const Sum& sum) {
   const int terms = c.spec.in_channels * c.spec.kernel * c.spec.kernel + 3;
-  return terms * 0.5 * std::numeric_limits<float>::epsilon() * sum.norm;
+  const double tolerance = terms * 0.5 * std::numeric_limits<float>::epsilon() * sum.norm;
+  if (c.output_type == DataType::kFloat) return tolerance;
+  constexpr double kRounding = 1.0 / 256;
+  return tolerance + kRounding * (std::abs(sum.value) + tolerance);
 }
 
 // Looks for the largest error over what is tolerated.
@@ -160,8 +192,8 @@ void ExpectRight(const Case& c) {
       for (int x = 0; x < out.width; ++x) expected.push_back(Expected(c, data, o, y, x));
     }
   }
-  ForEachDispatchTarget([&] {
-    const std::vector<float> values = Compute(c, data, 1);
+  const auto check = [&](BFloat16Unit unit) {
+    const std::vector<float> values = Compute(c, data, 1, unit);
     double worst = 0;
     std::size_t at = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -179,10 +211,19 @@ void ExpectRight(const Case& c) {
     for (std::size_t i = expected.size(); i < values.size(); ++i) {
       ASSERT_EQ(values[i], 0) << c.text() << ", in what fills up the last block";
     }
-    const std::vector<float> again = Compute(c, data, 2);
+    const std::vector<float> again = Compute(c, data, 2, unit);
     EXPECT_EQ(std::memcmp(values.data(), again.data(), values.size() * sizeof(float)), 0)
         << c.text() << ": two threads give other bits than one";
-  });
+  };
+  if (!c.rounds()) {
+    ForEachDispatchTarget([&] { check(BestBFloat16Unit()); });
+    return;
+  }
+  for (const BFloat16Unit unit : {BFloat16Unit::kAvx512, BFloat16Unit::kAmx}) {
+    if (unit > BestBFloat16Unit()) continue;
+    SCOPED_TRACE(unit == BFloat16Unit::kAmx ? "AMX" : "AVX-512");
+    check(unit);
+  }
 }
 
 TEST(Convolution, IsThePlainSumForEveryKernelStrideAndPadding) {
@@ -256,13 +297,8 @@ TEST(Convolution, ActivatesWithAnySlope) {
 }
 
 TEST(Convolution, AddsAResidualInPlace) {
-  const Case c{{32, 32, 3, 1, Padding::kWrapReplicate, 0.1f},
-               6,
-               31,
-               Layout::kBlocked,
-               Layout::kBlocked,
-               true,
-               true};
+  Case c{{32, 32, 3, 1, Padding::kWrapReplicate, 0.1f}, 6, 31};
+  c.with_residual = true;
   const Data data(c);
   const std::vector<float> expected = Compute(c, data, 1);
   const Convolution convolution(c.spec, data.weight, data.bias);
@@ -328,6 +364,80 @@ TEST(Convolution, CarriesNanAndInfinityToTheirWindowsOnly) {
   }
 }
 
+class BFloat16Convolution : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (BestBFloat16Unit() == BFloat16Unit::kNone) {
+      GTEST_SKIP() << "this processor has no unit for bfloat16";
+    }
+  }
+  // To bfloat16, and to floats in blocks and planes.
+  static void ExpectRightInAllFormats(Case c) {
+    c.spec.type = DataType::kBFloat16;
+    ExpectRight(c);
+    c.output_layout = Layout::kPlanar;
+    ExpectRight(c);
+    c.output_layout = Layout::kBlocked;
+    c.output_type = DataType::kBFloat16;
+    ExpectRight(c);
+  }
+};
+
+TEST_F(BFloat16Convolution, IsThePlainSumOfRoundedNumbers) {
+  for (const int kernel : {1, 3, 5}) {
+    for (const int stride : {1, 2}) {
+      for (const Padding padding : {Padding::kZero, Padding::kWrapReplicate}) {
+        Case c{{40, 49, kernel, stride, padding, 0.1f}, 5, 38};
+        ExpectRightInAllFormats(c);
+        c.with_residual = true;
+        ExpectRightInAllFormats(c);
+      }
+    }
+  }
+}
+
+TEST_F(BFloat16Convolution, IsThePlainSumForEveryWidth) {
+  for (int width = 1; width <= 70; ++width) {
+    ExpectRightInAllFormats({{33, 38, 3, 1, Padding::kWrapReplicate, 0}, 2, width});
+  }
+}
+
+TEST_F(BFloat16Convolution, IsThePlainSumForEveryNumberOfChannels) {
+  for (const int in : {9, 31, 32, 64, 80}) {
+    for (const int out : {1, 16, 17, 32, 38, 64, 97}) {
+      ExpectRightInAllFormats({{in, out, 3}, 2, 20});
+      ExpectRightInAllFormats({{in, out, 1}, 1, 50});
+    }
+  }
+}
+
+TEST_F(BFloat16Convolution, TakesPicturesAsFloats) {
+  for (const int in : {1, 6, 8}) {
+    for (const int out : {16, 32, 80, 97}) {
+      Case c{{in, out, 3, 2, Padding::kWrapReplicate, 0.1f, DataType::kBFloat16}, 5, 45};
+      c.input_layout = Layout::kPlanar;
+      c.output_type = DataType::kBFloat16;
+      ExpectRight(c);
+    }
+  }
+}
+
+TEST_F(BFloat16Convolution, KeepsTheEndOfTheLastBlockZeroBesideInfinity) {
+  for (const BFloat16Unit unit : {BFloat16Unit::kAvx512, BFloat16Unit::kAmx}) {
+    if (unit > BestBFloat16Unit()) continue;
+    Case c{{32, 20, 3, 1, Padding::kZero, 1, DataType::kBFloat16}, 3, 3};
+    for (const DataType type : {DataType::kFloat, DataType::kBFloat16}) {
+      c.output_type = type;
+      Data data(c);
+      std::fill(data.input.begin(), data.input.end(), std::numeric_limits<float>::infinity());
+      const std::vector<float> values = Compute(c, data, 1, unit);
+      ASSERT_EQ(values.size(), 32u * 9);
+      for (std::size_t i = 0; i < 20 * 9; ++i) ASSERT_FALSE(std::isfinite(values[i])) << i;
+      for (std::size_t i = 20 * 9; i < values.size(); ++i) ASSERT_EQ(values[i], 0) << i;
+    }
+  }
+}
+
 TEST(Convolution, RefusesWhatDoesNotFit) {
   const std::vector<float> weight(16 * 16 * 9);
   EXPECT_THROW(Convolution({16, 16, 2}, weight, {}), ContractError);
@@ -343,6 +453,11 @@ TEST(Convolution, RefusesWhatDoesNotFit) {
   EXPECT_THROW(convolution.Run(planar.view, nullptr, narrow.view, 1), ContractError);
   EXPECT_THROW(convolution.Run(input.view, nullptr, small.view, 1), ContractError);
   EXPECT_THROW(convolution.Run(input.view, &small.view, narrow.view, 1), ContractError);
+  TensorMemory rounded({{16, 4, 4}, Layout::kBlocked, DataType::kBFloat16, 1});
+  EXPECT_THROW(convolution.Run(rounded.view, nullptr, narrow.view, 1), ContractError);
+  EXPECT_THROW(convolution.Run(input.view, nullptr, rounded.view, 1), ContractError);
+  const ConvolutionSpec of_bfloat16{16, 16, 3, 1, Padding::kZero, 1, DataType::kBFloat16};
+  EXPECT_THROW(Convolution(of_bfloat16, weight, {}, BFloat16Unit::kNone), ContractError);
 }
 
 }  // namespace
