@@ -1,11 +1,11 @@
 """Writes what the tests of `nn` compare with: networks and every tensor of their runs.
 
-    python3 -m weights_tools.dump_reference          # into tests/nn/data, the same bytes every time
-    python3 -m weights_tools.dump_reference --full --out DIR   # networks too large to be kept there
+    python3 -m weights_tools.dump_reference                   # into tests/nn/data
+    python3 -m weights_tools.dump_reference --full --out DIR  # networks too large to be kept
 
 Each file is a network file whose group /tensors holds inputs and results, of large tensors the first
 channels. They are computed in double precision and without oneDNN from the weights as they are
-stored, then rounded.
+stored, then rounded: the same bytes every time.
 """
 
 import argparse

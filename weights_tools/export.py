@@ -1,4 +1,4 @@
-"""Writes a network with seeded weights to a file: python3 -m weights_tools.export --help"""
+"""Writes a network to a file: python3 -m weights_tools.export --help"""
 
 import argparse
 import dataclasses
@@ -7,16 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import torch
 
-from weights_tools import network_file, networks
+from weights_tools import network_file
 from weights_tools.network import Network
-
-NETWORKS = {
-    "unguided": networks.unguided,
-    "encoder_decoder": networks.encoder_decoder,
-    "multi_stream": networks.multi_stream,
-    "depth_completion": networks.depth_completion,
-}
+from weights_tools.networks import NETWORKS
 
 
 def export(
@@ -31,15 +26,31 @@ def export(
     network_file.write(path, graph, weights, dtype)
 
 
+def trained(checkpoint: Path) -> tuple[Network, dict[str, Any]]:
+    """The network of a checkpoint of weights_tools.training.train, and its provenance."""
+    state = torch.load(checkpoint, map_location="cpu")
+    network = Network(NETWORKS[state["settings"]["network"]]())
+    network.load_state_dict(state["network"])
+    return network, {"steps": state["step"], **state["settings"], "shards": state["shards"]}
+
+
+def untrained(name: str, seed: int) -> tuple[Network, dict[str, Any]]:
+    return Network(NETWORKS[name](), seed), {"network": name, "steps": 0, "seed": seed}
+
+
 def main() -> None:
-    parser = argparse.ArgumentParser(description="Writes a network with untrained weights.")
-    parser.add_argument("network", choices=NETWORKS)
+    parser = argparse.ArgumentParser(description="Writes a network to a file.")
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("--checkpoint", type=Path, help="of weights_tools.training.train")
+    what.add_argument("--untrained", choices=NETWORKS, help="with the weights of a seed")
     parser.add_argument("out", type=Path, help="HDF5 file to write")
-    parser.add_argument("--seed", type=int, default=0, help="of the weights (default: 0)")
+    parser.add_argument("--seed", type=int, default=0, help="of untrained weights (default: 0)")
     parser.add_argument("--half", action="store_true", help="store weights as 16-bit floats")
     arguments = parser.parse_args()
-    network = Network(NETWORKS[arguments.network](), arguments.seed)
-    provenance = {"trained_on": "nothing", "seed": arguments.seed}
+    if arguments.checkpoint:
+        network, provenance = trained(arguments.checkpoint)
+    else:
+        network, provenance = untrained(arguments.untrained, arguments.seed)
     export(arguments.out, network, provenance, np.float16 if arguments.half else np.float32)
 
 

@@ -3,7 +3,7 @@
 Widths are parameters so that tests can run small copies; the defaults are the networks themselves.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from weights_tools.builder import Builder, Description, Layer, Pair, Symbol
 
@@ -200,3 +200,11 @@ def _decode(b: Builder, encoded: Sequence[Symbol]) -> Symbol:
         x = b.pointwise("add", f"decoder{i}.sum", skip, up)
         x = b.convolution(f"decoder{i}", x, x.channels, slope=_LEAK)
     return x
+
+
+NETWORKS: dict[str, Callable[[], Description]] = {
+    "unguided": unguided,
+    "encoder_decoder": encoder_decoder,
+    "multi_stream": multi_stream,
+    "depth_completion": depth_completion,
+}

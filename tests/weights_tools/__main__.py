@@ -1,6 +1,6 @@
 """Runs the tests of weights_tools: python3 tests/weights_tools [NAME ...], in any folder.
 
-Exits with 77, which CTest counts as skipped, where PyTorch or h5py is not installed.
+Exits with 77, which CTest counts as skipped, where PyTorch or another package is missing.
 """
 
 import importlib.util
@@ -10,7 +10,8 @@ from pathlib import Path
 
 SKIPPED = 77
 
-missing = [name for name in ("torch", "h5py", "numpy") if not importlib.util.find_spec(name)]
+PACKAGES = {"torch": "torch", "h5py": "h5py", "numpy": "numpy", "cv2": "opencv", "yaml": "yaml"}
+missing = [name for module, name in PACKAGES.items() if not importlib.util.find_spec(module)]
 if missing:
     print(f"skipped: needs {', '.join(f'python3-{name}' for name in missing)}")
     sys.exit(SKIPPED)

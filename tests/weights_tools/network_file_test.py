@@ -95,8 +95,9 @@ class NetworkFileTest(unittest.TestCase):
         np.testing.assert_array_equal(tensors["other"]["x"], 2 * x)
 
     def test_command_line_writes_the_network_of_the_seed(self) -> None:
-        command = [sys.executable, "-m", "weights_tools.export", "unguided", str(self.path)]
-        subprocess.run([*command, "--seed", "5"], cwd=SOURCE, check=True)
+        command = [sys.executable, "-m", "weights_tools.export", str(self.path)]
+        command += ["--untrained", "unguided", "--seed", "5"]
+        subprocess.run(command, cwd=SOURCE, check=True)
         expected = Network(networks.unguided(), 5).weights()
         for name, values in network_file.read(self.path).weights.items():
             np.testing.assert_array_equal(values, expected[name].detach().numpy())

@@ -1,0 +1,64 @@
+"""A drive that a renderer could have written, with ranges in closed form."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from weights_tools.training.shards import Frame
+from weights_tools.training.sphere import bearings
+
+HEIGHT, WIDTH = 64, 128
+CAMERA_HEIGHT = 1.5  # metres
+WALL = 8.0  # metres to the left and right
+
+
+def street() -> np.ndarray:
+    """Range over a road between two long walls 6 m high, under the sky."""
+    u, v = np.meshgrid(np.arange(WIDTH) + 0.5, np.arange(HEIGHT) + 0.5)
+    _, right, up = np.moveaxis(bearings(u, v, HEIGHT, WIDTH), -1, 0)
+    with np.errstate(divide="ignore"):
+        to_wall = WALL / np.abs(right)
+        to_ground = np.where(up < 0, CAMERA_HEIGHT / -up, np.inf)
+    nearest = np.minimum(to_wall, to_ground)
+    over_the_wall = (up > 0) & (to_wall * up > 6 - CAMERA_HEIGHT)
+    return np.where(over_the_wall | (nearest > 200), 0, nearest).astype(np.float32)
+
+
+def frame(seed: int = 0) -> Frame:
+    """With features everywhere below the sky, travelling ahead."""
+    random = np.random.RandomState(seed)
+    count = 4000
+    features = np.stack(
+        [
+            random.uniform(0, WIDTH, count),
+            random.uniform(0, HEIGHT, count),
+            np.full(count, 2 * np.pi / 1024),
+        ],
+        axis=1,
+    ).astype(np.float32)
+    rgb = random.randint(0, 256, (HEIGHT, WIDTH, 3)).astype(np.uint8)
+    travel = np.array([-1.0, 0.0, 0.0], np.float32)
+    return Frame(rgb, street(), np.zeros((HEIGHT, WIDTH), bool), features, travel, CAMERA_HEIGHT)
+
+
+def write_drive(folder: Path, frames: int = 3, depth_every: int = 2) -> None:
+    """The camera drives along world +x, one metre from frame to frame, looking to world +y."""
+    for name in ("rgb", "depth", "moving"):
+        (folder / name).mkdir()
+    (folder / "sequence.yaml").write_text(f"camera_height: {CAMERA_HEIGHT}  # metres\n")
+    # x right = world +x, y down = world -z, z forward = world +y: a quarter turn about x.
+    half = np.sqrt(0.5)
+    lines = [f"{i} {i} 0 0 {-half} 0 0 {half}\n" for i in range(frames)]
+    (folder / "groundtruth.txt").write_text("# a comment\n" + "".join(lines))
+    random = np.random.RandomState(0)
+    blocks = random.randint(0, 256, (HEIGHT // 8, WIDTH // 8, 3)).astype(np.uint8)
+    for i in range(frames):
+        picture = np.kron(blocks, np.ones((8, 8, 1), np.uint8))
+        cv2.imwrite(str(folder / f"rgb/{i:06}.jpg"), picture)
+        if i % depth_every == 0:
+            metres = np.rint(street() * 256).astype(np.uint16)
+            cv2.imwrite(str(folder / f"depth/{i:06}.png"), metres)
+            moving = np.zeros((HEIGHT, WIDTH), np.uint8)
+            moving[40:48, 100:128] = 255
+            cv2.imwrite(str(folder / f"moving/{i:06}.png"), moving)

@@ -1,0 +1,276 @@
+"""From drives to samples: what SLAM would know, and nothing that is not there."""
+
+import tempfile
+import unittest
+from dataclasses import fields, replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from tests.weights_tools import drives
+from weights_tools.training import batches, make_shard, shards
+from weights_tools.training.sparse_points import NoiseModel, simulate
+from weights_tools.training.sphere import bearings, row_weights
+
+EXACT = NoiseModel(
+    baseline=(1e6, 1e6),
+    estimate_error=0,
+    outliers=0,
+    edge_outliers=0,
+    points=(1000, 1000),
+)
+
+
+class SphereTest(unittest.TestCase):
+    def test_axes_are_those_of_the_camera(self) -> None:
+        forward, right, up = (-1, 0, 0), (0, 1, 0), (0, 0, 1)
+        for (u, v), expected in (((50, 25), forward), ((75, 25), right), ((50, 0), up)):
+            bearing = bearings(np.array(u), np.array(v), 50, 100)
+            np.testing.assert_allclose(bearing, expected, atol=1e-15)
+        seam = bearings(np.array([0.0, 100.0]), np.array([25.0, 25.0]), 50, 100)
+        np.testing.assert_allclose(seam[0], seam[1], atol=1e-15)
+
+    def test_row_weights_are_solid_angles(self) -> None:
+        weights = row_weights(90)
+        self.assertAlmostEqual(weights.mean(), 1)
+        bands = np.sin(np.radians(np.arange(90, -92, -2)))  # between rows
+        np.testing.assert_allclose(weights, (bands[:-1] - bands[1:]) * 45, rtol=1e-3)
+
+
+class ShardTest(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def test_frames_survive_packing(self) -> None:
+        moving = np.zeros((drives.HEIGHT, drives.WIDTH), bool)
+        moving[3, 5:9] = True
+        first = replace(drives.frame(0), moving=moving)
+        second = drives.frame(1)
+        second = replace(second, features=second.features[:7], camera_height=2.0)
+        path = self.folder / "shard.npz"
+        shards.write(path, shards.pack([first, second]))
+        shard = shards.read(path)
+        self.assertEqual(len(shard), 2)
+        for i, expected in enumerate((first, second)):
+            frame = shard.frame(i)
+            for field in fields(frame):
+                values = getattr(frame, field.name)
+                tolerance = 0.5 / 256 + 1e-6 if field.name == "range" else 0
+                np.testing.assert_allclose(values, getattr(expected, field.name), atol=tolerance)
+
+    def test_refuses_other_files(self) -> None:
+        path = self.folder / "other.npz"
+        np.savez(path, rgb=np.zeros(1))
+        with self.assertRaisesRegex(ValueError, "is no shard of frames: it lacks"):
+            shards.read(path)
+
+    def test_a_drive_is_read_as_it_was_rendered(self) -> None:
+        drives.write_drive(self.folder)
+        frames = make_shard.read_drive(self.folder)
+        self.assertEqual(len(frames), 2)  # the second frame has no depth
+        for frame in frames:
+            np.testing.assert_allclose(frame.range, drives.street(), atol=0.5 / 256)
+            self.assertEqual(frame.camera_height, drives.CAMERA_HEIGHT)
+            self.assertEqual(frame.moving.sum(), 8 * 28)
+            self.assertTrue(frame.moving[40, 127])
+            # It drives to its own right.
+            np.testing.assert_allclose(frame.travel, [0, 1, 0], atol=1e-6)
+        picture = cv2.imread(str(self.folder / "rgb/000000.jpg"))
+        np.testing.assert_array_equal(frames[0].rgb, picture[:, :, ::-1])
+
+    def test_halving_keeps_ranges_that_exist(self) -> None:
+        drives.write_drive(self.folder)
+        (frame, _), street = make_shard.read_drive(self.folder, 1), drives.street()
+        self.assertEqual(frame.range.shape, (32, 64))
+        self.assertEqual(frame.rgb.shape, (32, 64, 3))
+        for v, u in np.ndindex(32, 64):
+            square = np.sort(street[2 * v : 2 * v + 2, 2 * u : 2 * u + 2], axis=None)
+            square[square == 0] = np.inf
+            expected = np.sort(square)[1]
+            expected = 0 if np.isinf(expected) else expected
+            self.assertAlmostEqual(frame.range[v, u], expected, delta=0.5 / 256 + 1e-6)
+
+    def test_refuses_drives_without_depth_or_masks(self) -> None:
+        drives.write_drive(self.folder)
+        (self.folder / "moving/000002.png").unlink()
+        with self.assertRaisesRegex(ValueError, "000002.png: cannot be read; render the drive"):
+            make_shard.read_drive(self.folder)
+        for path in (self.folder / "depth").iterdir():
+            path.unlink()
+        with self.assertRaisesRegex(ValueError, "has no depth; render it with"):
+            make_shard.read_drive(self.folder)
+
+    def test_features_are_found_on_both_sides_of_the_seam_once(self) -> None:
+        noise = np.random.RandomState(0).randint(0, 256, (60, 80)).astype(np.uint8)
+        picture = np.full((256, 512, 3), 128, np.uint8)
+        blurred = cv2.normalize(cv2.GaussianBlur(noise, (0, 0), 2), None, 0, 255, cv2.NORM_MINMAX)
+        picture[100:160, 180:260] = blurred[:, :, None]
+        moved = np.roll(picture, 512 - 220, axis=1)  # the texture is cut in two
+        expected, found = make_shard.detect(picture), make_shard.detect(moved)
+        # Coarser levels are sampled at other places; about as many corners are found there.
+        self.assertAlmostEqual(len(found) / len(expected), 1, delta=0.2)
+        expected, found = (f[f[:, 2] < 1.1 * 2 * np.pi / 512] for f in (expected, found))
+        expected[:, 0] = (expected[:, 0] - 220) % 512
+        self.assertGreater(len(expected), 50)
+        np.testing.assert_allclose(*(f[np.lexsort(f.T)] for f in (expected, found)), atol=1e-3)
+
+    def test_directions_are_in_the_frame_of_the_camera(self) -> None:
+        random = np.random.RandomState(0)
+        quaternion = random.standard_normal(4)
+        quaternion /= np.linalg.norm(quaternion)
+        x, y, z, w = quaternion
+        rotation = np.array(  # world_from_camera
+            [
+                [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+            ]
+        )
+        step = random.standard_normal(3)
+        right, down, forward = rotation.T @ step / np.linalg.norm(step)
+        quaternions = np.tile(quaternion, (4, 1))
+        found = make_shard.travel_directions(np.outer(np.arange(4), step), quaternions)
+        np.testing.assert_allclose(found, np.tile([-forward, right, -down], (4, 1)), atol=1e-12)
+        standing = make_shard.travel_directions(np.zeros((4, 3)), quaternions)
+        self.assertFalse(standing.any())
+
+
+class SparsePointsTest(unittest.TestCase):
+    def errors(self, model: NoiseModel) -> tuple[np.ndarray, ...]:
+        """Relative errors, confidences and true ranges of many points."""
+        frame, collected = drives.frame(), []
+        for seed in range(20):
+            points = simulate(frame, np.random.RandomState(seed), model)
+            known = points.depth > 0
+            measured, truth = points.depth[known] / points.scale, frame.range[known]
+            collected.append((measured / truth - 1, points.confidence[known], truth))
+        return tuple(np.concatenate(parts) for parts in zip(*collected))
+
+    def test_without_noise_points_have_the_true_range_in_the_unit_of_the_map(self) -> None:
+        error, confidence, _ = self.errors(EXACT)
+        # A baseline of a million metres leaves the noise of the corner alone.
+        self.assertLess(np.abs(error).max(), 0.05)
+        self.assertGreater(confidence.min(), 0.98)
+
+    def test_the_scale_is_that_of_the_whole_map(self) -> None:
+        scales = {simulate(drives.frame(), np.random.RandomState(i), EXACT).scale for i in range(9)}
+        self.assertEqual(len(scales), 9)
+        self.assertTrue(0.05 <= min(scales) < 0.5 and 2 < max(scales) <= 20)
+
+    def test_errors_grow_with_range_and_confidence_tells_them(self) -> None:
+        model = NoiseModel(outliers=0, edge_outliers=0)
+        error, confidence, truth = self.errors(model)
+        error = np.abs(error)
+        near, far = truth < 4, truth > 12
+        self.assertGreater(np.median(error[far]), 2 * np.median(error[near]))
+        self.assertLess(np.median(confidence[far]), np.median(confidence[near]))
+        sure, unsure = confidence > 0.8, confidence < 0.4
+        self.assertGreater(np.median(error[unsure]), 3 * np.median(error[sure]))
+        # c = 1 / (1 + (e / 0.1)^2): the error that the confidence claims is the error there is.
+        claimed = 0.1 * np.sqrt(1 / confidence[sure] - 1)
+        self.assertAlmostEqual(np.median(error[sure] / claimed), 0.67, delta=0.1)
+
+    def test_there_is_no_parallax_along_the_way(self) -> None:
+        model = NoiseModel(outliers=0, edge_outliers=0, points=(2000, 2000))
+        points = simulate(drives.frame(), np.random.RandomState(0), model)
+        v, u = np.nonzero(points.depth)
+        ahead = np.abs(bearings(u + 0.5, v + 0.5, drives.HEIGHT, drives.WIDTH)[:, 0])
+        self.assertGreater(ahead.max(), 0.9)
+        self.assertGreater(
+            np.median(points.confidence[v, u][ahead < 0.5]),
+            2 * np.median(points.confidence[v, u][ahead > 0.95]),
+        )
+
+    def test_points_are_on_surfaces_and_as_many_as_asked_for(self) -> None:
+        model = replace(NoiseModel(), points=(300, 300))
+        for seed in range(5):
+            points = simulate(drives.frame(), np.random.RandomState(seed), model)
+            known = points.depth > 0
+            self.assertTrue(200 < known.sum() <= 300)
+            self.assertFalse((known & (drives.street() == 0)).any())
+            self.assertTrue(((points.confidence > 0) == known).all())
+            self.assertLessEqual(points.confidence.max(), 1)
+
+    def test_some_points_are_wrong(self) -> None:
+        error, _, _ = self.errors(replace(EXACT, outliers=0.2))
+        self.assertAlmostEqual((np.abs(error) > 0.06).mean(), 0.2 * 0.95, delta=0.03)
+
+    def test_few_points_move_and_those_are_wrong(self) -> None:
+        frame = drives.frame()
+        moving = np.ones_like(frame.moving)
+        moving[:, : drives.WIDTH // 2] = False
+        model = replace(EXACT, points=(9999, 9999))
+        points = simulate(replace(frame, moving=moving), np.random.RandomState(0), model)
+        known = points.depth > 0
+        self.assertLess((known & moving).sum(), 0.5 * (known & ~moving).sum())
+        error = np.abs(points.depth[known] / points.scale / frame.range[known] - 1)
+        self.assertGreater(np.median(error[moving[known]]), 0.2)
+        self.assertLess(np.median(error[~moving[known]]), 0.01)
+
+    def test_a_camera_that_stands_or_sees_nothing_gives_points_or_none(self) -> None:
+        frame = replace(drives.frame(), travel=np.zeros(3, np.float32))
+        self.assertGreater((simulate(frame, np.random.RandomState(0)).depth > 0).sum(), 50)
+        for empty in (
+            replace(frame, features=frame.features[:0]),
+            replace(frame, range=np.zeros_like(frame.range)),
+        ):
+            self.assertFalse(simulate(empty, np.random.RandomState(0)).depth.any())
+
+
+class BatchTest(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        paths = []
+        for i, count in enumerate((2, 1)):
+            paths.append(Path(folder.name) / f"{i}.npz")
+            frames = [replace(drives.frame(j), camera_height=1 + i + j) for j in range(count)]
+            shards.write(paths[-1], shards.pack(frames))
+        self.frames = batches.Frames(paths)
+
+    def test_frames_of_all_shards_are_counted_through(self) -> None:
+        self.assertEqual(len(self.frames), 3)
+        self.assertEqual([self.frames[i].camera_height for i in range(3)], [1, 2, 2])
+        with self.assertRaisesRegex(ValueError, "no shards"):
+            batches.Frames([])
+
+    def test_a_step_has_its_batch_and_another_step_another(self) -> None:
+        first, same, other = (batches.draw(self.frames, 5, i, 2, EXACT) for i in (7, 7, 8))
+        for name, values in first.inputs.items():
+            self.assertEqual(values.shape, (2, 3 if name == "image" else 1, 64, 128))
+            self.assertTrue((values == same.inputs[name]).all())
+            self.assertFalse((values == other.inputs[name]).all())
+        self.assertTrue((first.truth == same.truth).all())
+
+    def test_points_stay_on_what_they_measure_when_pictures_turn(self) -> None:
+        batch = batches.draw(self.frames, 0, 0, 8, EXACT)
+        known = batch.inputs["depth"] > 0
+        measured = (batch.inputs["depth"] / batch.scale)[known]
+        error = (measured / batch.truth[known] - 1).abs()
+        self.assertGreater(known.sum(), 4000)
+        self.assertLess(error.max(), 0.05)
+
+    def test_pictures_turn_with_their_depth(self) -> None:
+        frame = drives.frame()
+        # Grey says how far it is.
+        grey = np.where(frame.range > 0, np.clip(20 * frame.range, 1, 255), 0).astype(np.uint8)
+        frame = replace(frame, rgb=np.repeat(grey[:, :, None], 3, axis=2))
+        changed = 0
+        for seed in range(8):
+            random = np.random.RandomState(seed)
+            points = simulate(frame, random, EXACT)
+            sample = batches.augment(frame, points, random)
+            brightness = np.corrcoef(
+                sample.image.mean(axis=2).ravel(), np.minimum(sample.truth, 12).ravel()
+            )[0, 1]
+            self.assertGreater(brightness, 0.8)
+            self.assertTrue(0 <= sample.image.min() and sample.image.max() <= 1)
+            changed += not np.array_equal(sample.truth, frame.range)
+        self.assertGreaterEqual(changed, 7)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,61 @@
+"""What training makes small. Errors are of the logarithm of depth, weighted by solid angle."""
+
+from collections.abc import Mapping
+
+import torch
+from torch import Tensor
+
+from weights_tools.network import Network
+from weights_tools.training.batches import Batch
+from weights_tools.training.sphere import row_weights
+
+# Shares of the terms. Depth is what matters; the others mostly train parts of their own.
+SHARES = {"depth": 1.0, "confidence": 0.1, "propagated": 0.2, "metric": 0.2}
+# The least depth that a network which predicts metres is understood to mean.
+_LEAST = 1e-2
+
+
+def losses(network: Network, batch: Batch) -> dict[str, Tensor]:
+    """The terms that the network has outputs for, by name; without their shares."""
+    tensors = network.tensors(batch.inputs)
+    ports = {port["name"]: tensors[port["tensor"]] for port in network.description.graph.outputs}
+    weight = pixel_weights(batch.truth)
+    # Depth in the unit of the input; 1 where there is none, which has no weight.
+    truth = torch.where(batch.truth > 0, batch.truth * batch.scale, 1.0)
+    if "log_depth" not in ports:
+        # In units of the input and perhaps negative: a relative error has a derivative everywhere.
+        relative = (ports["depth"] - truth).abs() / truth
+        return {"depth": _mean(relative, weight)}
+    target = (truth / ports["scale"]).log()
+    error = (ports["log_depth"] - target).abs()
+    odds = tensors["confidence.log_odds"]
+    metric = (ports["scale"] / batch.scale / batch.camera_height).log()
+    return {
+        "depth": _mean(error, weight),
+        # Laplace's likelihood: least where exp(-odds) is the expected error.
+        "confidence": _mean(error.detach() * odds.exp() - odds, weight),
+        "propagated": _mean((tensors["propagated"] - target).abs(), weight),
+        "metric": (ports["log_metric_scale"] - metric).abs().mean(),
+    }
+
+
+def total(terms: Mapping[str, Tensor]) -> Tensor:
+    return sum((SHARES[name] * value for name, value in terms.items()), torch.zeros(()))
+
+
+def pixel_weights(truth: Tensor) -> Tensor:
+    """Solid angle where there is a surface."""
+    rows = torch.from_numpy(row_weights(truth.shape[-2])).to(truth)
+    return rows[:, None] * (truth > 0)
+
+
+def predicted_depth(network: Network, inputs: Mapping[str, Tensor]) -> Tensor:
+    """In the unit of the input."""
+    outputs = network(inputs)
+    if "log_depth" in outputs:
+        return outputs["scale"] * outputs["log_depth"].exp()
+    return outputs["depth"].clamp(min=_LEAST)
+
+
+def _mean(values: Tensor, weight: Tensor) -> Tensor:
+    return (values * weight).sum() / weight.sum().clamp(min=1.0)

@@ -1,0 +1,74 @@
+"""Frames of a drive, packed for training: one .npz file, read with nothing but NumPy."""
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import numpy as np
+
+RANGE_UNITS = 256  # per metre, as in the renderer's pictures
+
+
+@dataclass(frozen=True)
+class Frame:
+    rgb: np.ndarray  # height x width x 3, uint8
+    range: np.ndarray  # height x width, float32, metres along the ray; 0 where there is sky
+    moving: np.ndarray  # height x width, bool
+    features: np.ndarray  # count x 3: u, v (pixels), standard deviation of both (radians)
+    travel: np.ndarray  # direction of motion in the camera's frame; 0 0 0 where it stands
+    camera_height: float  # metres above the road
+
+
+@dataclass(frozen=True)
+class Shard:
+    """N frames of H x W pixels."""
+
+    rgb: np.ndarray  # N x H x W x 3, uint8
+    range: np.ndarray  # N x H x W, uint16, RANGE_UNITS per metre
+    moving: np.ndarray  # N x H x W/8, uint8: a bit for each pixel
+    features: np.ndarray  # of all frames, float32
+    first_feature: np.ndarray  # N + 1: where each frame's features begin
+    travel: np.ndarray  # N x 3, float32
+    camera_height: np.ndarray  # N, float32
+
+    def __len__(self) -> int:
+        return len(self.rgb)
+
+    def frame(self, i: int) -> Frame:
+        width = self.rgb.shape[2]
+        return Frame(
+            self.rgb[i],
+            self.range[i].astype(np.float32) / RANGE_UNITS,
+            np.unpackbits(self.moving[i], axis=-1, count=width).astype(bool),
+            self.features[self.first_feature[i] : self.first_feature[i + 1]],
+            self.travel[i],
+            float(self.camera_height[i]),
+        )
+
+
+def pack(frames: list[Frame]) -> Shard:
+    counts = [0, *(len(frame.features) for frame in frames)]
+    units = [np.rint(frame.range * RANGE_UNITS) for frame in frames]
+    return Shard(
+        rgb=np.stack([frame.rgb for frame in frames]),
+        range=np.stack(units).astype(np.uint16),
+        moving=np.stack([np.packbits(frame.moving, axis=-1) for frame in frames]),
+        features=np.concatenate([frame.features for frame in frames]).astype(np.float32),
+        first_feature=np.cumsum(counts),
+        travel=np.stack([frame.travel for frame in frames]).astype(np.float32),
+        camera_height=np.array([frame.camera_height for frame in frames], np.float32),
+    )
+
+
+def write(path: Path, shard: Shard) -> None:
+    temporary = path.with_name(path.name + ".tmp")
+    with temporary.open("wb") as file:
+        np.savez_compressed(file, **{f.name: getattr(shard, f.name) for f in fields(Shard)})
+    temporary.replace(path)
+
+
+def read(path: Path) -> Shard:
+    with np.load(path) as file:
+        missing = {f.name for f in fields(Shard)} - set(file.files)
+        if missing:
+            raise ValueError(f"{path}: is no shard of frames: it lacks {sorted(missing)}")
+        return Shard(**{f.name: file[f.name] for f in fields(Shard)})

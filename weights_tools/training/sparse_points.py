@@ -1,0 +1,132 @@
+"""Sparse depth as SLAM hands it over, simulated from exact ranges.
+
+A landmark is triangulated from places that lie apart along the camera's way. Its range error is the
+noise of its corner over the parallax: it grows with the range, and towards the direction of travel.
+The confidence is what slam/depth makes of its own estimate of that error.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from weights_tools.training.shards import Frame
+from weights_tools.training.sphere import bearings
+
+
+@dataclass(frozen=True)
+class NoiseModel:
+    points: tuple[int, int] = (100, 3000)  # drawn evenly in the logarithm, like all pairs below
+    baseline: tuple[float, float] = (0.3, 8.0)  # metres between the places that see a landmark
+    observations: tuple[int, int] = (2, 12)  # of a landmark
+    scale: tuple[float, float] = (0.05, 20.0)  # units of the map in a metre
+    largest_error: float = 0.5  # share of the range; SLAM makes no landmarks of less parallax
+    half_confidence_error: float = 0.1  # as SparseDepthOptions has it
+    estimate_error: float = 0.3  # standard deviation of ln of the error that SLAM estimates
+    outliers: float = 0.05  # share of points matched wrongly, anywhere
+    edge_outliers: float = 0.2  # share of those at an occlusion edge with the other side's range
+    moving_kept: float = 0.3  # share of the points on moving objects that SLAM does not drop
+
+
+@dataclass(frozen=True)
+class SparsePoints:
+    depth: np.ndarray  # height x width, float32, units of the map; 0 where there is none
+    confidence: np.ndarray  # height x width, float32, in 0..1
+    scale: float  # units of the map in a metre
+
+
+def simulate(
+    frame: Frame, random: np.random.RandomState, model: NoiseModel = NoiseModel()
+) -> SparsePoints:
+    height, width = frame.range.shape
+    u, v, sigma = frame.features.T
+    columns = np.minimum(u.astype(int), width - 1)
+    rows = np.minimum(v.astype(int), height - 1)
+    ranges = frame.range[rows, columns].astype(float)
+    seen = bearings(u, v, height, width)
+
+    error = _range_errors(ranges, seen, sigma, frame.travel, random, model)
+    moving = frame.moving[rows, columns]
+    usable = (ranges > 0) & (error < model.largest_error)
+    usable &= ~moving | (random.uniform(size=len(u)) < model.moving_kept)
+    chosen = _choose(np.flatnonzero(usable), seen, random, model)
+
+    rows, columns, error = rows[chosen], columns[chosen], error[chosen]
+    measured = ranges[chosen]
+    at_edge = random.uniform(size=len(chosen)) < model.edge_outliers
+    measured = np.where(at_edge, _beside(frame.range, rows, columns, random), measured)
+    # Triangulation is regular in the inverse of the range.
+    inverse = (1 + error * random.standard_normal(len(chosen))) / measured
+    measured = 1 / np.maximum(inverse, 1e-3)  # nothing beyond a kilometre
+    wrong = moving[chosen] | (random.uniform(size=len(chosen)) < model.outliers)
+    measured *= np.where(wrong, np.exp(random.uniform(-1, 1, len(chosen))), 1)
+
+    estimated = error * np.exp(model.estimate_error * random.standard_normal(len(chosen)))
+    confidence = 1 / (1 + (estimated / model.half_confidence_error) ** 2)
+    scale = _log_uniform(random, model.scale)
+    return SparsePoints(
+        *_rasterise((height, width), rows, columns, scale * measured, confidence), float(scale)
+    )
+
+
+def _log_uniform(
+    random: np.random.RandomState, limits: tuple[float, float], size: int | None = None
+) -> np.ndarray:
+    return np.exp(random.uniform(np.log(limits[0]), np.log(limits[1]), size))
+
+
+def _range_errors(
+    ranges: np.ndarray,
+    seen: np.ndarray,
+    sigma: np.ndarray,
+    travel: np.ndarray,
+    random: np.random.RandomState,
+    model: NoiseModel,
+) -> np.ndarray:
+    """Standard deviation of each range as a share of it: RangeError of slam/depth."""
+    if not travel.any():  # it moved before
+        travel = random.standard_normal(3)
+        travel /= np.linalg.norm(travel)
+    across = np.linalg.norm(np.cross(seen, travel), axis=1)
+    baseline = _log_uniform(random, model.baseline, len(ranges))
+    parallax = np.arctan2(baseline * across, np.maximum(ranges, 1e-3))
+    count = random.randint(model.observations[0], model.observations[1] + 1, len(ranges))
+    return np.sqrt(2 / count) * sigma / np.maximum(np.sin(parallax), 1e-9)
+
+
+def _choose(
+    usable: np.ndarray, seen: np.ndarray, random: np.random.RandomState, model: NoiseModel
+) -> np.ndarray:
+    """Some of the points, in clusters: texture and tracking are good here and bad there."""
+    count = min(int(_log_uniform(random, model.points)), len(usable))
+    if count == 0:
+        return usable[:0]
+    centres = seen[random.choice(usable, random.randint(3, 13))]
+    widths = random.uniform(0.1, 0.6, len(centres))  # radians
+    squared_angle = 2 - 2 * np.clip(seen[usable] @ centres.T, -1, 1)
+    weight = 0.05 + np.exp(-squared_angle / (2 * widths**2)).sum(axis=1)
+    return random.choice(usable, count, replace=False, p=weight / weight.sum())
+
+
+def _beside(
+    ranges: np.ndarray, rows: np.ndarray, columns: np.ndarray, random: np.random.RandomState
+) -> np.ndarray:
+    """The range two pixels away, which differs at edges only; the same one where that is sky."""
+    height, width = ranges.shape
+    shift = random.randint(-2, 3, (2, len(rows)))
+    there = ranges[np.clip(rows + shift[0], 0, height - 1), (columns + shift[1]) % width]
+    return np.where(there > 0, there, ranges[rows, columns]).astype(float)
+
+
+def _rasterise(
+    size: tuple[int, int],
+    rows: np.ndarray,
+    columns: np.ndarray,
+    depths: np.ndarray,
+    confidences: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """The nearest of several points at one pixel."""
+    depth, confidence = np.zeros(size, np.float32), np.zeros(size, np.float32)
+    order = np.argsort(-depths, kind="stable")
+    depth[rows[order], columns[order]] = depths[order]
+    confidence[rows[order], columns[order]] = confidences[order]
+    return depth, confidence
