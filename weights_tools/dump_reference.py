@@ -3,9 +3,9 @@
     python3 -m weights_tools.dump_reference                   # into tests/nn/data
     python3 -m weights_tools.dump_reference --full --out DIR  # networks too large to be kept
 
-Each file is a network file whose group /tensors holds inputs and results, of large tensors the first
-channels. They are computed in double precision and without oneDNN from the weights as they are
-stored, then rounded: the same bytes every time.
+Each file is a network file whose group /tensors holds inputs and results, of large tensors the
+first channels. They are computed in double precision and without oneDNN from the weights as they
+are stored, then rounded: the same bytes every time.
 """
 
 import argparse

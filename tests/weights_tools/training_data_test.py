@@ -6,11 +6,12 @@ from dataclasses import fields, replace
 from pathlib import Path
 
 import cv2
+import h5py
 import numpy as np
 
 from tests.weights_tools import drives
-from weights_tools.training import batches, make_shard, shards
-from weights_tools.training.sparse_points import NoiseModel, simulate
+from weights_tools.training import batches, compare_points, make_shard, shards
+from weights_tools.training.sparse_points import NoiseModel, from_slam, simulate
 from weights_tools.training.sphere import bearings, row_weights
 
 EXACT = NoiseModel(
@@ -49,7 +50,8 @@ class ShardTest(unittest.TestCase):
         moving[3, 5:9] = True
         first = replace(drives.frame(0), moving=moving)
         second = drives.frame(1)
-        second = replace(second, features=second.features[:7], camera_height=2.0)
+        points = np.array([[1, 2, 3.5, 0.25], [4, 5, 6.5, 1]], np.float32)
+        second = replace(second, features=second.features[:7], camera_height=2.0, points=points)
         path = self.folder / "shard.npz"
         shards.write(path, shards.pack([first, second]))
         shard = shards.read(path)
@@ -80,6 +82,35 @@ class ShardTest(unittest.TestCase):
             np.testing.assert_allclose(frame.travel, [0, 1, 0], atol=1e-6)
         picture = cv2.imread(str(self.folder / "rgb/000000.jpg"))
         np.testing.assert_array_equal(frames[0].rgb, picture[:, :, ::-1])
+
+    def test_points_of_slam_are_kept_in_metres(self) -> None:
+        drives.write_drive(self.folder)
+        drives.write_run(self.folder / "run")
+        for halvings in (0, 1):
+            first, second = make_shard.read_drive(self.folder, halvings, self.folder / "run")
+            self.assertEqual(len(first.points), 0)
+            rows, columns, metres, confidence = second.points.T
+            self.assertEqual(len(rows), (drives.street()[::8, ::8] > 0).sum())
+            at = (rows * 2**halvings).astype(int), (columns * 2**halvings).astype(int)
+            truth = drives.street()[at]
+            np.testing.assert_allclose(metres, truth, rtol=2e-3)
+            self.assertTrue((confidence == 0.75).all())
+            points = from_slam(second, np.random.RandomState(0))
+            known = points.depth > 0
+            self.assertEqual(known.sum(), len(rows))
+            measured = points.depth[known] / points.scale
+            np.testing.assert_allclose(np.sort(measured), np.sort(metres), rtol=1e-5)
+
+    def test_refuses_runs_without_sparse_depth_or_of_another_size(self) -> None:
+        drives.write_drive(self.folder)
+        with self.assertRaisesRegex(ValueError, "has no sparse depth; run orb360 with --save"):
+            make_shard.read_drive(self.folder, run=self.folder)
+        drives.write_run(self.folder / "run")
+        with h5py.File(self.folder / "run/sparse/000002.h5", "a") as file:
+            del file["range"]
+            file["range"] = np.zeros((8, 16), np.float32)
+        with self.assertRaisesRegex(ValueError, "000002.h5: has another size than the drive"):
+            make_shard.read_drive(self.folder, run=self.folder / "run")
 
     def test_halving_keeps_ranges_that_exist(self) -> None:
         drives.write_drive(self.folder)
@@ -253,6 +284,17 @@ class BatchTest(unittest.TestCase):
         self.assertGreater(known.sum(), 4000)
         self.assertLess(error.max(), 0.05)
 
+    def test_half_of_the_keyframes_have_the_points_of_slam(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        points = np.array([[40, 10, drives.street()[40, 10], 0.5]], np.float32)
+        path = Path(folder.name) / "keyframe.npz"
+        shards.write(path, shards.pack([replace(drives.frame(), points=points)]))
+        batch = batches.draw(batches.Frames([path]), 0, 0, 40, EXACT)
+        counts = (batch.inputs["depth"] > 0).sum(dim=(1, 2, 3))
+        self.assertTrue(8 < (counts == 1).sum() < 32)
+        self.assertTrue((counts[counts != 1] > 100).all())
+
     def test_pictures_turn_with_their_depth(self) -> None:
         frame = drives.frame()
         # Grey says how far it is.
@@ -270,6 +312,21 @@ class BatchTest(unittest.TestCase):
             self.assertTrue(0 <= sample.image.min() and sample.image.max() <= 1)
             changed += not np.array_equal(sample.truth, frame.range)
         self.assertGreaterEqual(changed, 7)
+
+
+class ComparePointsTest(unittest.TestCase):
+    def test_sums_up_errors_by_confidence_and_range(self) -> None:
+        error = np.array([0.1, -0.3, 0.2, 0.0])
+        confidence = np.array([0.95, 0.1, 0.6, 0.95])
+        truth = np.array([3.0, 30.0, 3.0, 3.0])
+        part = np.stack([error, confidence, truth])
+        result = compare_points.summary([part, part[:, :2]])
+        self.assertEqual(result["points of a frame, median"], 3)
+        self.assertAlmostEqual(result["|ln error|, median"], 0.15)
+        self.assertAlmostEqual(result["share with |ln error| > 0.25"], 2 / 6)
+        self.assertAlmostEqual(result["confidence 0.9 to 1.0: share"], 0.5)
+        self.assertAlmostEqual(result["confidence 0.9 to 1.0: |ln error|, median"], 0.1)
+        self.assertAlmostEqual(result["metres 20 to 40: |ln error|, median"], 0.3)
 
 
 if __name__ == "__main__":

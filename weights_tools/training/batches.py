@@ -13,7 +13,7 @@ from torch import Tensor
 
 from weights_tools.training import shards
 from weights_tools.training.shards import Frame, Shard
-from weights_tools.training.sparse_points import NoiseModel, SparsePoints, simulate
+from weights_tools.training.sparse_points import NoiseModel, SparsePoints, from_slam, simulate
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,13 @@ class Frames:
 def draw(frames: Frames, seed: int, step: int, size: int, model: NoiseModel) -> Batch:
     """The batch of one step of training."""
     random = np.random.RandomState([seed, step])
-    chosen = [frames[i] for i in random.randint(0, len(frames), size)]
-    return collate([augment(frame, simulate(frame, random, model), random) for frame in chosen])
+    samples = []
+    for i in random.randint(0, len(frames), size):
+        frame = frames[i]
+        is_real = len(frame.points) > 0 and random.uniform() < model.from_slam
+        points = (from_slam if is_real else simulate)(frame, random, model)
+        samples.append(augment(frame, points, random))
+    return collate(samples)
 
 
 @dataclass(frozen=True)

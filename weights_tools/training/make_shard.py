@@ -1,12 +1,14 @@
 """Packs a rendered drive: python3 -m weights_tools.training.make_shard DRIVE SHARD.npz
 
-DRIVE is a folder of `town render --masks`. Frames without depth (--depth-every) are left out.
+DRIVE is a folder of `town render --masks`. Frames without depth (--depth-every) are left out. What
+`orb360 run DRIVE --save-sparse` found there can be packed as well (--run).
 """
 
 import argparse
 from pathlib import Path
 
 import cv2
+import h5py
 import numpy as np
 import yaml
 
@@ -21,11 +23,12 @@ SCALE, PIXELS = 1.2, 1.0
 MARGIN = 128
 
 
-def read_drive(folder: Path, halvings: int = 0) -> list[shards.Frame]:
-    """Frames of a drive, each side halved so often."""
+def read_drive(folder: Path, halvings: int = 0, run: Path | None = None) -> list[shards.Frame]:
+    """Frames of a drive, each side halved so often, with the sparse depth of a run of SLAM."""
     description = yaml.safe_load((folder / "sequence.yaml").read_text())
     poses = np.loadtxt(folder / "groundtruth.txt", ndmin=2)
     travels = travel_directions(poses[:, 1:4], poses[:, 4:8])
+    sparse = sparse_files(run) if run else {}
     frames = []
     for path in sorted((folder / "depth").glob("*.png")):
         picture = _read(folder / "rgb" / f"{path.stem}.jpg", cv2.IMREAD_COLOR)
@@ -43,11 +46,39 @@ def read_drive(folder: Path, halvings: int = 0) -> list[shards.Frame]:
                 features,
                 travels[int(path.stem)],
                 float(description["camera_height"]),
+                read_points(sparse.get(int(path.stem)), metres, factor),
             )
         )
     if not frames:
         raise ValueError(f"{folder}: has no depth; render it with `town render --masks`")
     return frames
+
+
+def sparse_files(run: Path) -> dict[int, Path]:
+    """Of a run's keyframes, by frame."""
+    files = {}
+    for path in (run / "sparse").glob("*.h5"):
+        with h5py.File(path, "r") as file:
+            files[int(file.attrs["frame_index"])] = path
+    if not files:
+        raise ValueError(f"{run}: has no sparse depth; run orb360 with --save-sparse")
+    return files
+
+
+def read_points(path: Path | None, metres: np.ndarray, factor: int) -> np.ndarray:
+    """Row, column, metres and confidence of a keyframe's points on known surfaces. A map has a
+    scale of its own: the points' median scale makes metres of it."""
+    if path is None:
+        return np.zeros((0, 4), np.float32)
+    with h5py.File(path, "r") as file:
+        ranges, confidence = file["range"][()], file["confidence"][()]
+    if ranges.shape != metres.shape:
+        raise ValueError(f"{path}: has another size than the drive; run orb360 without --resize")
+    rows, columns = np.nonzero((ranges > 0) & (metres > 0))
+    ranges, truth = ranges[rows, columns], metres[rows, columns]
+    metre = np.median(ranges / truth) if len(rows) else 1
+    points = [rows // factor, columns // factor, ranges / metre, confidence[rows, columns]]
+    return np.stack(points, axis=1).astype(np.float32)
 
 
 def _read(path: Path, how: int) -> np.ndarray:
@@ -101,8 +132,10 @@ def main() -> None:
     parser.add_argument("drive", type=Path, help="folder of `town render --masks`")
     parser.add_argument("out", type=Path, help="file to write (.npz)")
     parser.add_argument("--halvings", type=int, default=0, help="of the pictures' sides")
+    parser.add_argument("--run", type=Path, help="folder of `orb360 run DRIVE --save-sparse`")
     arguments = parser.parse_args()
-    shards.write(arguments.out, shards.pack(read_drive(arguments.drive, arguments.halvings)))
+    frames = read_drive(arguments.drive, arguments.halvings, arguments.run)
+    shards.write(arguments.out, shards.pack(frames))
 
 
 if __name__ == "__main__":

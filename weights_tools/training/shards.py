@@ -16,6 +16,9 @@ class Frame:
     features: np.ndarray  # count x 3: u, v (pixels), standard deviation of both (radians)
     travel: np.ndarray  # direction of motion in the camera's frame; 0 0 0 where it stands
     camera_height: float  # metres above the road
+    # Sparse depth that SLAM itself has given, count x 4: row, column, metres (in the scale that
+    # fits the picture best) and confidence. None where the frame was no keyframe.
+    points: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -29,6 +32,8 @@ class Shard:
     first_feature: np.ndarray  # N + 1: where each frame's features begin
     travel: np.ndarray  # N x 3, float32
     camera_height: np.ndarray  # N, float32
+    points: np.ndarray  # of all frames, float32
+    first_point: np.ndarray  # N + 1
 
     def __len__(self) -> int:
         return len(self.rgb)
@@ -42,20 +47,22 @@ class Shard:
             self.features[self.first_feature[i] : self.first_feature[i + 1]],
             self.travel[i],
             float(self.camera_height[i]),
+            self.points[self.first_point[i] : self.first_point[i + 1]],
         )
 
 
 def pack(frames: list[Frame]) -> Shard:
-    counts = [0, *(len(frame.features) for frame in frames)]
     units = [np.rint(frame.range * RANGE_UNITS) for frame in frames]
     return Shard(
         rgb=np.stack([frame.rgb for frame in frames]),
         range=np.stack(units).astype(np.uint16),
         moving=np.stack([np.packbits(frame.moving, axis=-1) for frame in frames]),
         features=np.concatenate([frame.features for frame in frames]).astype(np.float32),
-        first_feature=np.cumsum(counts),
+        first_feature=np.cumsum([0, *(len(frame.features) for frame in frames)]),
         travel=np.stack([frame.travel for frame in frames]).astype(np.float32),
         camera_height=np.array([frame.camera_height for frame in frames], np.float32),
+        points=np.concatenate([frame.points for frame in frames]).astype(np.float32),
+        first_point=np.cumsum([0, *(len(frame.points) for frame in frames)]),
     )
 
 

@@ -25,6 +25,7 @@ class NoiseModel:
     outliers: float = 0.05  # share of points matched wrongly, anywhere
     edge_outliers: float = 0.2  # share of those at an occlusion edge with the other side's range
     moving_kept: float = 0.3  # share of the points on moving objects that SLAM does not drop
+    from_slam: float = 0.5  # of frames with points of SLAM itself, the share that uses them
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,18 @@ class SparsePoints:
     depth: np.ndarray  # height x width, float32, units of the map; 0 where there is none
     confidence: np.ndarray  # height x width, float32, in 0..1
     scale: float  # units of the map in a metre
+
+
+def from_slam(
+    frame: Frame, random: np.random.RandomState, model: NoiseModel = NoiseModel()
+) -> SparsePoints:
+    """What SLAM has given for the frame, in a scale that is drawn."""
+    scale = float(_log_uniform(random, model.scale))
+    rows, columns = frame.points[:, :2].astype(int).T
+    metres, confidence = frame.points[:, 2:].T
+    return SparsePoints(
+        *_rasterise(frame.range.shape, rows, columns, scale * metres, confidence), scale
+    )
 
 
 def simulate(

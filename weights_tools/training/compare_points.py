@@ -1,0 +1,70 @@
+"""How well the simulated sparse points resemble SLAM's, on frames that have both:
+
+    python3 -m weights_tools.training.compare_points SHARD.npz ...
+"""
+
+import argparse
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from weights_tools.training.batches import Frames
+from weights_tools.training.shards import Frame
+from weights_tools.training.sparse_points import SparsePoints, from_slam, simulate
+
+CONFIDENCES = (0.0, 0.25, 0.5, 0.75, 0.9, 1.0)
+RANGES = (0, 5, 10, 20, 40, 80)  # metres
+OUTLIER = 0.25  # of |ln(range / truth)|: farther off than noise is at the confidences that matter
+
+
+def errors(
+    frames: Frames, give: Callable[[Frame, np.random.RandomState], SparsePoints]
+) -> Iterator[np.ndarray]:
+    """Of each frame that SLAM has points for: ln(range / truth), confidence, truth."""
+    for i in range(len(frames)):
+        frame = frames[i]
+        if len(frame.points) == 0:
+            continue
+        points = give(frame, np.random.RandomState(i))
+        known = (points.depth > 0) & (frame.range > 0)
+        truth = frame.range[known]
+        error = np.log(points.depth[known] / points.scale / truth)
+        yield np.stack([error, points.confidence[known], truth])
+
+
+def summary(parts: list[np.ndarray]) -> dict[str, float]:
+    """Counts, errors and how they are spread, by name."""
+    error, confidence, truth = np.concatenate(parts, axis=1)
+    error = np.abs(error)
+    result = {
+        "points of a frame, median": float(np.median([part.shape[1] for part in parts])),
+        "|ln error|, median": float(np.median(error)),
+        "|ln error|, 90th percentile": float(np.percentile(error, 90)),
+        f"share with |ln error| > {OUTLIER}": float((error > OUTLIER).mean()),
+    }
+    spreads = (("confidence", confidence, CONFIDENCES), ("metres", truth, RANGES))
+    for name, values, limits in spreads:
+        for low, high in zip(limits, limits[1:]):
+            inside = (values > low) & (values <= high)
+            result[f"{name} {low} to {high}: share"] = float(inside.mean())
+            median = np.median(error[inside]) if inside.any() else np.nan
+            result[f"{name} {low} to {high}: |ln error|, median"] = float(median)
+    return result
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Compares simulated points with those of SLAM.")
+    parser.add_argument("shards", type=Path, nargs="+", help="made with --run")
+    frames = Frames(parser.parse_args().shards)
+    real, simulated = (list(errors(frames, give)) for give in (from_slam, simulate))
+    if not real:
+        parser.error("no frame has points of SLAM; make the shards with --run")
+    real, simulated = summary(real), summary(simulated)
+    print(f"{'':48}{'SLAM':>10}{'simulated':>12}")
+    for name, value in real.items():
+        print(f"{name:48}{value:10.3f}{simulated[name]:12.3f}")
+
+
+if __name__ == "__main__":
+    main()
