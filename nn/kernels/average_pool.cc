@@ -8,6 +8,8 @@
 // foreach_target must come first.
 #include <hwy/highway.h>
 
+#include "nn/kernels/even_odd-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace orb360::nn {
 namespace HWY_NAMESPACE {
@@ -35,12 +37,11 @@ void AverageRow(const float* top, const float* bottom, bool is_blocked, int coun
     }
     return;
   }
-  // Half a cache line comes from a whole one, so that no vector reaches over the end of a row.
-  const hn::CappedTag<float, kBlock / 2> d;
+  const hn::CappedTag<float, kBlock> d;
   for (int u = 0; u < count; u += static_cast<int>(hn::Lanes(d))) {
     hn::Vec<decltype(d)> top_left, top_right, bottom_left, bottom_right;
-    hn::LoadInterleaved2(d, top + 2 * u, top_left, top_right);
-    hn::LoadInterleaved2(d, bottom + 2 * u, bottom_left, bottom_right);
+    LoadEvenOdd(d, top, u, 2 * count, top_left, top_right);
+    LoadEvenOdd(d, bottom, u, 2 * count, bottom_left, bottom_right);
     hn::Store(Mean(d, top_left, top_right, bottom_left, bottom_right), d, to + u);
   }
 }

@@ -8,14 +8,15 @@
 // foreach_target must come first.
 #include <hwy/highway.h>
 
+#include "nn/kernels/even_odd-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace orb360::nn {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Half a cache line of results come from a whole one, so that no vector reaches over the end of a
-// tensor's row.
-using D = hn::CappedTag<float, 8>;
+// At most a cache line, so that a vector never reaches over the end of a tensor's row.
+using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 
 void PoolRow(const float* x, std::ptrdiff_t x_stride, const float* c, std::ptrdiff_t c_stride,
@@ -26,9 +27,9 @@ void PoolRow(const float* x, std::ptrdiff_t x_stride, const float* c, std::ptrdi
     V values[4];  // of the square, row by row
     V confidences[4];
     for (int row = 0; row < 2; ++row) {
-      hn::LoadInterleaved2(d, x + row * x_stride + 2 * u, values[2 * row], values[2 * row + 1]);
-      hn::LoadInterleaved2(d, c + row * c_stride + 2 * u, confidences[2 * row],
-                           confidences[2 * row + 1]);
+      LoadEvenOdd(d, x + row * x_stride, u, 2 * columns, values[2 * row], values[2 * row + 1]);
+      LoadEvenOdd(d, c + row * c_stride, u, 2 * columns, confidences[2 * row],
+                  confidences[2 * row + 1]);
     }
     V value = values[0];
     V best = confidences[0];
@@ -52,6 +53,15 @@ namespace orb360::nn {
 
 HWY_EXPORT(PoolRow);
 
+void ConfidencePoolRow(const TensorView& x, const TensorView& c, const TensorView& y,
+                       const TensorView& y_confidence, ConfidenceRule rule, int v) {
+  for (int channel = 0; channel < y.shape.channels; ++channel) {
+    HWY_DYNAMIC_DISPATCH(PoolRow)
+    (x.row<float>(channel, 2 * v), x.row_stride, c.row<float>(channel, 2 * v), c.row_stride,
+     y.shape.width, rule, y.row<float>(channel, v), y_confidence.row<float>(channel, v));
+  }
+}
+
 void ConfidencePool(const TensorView& x, const TensorView& c, const TensorView& y,
                     const TensorView& y_confidence, ConfidenceRule rule, int threads) {
   for (const TensorView* tensor : {&x, &c, &y, &y_confidence}) {
@@ -60,14 +70,9 @@ void ConfidencePool(const TensorView& x, const TensorView& c, const TensorView& 
   const auto [channels, rows, columns] = y.shape;
   ORB360_CHECK((x.shape == Shape{channels, 2 * rows, 2 * columns}));
   ORB360_CHECK(c.shape == x.shape && y_confidence.shape == y.shape);
-  const auto pool_row = HWY_DYNAMIC_DISPATCH(PoolRow);
+  const int count = rows;
 #pragma omp parallel for num_threads(threads) schedule(static)
-  for (int line = 0; line < channels * rows; ++line) {
-    const int channel = line / rows;
-    const int v = line % rows;
-    pool_row(x.row<float>(channel, 2 * v), x.row_stride, c.row<float>(channel, 2 * v), c.row_stride,
-             columns, rule, y.row<float>(channel, v), y_confidence.row<float>(channel, v));
-  }
+  for (int v = 0; v < count; ++v) ConfidencePoolRow(x, c, y, y_confidence, rule, v);
 }
 
 }  // namespace orb360::nn

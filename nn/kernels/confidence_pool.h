@@ -20,4 +20,9 @@ enum class ConfidenceRule : std::uint8_t {
 void ConfidencePool(const TensorView& x, const TensorView& c, const TensorView& y,
                     const TensorView& y_confidence, ConfidenceRule rule, int threads);
 
+/// Row v of the result alone, of every channel, on the calling thread and without checks: for those
+/// who have just written rows 2v and 2v + 1 of the inputs.
+void ConfidencePoolRow(const TensorView& x, const TensorView& c, const TensorView& y,
+                       const TensorView& y_confidence, ConfidenceRule rule, int v);
+
 }  // namespace orb360::nn

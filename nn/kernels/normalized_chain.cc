@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -34,7 +33,7 @@ class RowWindow {
   }
 
   /// Where row y of the picture is to be written.
-  NormalizedRow Writable(int y) const { return Slot(y & (rows() - 1)); }
+  NormalizedRow Writable(int y) const { return Slot(y % rows()); }
 
   /// To be called when row y has been written: adds its padding, and the rows beyond the poles that
   /// continue it.
@@ -60,9 +59,10 @@ class RowWindow {
   }
 
  private:
-  // A window of two output rows covers size + 1 rows, and one row more may be there already.
+  // What the windows of the rows computed at once cover; and as the rows that were written at once
+  // need not end where the windows end, some more may be there already.
   static int Rows(const NormalizedConvolution& layer) {
-    return static_cast<int>(std::bit_ceil(static_cast<unsigned>(layer.size() + 2)));
+    return layer.size() + 2 * (kNormalizedRows - 1);
   }
   static std::size_t RowFloats(int width) {
     return RoundUp(width, kNormalizedTile) + 2 * kNormalizedRowMargin;
@@ -120,8 +120,9 @@ class RowWindow {
 class Band {
  public:
   Band(std::span<const NormalizedConvolution> layers, std::span<const NormalizedInput> inputs,
-       const ConfidentTensor& output, int first, int last, float* memory)
-      : layers_(layers), inputs_(inputs), output_(output) {
+       const ConfidentTensor& output, const PooledOutput* pooled, int first, int last,
+       float* memory)
+      : layers_(layers), inputs_(inputs), output_(output), pooled_(pooled) {
     const auto [channels, height, width] = output.x.shape;
     for (std::size_t s = layers.size(); s-- > 0;) {
       last_[s] = last;
@@ -134,14 +135,20 @@ class Band {
   }
 
   void Run(int first, int last) {
-    for (int y = first; y < last; y += 2) {
-      const int rows = std::min(2, last - y);
-      NormalizedRow out[2];
+    for (int y = first; y < last; y += kNormalizedRows) {
+      const int rows = std::min(kNormalizedRows, last - y);
+      NormalizedRow out[kNormalizedRows];
       for (int i = 0; i < rows; ++i) {
         out[i] = {output_.x.row<float>(0, y + i), output_.c.row<float>(0, y + i),
                   output_.x.plane_stride, output_.c.plane_stride};
       }
       Compute(layers_.size() - 1, y, rows, out);
+      if (pooled_ == nullptr) continue;
+      // The pairs of rows that these complete.
+      for (int v = y / 2; 2 * v + 1 < y + rows; ++v) {
+        ConfidencePoolRow(output_.x, output_.c, pooled_->tensor.x, pooled_->tensor.c, pooled_->rule,
+                          v);
+      }
     }
   }
 
@@ -152,14 +159,14 @@ class Band {
     const auto [channels, height, width] = output_.x.shape;
     const int end = std::min(y + rows + layer.reach(), height);
     while (next_[s] < end) Append(s);
-    NormalizedRow in[NormalizedConvolution::kMaxSize + 1];
+    NormalizedRow in[NormalizedConvolution::kMaxSize + kNormalizedRows - 1];
     for (int r = 0; r < layer.size() + rows - 1; ++r) {
       in[r] = windows_[s]->Readable(y + r - layer.reach());
     }
     NormalizedRows(layer, in, rows, width, out, s + 1 < layers_.size());
   }
 
-  // The next row, or two, that layer s reads.
+  // The next row that layer s reads, or the next few.
   void Append(std::size_t s) {
     const RowWindow& window = *windows_[s];
     const int y = next_[s];
@@ -167,8 +174,9 @@ class Band {
       Gather(y, window.Writable(y));
       next_[0] = y + 1;
     } else {
-      const int rows = std::min(2, last_[s - 1] - y);
-      const NormalizedRow out[2] = {window.Writable(y), window.Writable(y + 1)};
+      const int rows = std::min(kNormalizedRows, last_[s - 1] - y);
+      NormalizedRow out[kNormalizedRows];
+      for (int i = 0; i < rows; ++i) out[i] = window.Writable(y + i);
       Compute(s - 1, y, rows, out);
       next_[s] = y + rows;
     }
@@ -190,6 +198,7 @@ class Band {
   std::span<const NormalizedConvolution> layers_;
   std::span<const NormalizedInput> inputs_;
   const ConfidentTensor& output_;
+  const PooledOutput* pooled_;
   std::array<std::optional<RowWindow>, NormalizedChain::kMaxLayers> windows_;  // what they read
   std::array<int, NormalizedChain::kMaxLayers> next_{};  // row that each window gets next
   std::array<int, NormalizedChain::kMaxLayers> last_{};  // behind the last row of each output
@@ -222,10 +231,16 @@ std::size_t NormalizedChain::ScratchBytes(int width, int threads) const {
 }
 
 void NormalizedChain::Run(std::span<const NormalizedInput> inputs, const ConfidentTensor& output,
-                          std::span<std::byte> scratch, int threads) const {
+                          std::span<std::byte> scratch, int threads,
+                          const PooledOutput* pooled) const {
   CheckPlanar(output);
   const auto [channels, height, width] = output.x.shape;
   ORB360_CHECK(channels == layers_.back().outputs(), channels);
+  if (pooled != nullptr) {
+    CheckPlanar(pooled->tensor);
+    const auto [pooled_channels, pooled_height, pooled_width] = pooled->tensor.x.shape;
+    ORB360_CHECK((output.x.shape == Shape{pooled_channels, 2 * pooled_height, 2 * pooled_width}));
+  }
   int read = 0;
   for (const auto& [tensor, doubled] : inputs) {
     CheckPlanar(tensor);
@@ -245,9 +260,10 @@ void NormalizedChain::Run(std::span<const NormalizedInput> inputs, const Confide
   const int bands = std::clamp(height / kBand, 1, threads);
 #pragma omp parallel for num_threads(bands) schedule(static)
   for (int i = 0; i < bands; ++i) {
-    const int first = height * i / bands;
-    const int last = height * (i + 1) / bands;
-    Band(layers_, inputs, output, first, last, memory + i * band_floats).Run(first, last);
+    // At even rows, so that a pair that is pooled is written by one thread.
+    const int first = height / 2 * i / bands * 2;
+    const int last = i + 1 < bands ? height / 2 * (i + 1) / bands * 2 : height;
+    Band(layers_, inputs, output, pooled, first, last, memory + i * band_floats).Run(first, last);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "nn/kernels/confidence_pool.h"
 #include "nn/kernels/normalized_convolution.h"
 #include "nn/tensor.h"
 
@@ -19,6 +20,12 @@ struct ConfidentTensor {
 struct NormalizedInput {
   ConfidentTensor tensor;
   bool doubled = false;
+};
+
+/// What ConfidencePool makes of a chain's output, wanted beside it.
+struct PooledOutput {
+  ConfidentTensor tensor;
+  ConfidenceRule rule;
 };
 
 /// Normalized convolutions one after the other, each reading what the one before it gives. Only the
@@ -38,9 +45,9 @@ class NormalizedChain {
   /// the inputs, or twice those of inputs that are doubled, and must not be one of them. No halo is
   /// read, and rows of the output may be overwritten up to the next multiple of kAlignment.
   /// `scratch`, of ScratchBytes(), is aligned to kAlignment. The same bits for any number of
-  /// threads.
+  /// threads. `pooled`, if not null, is written as well, from rows that are still in the cache.
   void Run(std::span<const NormalizedInput> inputs, const ConfidentTensor& output,
-           std::span<std::byte> scratch, int threads) const;
+           std::span<std::byte> scratch, int threads, const PooledOutput* pooled = nullptr) const;
 
  private:
   std::vector<NormalizedConvolution> layers_;

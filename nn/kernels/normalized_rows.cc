@@ -29,6 +29,11 @@ HWY_INLINE void Finish(const NormalizedConvolution& layer, int o, V n, V d_sum, 
   hn::StoreU(c, d, out.c + o * out.c_stride + u);
 }
 
+// Vectors of a tile; SSE and AVX2 have 16 registers, the others 32.
+constexpr int kVectors =
+    HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 ? 1 : 2;
+
+// Calls function(integral_constant) for kFirst to kEnd - 1.
 template <int kFirst, int kEnd, class Function>
 HWY_INLINE void ForEach(const Function& function) {
   if constexpr (kFirst < kEnd) {
@@ -37,12 +42,14 @@ HWY_INLINE void ForEach(const Function& function) {
   }
 }
 
-// A register tile of kRows rows of kVectors vectors and all outputs. With two rows, two vectors and
-// two outputs its 16 sums hide the latency of the multiply-adds (4 cycles, two of them in each) and
-// a tap of one input costs 8 loads, 4 of them across cache lines, for 16 multiply-adds: 6 cycles of
-// loading for 8 of arithmetic. One row would need 9, and a third would not fit 16 registers of AVX2
-// by far.
-template <int kSize, int kInputs, int kOutputs, int kRows, int kVectors>
+// A register tile of kRows rows of kVectors vectors and all outputs. A tap of one input costs two
+// loads for each vector, most of them across two cache lines, and a broadcast weight for each row
+// and output. On AVX-512, with three rows, two vectors and two outputs, these are 4 + 6 loads for
+// 24 multiply-adds: 7 cycles at two loads a cycle (twice that for those across lines), hidden
+// behind 12 of arithmetic; 24 sums, 4 values and a weight fit 32 registers and cover the latency of
+// 4 cycles at two multiply-adds in each. With one row the loads would take as long as the
+// arithmetic.
+template <int kSize, int kInputs, int kOutputs, int kRows>
 HWY_INLINE void Tile(const NormalizedConvolution& layer, const NormalizedRow* in, int u,
                      int vectors, const NormalizedRow* out, bool as_products) {
   const D d;
@@ -101,16 +108,15 @@ HWY_INLINE void Tile(const NormalizedConvolution& layer, const NormalizedRow* in
 template <int kSize, int kInputs, int kOutputs>
 void FixedRows(const NormalizedConvolution& layer, const NormalizedRow* in, int rows, int width,
                const NormalizedRow* out, bool as_products) {
-  constexpr int kVectors = 2;
   const int lanes = static_cast<int>(hn::Lanes(D()));
   for (int u = 0; u < width; u += kVectors * lanes) {
-    const int vectors = u + lanes < width ? 2 : 1;
+    const int vectors = u + lanes < width ? kVectors : 1;
     if (rows == 3) {
-      Tile<kSize, kInputs, kOutputs, 3, kVectors>(layer, in, u, vectors, out, as_products);
+      Tile<kSize, kInputs, kOutputs, 3>(layer, in, u, vectors, out, as_products);
     } else if (rows == 2) {
-      Tile<kSize, kInputs, kOutputs, 2, kVectors>(layer, in, u, vectors, out, as_products);
+      Tile<kSize, kInputs, kOutputs, 2>(layer, in, u, vectors, out, as_products);
     } else {
-      Tile<kSize, kInputs, kOutputs, 1, kVectors>(layer, in, u, vectors, out, as_products);
+      Tile<kSize, kInputs, kOutputs, 1>(layer, in, u, vectors, out, as_products);
     }
   }
 }

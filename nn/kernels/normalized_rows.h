@@ -11,7 +11,7 @@ namespace orb360::nn {
 /// Floats that rows of NormalizedRow hold in front of column 0 and at least behind the last one.
 constexpr int kNormalizedRowMargin = 16;
 
-/// NormalizedRows writes whole tiles of this many columns into rows of products.
+/// NormalizedRows reads whole tiles of this many columns.
 constexpr int kNormalizedTile = 32;
 
 /// The channels of one row of values with confidences. For channel i, column 0 of the values is at
@@ -23,12 +23,15 @@ struct NormalizedRow {
   std::ptrdiff_t c_stride = 0;
 };
 
-/// Computes one or two rows of output. `in` are the rows that their windows cover, from the top:
-/// size() rows, and one more for two rows of output. There x is the product of value and
+/// Rows of output that are computed at once.
+constexpr int kNormalizedRows = 3;
+
+/// Computes `rows` rows of output, up to kNormalizedRows. `in` are the size() + rows - 1 rows that
+/// their windows cover, from the top. There x is the product of value and
 /// confidence, both with reach() columns of padding at either side.
 ///
-/// If `as_products`, x of the output is the product as well, and both rows may be overwritten up to
-/// the next multiple of kNormalizedTile; otherwise up to the next multiple of kAlignment.
+/// If `as_products`, x of the output is the product as well. Rows of output may be overwritten up
+/// to the next multiple of kAlignment.
 void NormalizedRows(const NormalizedConvolution& layer, const NormalizedRow* in, int rows,
                     int width, const NormalizedRow* out, bool as_products);
 

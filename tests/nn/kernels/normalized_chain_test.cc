@@ -274,10 +274,18 @@ TEST(NormalizedChain, GivesTheBitsOfItsLayersForAnyNumberOfThreads) {
           const TensorFormat format{{1, rows, columns}, Layout::kPlanar, DataType::kFloat, 0};
           const TensorMemory y(format);
           const TensorMemory y_confidence(format);
+          const TensorMemory small_y({{1, rows / 2, columns / 2}, Layout::kPlanar});
+          const TensorMemory small_c({{1, rows / 2, columns / 2}, Layout::kPlanar});
           const Scratch scratch(chain.ScratchBytes(columns, threads));
-          chain.Run(inputs, {y.view, y_confidence.view}, scratch.bytes, threads);
+          const PooledOutput pooled{{small_y.view, small_c.view}, ConfidenceRule::kQuarter};
+          chain.Run(inputs, {y.view, y_confidence.view}, scratch.bytes, threads, &pooled);
           ExpectSameBits(y.view, x->view);
           ExpectSameBits(y_confidence.view, c->view);
+          const TensorMemory pooled_y({{1, rows / 2, columns / 2}, Layout::kPlanar});
+          const TensorMemory pooled_c({{1, rows / 2, columns / 2}, Layout::kPlanar});
+          ConfidencePool(x->view, c->view, pooled_y.view, pooled_c.view, pooled.rule, 1);
+          ExpectSameBits(small_y.view, pooled_y.view);
+          ExpectSameBits(small_c.view, pooled_c.view);
         }
       }
     }
@@ -315,6 +323,9 @@ TEST(NormalizedChain, RefusesTensorsThatDoNotFit) {
   EXPECT_THROW(run(odd_in, false, odd_out), ContractError);
   const NormalizedInput input{{three.view, three.view}};
   EXPECT_THROW(chain.Run({&input, 1}, {two.view, two.view}, scratch.bytes.first(64), 1),
+               ContractError);
+  const PooledOutput pooled{{two.view, two.view}, ConfidenceRule::kQuarter};
+  EXPECT_THROW(chain.Run({&input, 1}, {two.view, two.view}, scratch.bytes, 1, &pooled),
                ContractError);
   EXPECT_THROW(chain.Run({}, {two.view, two.view}, scratch.bytes, 1), ContractError);
 }

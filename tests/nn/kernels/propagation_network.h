@@ -39,13 +39,13 @@ class PropagationNetwork {
 
   void Run(const ConfidentTensor& input, const ConfidentTensor& output) {
     for (std::size_t k = 0; k < encoders_.size(); ++k) {
-      NormalizedInput source{input};
-      if (k > 0) {
-        const ConfidentTensor above = level(k - 1);
-        source.tensor = pooled_[k]->tensors();
-        ConfidencePool(above.x, above.c, source.tensor.x, source.tensor.c, rule_, threads_);
+      const NormalizedInput source{k == 0 ? input : pooled_[k]->tensors()};
+      if (k + 1 < encoders_.size()) {
+        const PooledOutput pooled{pooled_[k + 1]->tensors(), rule_};
+        encoders_[k].Run({&source, 1}, level(k), scratch_.bytes, threads_, &pooled);
+      } else {
+        encoders_[k].Run({&source, 1}, level(k), scratch_.bytes, threads_);
       }
-      encoders_[k].Run({&source, 1}, level(k), scratch_.bytes, threads_);
     }
     ConfidentTensor below = level(encoders_.size() - 1);
     for (std::size_t i = 0; i < decoders_.size(); ++i) {
