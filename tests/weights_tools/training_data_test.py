@@ -16,6 +16,7 @@ from weights_tools.training.sphere import bearings, row_weights
 
 EXACT = NoiseModel(
     baseline=(1e6, 1e6),
+    noise=(1, 1),
     estimate_error=0,
     outliers=0,
     edge_outliers=0,
@@ -192,7 +193,7 @@ class SparsePointsTest(unittest.TestCase):
         self.assertTrue(0.05 <= min(scales) < 0.5 and 2 < max(scales) <= 20)
 
     def test_errors_grow_with_range_and_confidence_tells_them(self) -> None:
-        model = NoiseModel(outliers=0, edge_outliers=0)
+        model = NoiseModel(outliers=0, edge_outliers=0, estimate_bias=1, noise=(3, 3))
         error, confidence, truth = self.errors(model)
         error = np.abs(error)
         near, far = truth < 4, truth > 12
@@ -210,10 +211,8 @@ class SparsePointsTest(unittest.TestCase):
         v, u = np.nonzero(points.depth)
         ahead = np.abs(bearings(u + 0.5, v + 0.5, drives.HEIGHT, drives.WIDTH)[:, 0])
         self.assertGreater(ahead.max(), 0.9)
-        self.assertGreater(
-            np.median(points.confidence[v, u][ahead < 0.5]),
-            2 * np.median(points.confidence[v, u][ahead > 0.95]),
-        )
+        claimed = np.sqrt(1 / points.confidence[v, u] - 1)  # error, in tenths of the range
+        self.assertGreater(np.median(claimed[ahead > 0.95]), 2 * np.median(claimed[ahead < 0.5]))
 
     def test_points_are_on_surfaces_and_as_many_as_asked_for(self) -> None:
         model = replace(NoiseModel(), points=(300, 300))

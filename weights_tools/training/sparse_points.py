@@ -15,16 +15,23 @@ from weights_tools.training.sphere import bearings
 
 @dataclass(frozen=True)
 class NoiseModel:
+    """The defaults give what SLAM gives (compare_points), and a share that is noisier."""
+
     points: tuple[int, int] = (100, 3000)  # drawn evenly in the logarithm, like all pairs below
-    baseline: tuple[float, float] = (0.3, 8.0)  # metres between the places that see a landmark
+    # Metres between the places that see a landmark 10 m away; it grows with the square root of the
+    # range, as far landmarks stay in sight for longer.
+    baseline: tuple[float, float] = (1.5, 16.0)
     observations: tuple[int, int] = (2, 12)  # of a landmark
     scale: tuple[float, float] = (0.05, 20.0)  # units of the map in a metre
-    largest_error: float = 0.5  # share of the range; SLAM makes no landmarks of less parallax
+    noise: tuple[float, float] = (0.7, 2.5)  # factor on the corners' noise, one for each frame
+    largest_error: float = 0.2  # share of the range; SLAM makes no landmarks of less parallax
+    near: float = 1.2  # points are chosen by 1 / range to this power: more keyframes saw near ones
     half_confidence_error: float = 0.1  # as SparseDepthOptions has it
-    estimate_error: float = 0.3  # standard deviation of ln of the error that SLAM estimates
+    estimate_bias: float = 0.4  # of the error that SLAM estimates: it finds its points too good
+    estimate_error: float = 0.3  # standard deviation of ln of that
     outliers: float = 0.05  # share of points matched wrongly, anywhere
-    edge_outliers: float = 0.2  # share of those at an occlusion edge with the other side's range
-    moving_kept: float = 0.3  # share of the points on moving objects that SLAM does not drop
+    edge_outliers: float = 0.1  # share of those at an occlusion edge with the other side's range
+    moving_kept: float = 0.4  # share of the points on moving objects that SLAM does not drop
     from_slam: float = 0.5  # of frames with points of SLAM itself, the share that uses them
 
 
@@ -57,11 +64,12 @@ def simulate(
     ranges = frame.range[rows, columns].astype(float)
     seen = bearings(u, v, height, width)
 
+    sigma = sigma * _log_uniform(random, model.noise)
     error = _range_errors(ranges, seen, sigma, frame.travel, random, model)
     moving = frame.moving[rows, columns]
     usable = (ranges > 0) & (error < model.largest_error)
     usable &= ~moving | (random.uniform(size=len(u)) < model.moving_kept)
-    chosen = _choose(np.flatnonzero(usable), seen, random, model)
+    chosen = _choose(np.flatnonzero(usable), ranges, seen, random, model)
 
     rows, columns, error = rows[chosen], columns[chosen], error[chosen]
     measured = ranges[chosen]
@@ -73,7 +81,8 @@ def simulate(
     wrong = moving[chosen] | (random.uniform(size=len(chosen)) < model.outliers)
     measured *= np.where(wrong, np.exp(random.uniform(-1, 1, len(chosen))), 1)
 
-    estimated = error * np.exp(model.estimate_error * random.standard_normal(len(chosen)))
+    estimated = error * model.estimate_bias
+    estimated *= np.exp(model.estimate_error * random.standard_normal(len(chosen)))
     confidence = 1 / (1 + (estimated / model.half_confidence_error) ** 2)
     scale = _log_uniform(random, model.scale)
     return SparsePoints(
@@ -100,14 +109,19 @@ def _range_errors(
         travel = random.standard_normal(3)
         travel /= np.linalg.norm(travel)
     across = np.linalg.norm(np.cross(seen, travel), axis=1)
-    baseline = _log_uniform(random, model.baseline, len(ranges))
-    parallax = np.arctan2(baseline * across, np.maximum(ranges, 1e-3))
+    ranges = np.maximum(ranges, 1e-3)
+    baseline = _log_uniform(random, model.baseline, len(ranges)) * np.sqrt(ranges / 10)
+    parallax = np.arctan2(baseline * across, ranges)
     count = random.randint(model.observations[0], model.observations[1] + 1, len(ranges))
     return np.sqrt(2 / count) * sigma / np.maximum(np.sin(parallax), 1e-9)
 
 
 def _choose(
-    usable: np.ndarray, seen: np.ndarray, random: np.random.RandomState, model: NoiseModel
+    usable: np.ndarray,
+    ranges: np.ndarray,
+    seen: np.ndarray,
+    random: np.random.RandomState,
+    model: NoiseModel,
 ) -> np.ndarray:
     """Some of the points, in clusters: texture and tracking are good here and bad there."""
     count = min(int(_log_uniform(random, model.points)), len(usable))
@@ -117,6 +131,7 @@ def _choose(
     widths = random.uniform(0.1, 0.6, len(centres))  # radians
     squared_angle = 2 - 2 * np.clip(seen[usable] @ centres.T, -1, 1)
     weight = 0.05 + np.exp(-squared_angle / (2 * widths**2)).sum(axis=1)
+    weight *= ranges[usable] ** -model.near
     return random.choice(usable, count, replace=False, p=weight / weight.sum())
 
 
