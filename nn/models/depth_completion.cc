@@ -1,0 +1,184 @@
+#include "nn/models/depth_completion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "nn/base/check.h"
+
+namespace orb360::nn {
+namespace {
+
+std::size_t PixelsOf(PictureSize size) {
+  return static_cast<std::size_t>(size.height) * static_cast<std::size_t>(size.width);
+}
+
+/// The nearest size that the network takes, of at least one multiple.
+PictureSize NearestMultiple(PictureSize size, int multiple) {
+  const auto nearest = [multiple](int side) {
+    return std::max((side + multiple / 2) / multiple, 1) * multiple;
+  };
+  return {nearest(size.height), nearest(size.width)};
+}
+
+/// Finds inputs and outputs by name, and refuses what they should not be.
+struct PortFinder {
+  const Graph& graph;
+
+  [[noreturn]] void Refuse(const std::string& reason) const {
+    throw UserError("network \"" + graph.name + "\" is not for depth completion: " + reason);
+  }
+  void Check(const char* kind, const std::string& name, const Tensor& tensor, int channels,
+             bool is_single) const {
+    const bool fits =
+        tensor.channels == channels && tensor.extent == Extent{.is_single = is_single};
+    if (fits) return;
+    Refuse(std::string(kind) + " \"" + name + "\" should have " + std::to_string(channels) +
+           (channels == 1 ? " channel" : " channels") +
+           (is_single ? " of 1x1" : " of the picture's size"));
+  }
+  std::optional<std::size_t> Input(const std::string& name, int channels) const {
+    for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
+      const Tensor& tensor = graph.tensors[static_cast<std::size_t>(graph.inputs[i])];
+      if (tensor.name != name) continue;
+      Check("input", name, tensor, channels, /*is_single=*/false);
+      return i;
+    }
+    return {};
+  }
+  std::optional<std::size_t> Output(const std::string& name, bool is_single) const {
+    for (std::size_t i = 0; i < graph.outputs.size(); ++i) {
+      if (graph.outputs[i].name != name) continue;
+      Check("output", name, graph.tensors[static_cast<std::size_t>(graph.outputs[i].tensor)], 1,
+            is_single);
+      return i;
+    }
+    return {};
+  }
+  std::size_t Required(const char* kind, const char* name, std::optional<std::size_t> port) const {
+    if (!port) Refuse(std::string("it has no ") + kind + " \"" + name + "\"");
+    return *port;
+  }
+};
+
+}  // namespace
+
+DepthCompletion::Ports DepthCompletion::FindPorts(const Graph& graph) {
+  const PortFinder find{graph};
+  Ports ports;
+  ports.image = find.Input("image", 3);
+  ports.sparse_depth = find.Required("input", "depth", find.Input("depth", 1));
+  ports.sparse_confidence = find.Required("input", "confidence", find.Input("confidence", 1));
+  for (const int input : graph.inputs) {
+    const std::string& name = graph.tensors[static_cast<std::size_t>(input)].name;
+    if (name != "image" && name != "depth" && name != "confidence") {
+      find.Refuse("nothing is known of its input \"" + name + "\"");
+    }
+  }
+  const std::optional<std::size_t> depth = find.Output("depth", /*is_single=*/false);
+  if (!depth) ports.log_depth = find.Output("log_depth", /*is_single=*/false);
+  ports.depth = find.Required("output", "depth", depth ? depth : ports.log_depth);
+  ports.confidence =
+      find.Required("output", "confidence", find.Output("confidence", /*is_single=*/false));
+  if (ports.log_depth) {
+    ports.scale = find.Required("output", "scale", find.Output("scale", /*is_single=*/true));
+    ports.log_metric_scale = find.Output("log_metric_scale", /*is_single=*/true);
+  }
+  return ports;
+}
+
+DepthCompletion::DepthCompletion(const Graph& graph, PictureSize size,
+                                 const ExecutorOptions& options)
+    : size_(size),
+      network_size_(NearestMultiple(size, graph.size_multiple)),
+      ports_(FindPorts(graph)),
+      executor_(graph, network_size_.height, network_size_.width, options) {
+  ORB360_CHECK(size.height > 0 && size.width > 0, size.height, size.width);
+}
+
+DepthCompletion::Workspace::Workspace(const DepthCompletion& model) : network_(model.executor_) {
+  const auto allocate = [](const std::vector<Executor::Port>& ports) {
+    std::vector<std::vector<float>> values;
+    for (const Executor::Port& port : ports) {
+      const PictureSize size{port.shape.height, port.shape.width};
+      values.emplace_back(static_cast<std::size_t>(port.shape.channels) * PixelsOf(size));
+    }
+    return values;
+  };
+  inputs_ = allocate(model.executor_.inputs());
+  outputs_ = allocate(model.executor_.outputs());
+}
+
+void DepthCompletion::FillImage(std::span<const std::uint8_t> rgb, std::span<float> planes) const {
+  const std::size_t pixels = PixelsOf(size_);
+  const std::size_t network_pixels = PixelsOf(network_size_);
+  constexpr float kWhite = 255;
+  std::vector<float> plane(pixels);
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    for (std::size_t i = 0; i < pixels; ++i) {
+      plane[i] = static_cast<float>(rgb[3 * i + channel]) / kWhite;
+    }
+    const std::span<float> to = planes.subspan(channel * network_pixels, network_pixels);
+    if (size_ == network_size_) {
+      std::ranges::copy(plane, to.begin());
+    } else {
+      ResampleBilinear(plane, size_, to, network_size_);
+    }
+  }
+}
+
+void DepthCompletion::FillPoints(const SparsePicture& picture, std::span<float> depth,
+                                 std::span<float> confidence) const {
+  std::vector<float> known_depth(PixelsOf(size_));
+  std::vector<float> known_confidence(known_depth.size());
+  for (std::size_t i = 0; i < known_depth.size(); ++i) {
+    const bool is_point =
+        std::isfinite(picture.depth[i]) && picture.depth[i] > 0 && picture.confidence[i] > 0;
+    if (!is_point) continue;
+    known_depth[i] = picture.depth[i];
+    known_confidence[i] = std::min(picture.confidence[i], 1.0f);
+  }
+  ResamplePoints(known_depth, known_confidence, size_, depth, confidence, network_size_);
+}
+
+std::vector<float> DepthCompletion::Resampled(std::vector<float> dense) const {
+  if (size_ == network_size_) return dense;
+  std::vector<float> resampled(PixelsOf(size_));
+  ResampleBilinear(dense, network_size_, resampled, size_);
+  return resampled;
+}
+
+DensePicture DepthCompletion::Complete(const SparsePicture& picture, Workspace* workspace) const {
+  const std::size_t pixels = PixelsOf(size_);
+  ORB360_CHECK(picture.rgb.size() == 3 * pixels, picture.rgb.size(), pixels);
+  ORB360_CHECK(picture.depth.size() == pixels, picture.depth.size(), pixels);
+  ORB360_CHECK(picture.confidence.size() == pixels, picture.confidence.size(), pixels);
+  if (ports_.image) FillImage(picture.rgb, workspace->inputs_[*ports_.image]);
+  FillPoints(picture, workspace->inputs_[ports_.sparse_depth],
+             workspace->inputs_[ports_.sparse_confidence]);
+  const std::vector<std::span<const float>> inputs(workspace->inputs_.begin(),
+                                                   workspace->inputs_.end());
+  const std::vector<std::span<float>> outputs(workspace->outputs_.begin(),
+                                              workspace->outputs_.end());
+  executor_.Run(inputs, outputs, &workspace->network_);
+
+  const std::vector<std::vector<float>>& result = workspace->outputs_;
+  DensePicture dense;
+  dense.confidence = Resampled(result[ports_.confidence]);
+  dense.depth = result[ports_.depth];
+  if (ports_.log_depth) {
+    dense.scale = result[*ports_.scale].front();
+    for (float& depth : dense.depth) depth = dense.scale * std::exp(depth);
+    if (ports_.log_metric_scale) {
+      dense.log_metric_scale = result[*ports_.log_metric_scale].front();
+    }
+  }
+  dense.depth = Resampled(std::move(dense.depth));
+  for (float& depth : dense.depth) {
+    if (!(std::isfinite(depth) && depth > 0)) depth = 0;
+  }
+  return dense;
+}
+
+}  // namespace orb360::nn

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "nn/graph/executor.h"
+#include "nn/graph/graph.h"
+#include "nn/models/resample.h"
+
+namespace orb360::nn {
+
+/// A panorama and what is known of its depth. All of the size that the DepthCompletion is for, row
+/// by row.
+struct SparsePicture {
+  std::span<const std::uint8_t> rgb;  // three bytes a pixel
+  /// Range along each pixel's ray in any unit, and its confidence in (0, 1]. Pixels whose range is
+  /// not finite and positive, or whose confidence is not positive, are no points.
+  std::span<const float> depth;
+  std::span<const float> confidence;
+};
+
+struct DensePicture {
+  std::vector<float> depth;  // in the unit of the points; 0 where the network gives none
+  std::vector<float> confidence;
+  /// ln of (`scale` in metres / height of the camera in metres), where the network tells it.
+  std::optional<float> log_metric_scale;
+  /// What that refers to: a range in the unit of the points.
+  float scale = 1;
+};
+
+/// Depth completion by a network with the inputs and outputs that docs/networks.md lists, for
+/// panoramas of one size. Never changes: several threads may use it at once, each with a workspace
+/// of its own.
+class DepthCompletion {
+ public:
+  /// The memory of one completion at a time.
+  class Workspace {
+   public:
+    explicit Workspace(const DepthCompletion& model);
+
+   private:
+    friend class DepthCompletion;
+    Executor::Workspace network_;
+    std::vector<std::vector<float>> inputs_;
+    std::vector<std::vector<float>> outputs_;
+  };
+
+  /// Throws UserError for a network that is for something else. A size that the network does not
+  /// take is resampled to the nearest that it does.
+  DepthCompletion(const Graph& graph, PictureSize size, const ExecutorOptions& options = {});
+
+  PictureSize size() const { return size_; }
+  /// What the network sees.
+  PictureSize network_size() const { return network_size_; }
+
+  DensePicture Complete(const SparsePicture& picture, Workspace* workspace) const;
+
+ private:
+  struct Ports {  // indices of the executor's inputs and outputs
+    std::optional<std::size_t> image, log_depth, scale, log_metric_scale;
+    std::size_t sparse_depth = 0, sparse_confidence = 0;
+    std::size_t depth = 0, confidence = 0;  // depth: of `depth` or `log_depth`
+  };
+  static Ports FindPorts(const Graph& graph);
+
+  void FillImage(std::span<const std::uint8_t> rgb, std::span<float> planes) const;
+  void FillPoints(const SparsePicture& picture, std::span<float> depth,
+                  std::span<float> confidence) const;
+  std::vector<float> Resampled(std::vector<float> dense) const;
+
+  PictureSize size_;
+  PictureSize network_size_;
+  Ports ports_;
+  Executor executor_;
+};
+
+}  // namespace orb360::nn

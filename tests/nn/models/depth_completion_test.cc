@@ -1,0 +1,157 @@
+#include "nn/models/depth_completion.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "nn/base/check.h"
+#include "tests/nn/graph/network_builder.h"
+#include "tests/slam/io/temp_folder.h"
+
+namespace orb360::nn {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Each;
+using ::testing::HasSubstr;
+
+/// Confidence propagation over one level, in any unit: y = ln(depth / median) averaged.
+NetworkBuilder Propagation(int size_multiple) {
+  NetworkBuilder net(size_multiple);
+  net.Input("depth", 1);
+  net.Input("confidence", 1);
+  net.Node("points", "median_log", {"depth", "confidence"}, nlohmann::json::object(), 3);
+  net.NormalizedConvolution("mean", "points", "points.1", 1, 1, 15);
+  net.weights[1].values = {0};
+  net.Output("log_depth", "mean");
+  net.Output("confidence", "mean.1");
+  net.Output("scale", "points.2");
+  return net;
+}
+
+struct Picture {
+  explicit Picture(PictureSize size)
+      : rgb(3 * static_cast<std::size_t>(size.height) * size.width, 128),
+        depth(rgb.size() / 3),
+        confidence(rgb.size() / 3) {}
+  SparsePicture view() const { return {rgb, depth, confidence}; }
+  std::vector<std::uint8_t> rgb;
+  std::vector<float> depth;
+  std::vector<float> confidence;
+};
+
+DensePicture Complete(const Graph& graph, PictureSize size, const Picture& picture) {
+  const DepthCompletion model(graph, size);
+  DepthCompletion::Workspace workspace(model);
+  return model.Complete(picture.view(), &workspace);
+}
+
+TEST(DepthCompletion, OnePointIsTheDepthAroundIt) {
+  // A size that the network takes, one that it does not, and one below its smallest.
+  for (const PictureSize size : {PictureSize{16, 32}, PictureSize{21, 39}, PictureSize{5, 9}}) {
+    Picture picture(size);
+    const std::size_t middle = picture.depth.size() / 2;
+    picture.depth[middle] = 12.5f;
+    picture.confidence[middle] = 0.5f;
+    const DensePicture dense = Complete(Propagation(8).Build(), size, picture);
+    ASSERT_EQ(dense.depth.size(), picture.depth.size());
+    ASSERT_EQ(dense.confidence.size(), picture.depth.size());
+    EXPECT_EQ(dense.scale, 12.5f);
+    EXPECT_FALSE(dense.log_metric_scale);
+    // Where nothing is seen the value is the bias: the median.
+    EXPECT_THAT(dense.depth, Each(testing::FloatNear(12.5f, 1e-5f)));
+    EXPECT_GT(dense.confidence[middle], 0);
+  }
+}
+
+TEST(DepthCompletion, ScalesWithTheUnitOfThePoints) {
+  const PictureSize size{16, 32};
+  Picture picture(size);
+  for (std::size_t i = 0; i < picture.depth.size(); i += 7) {
+    picture.depth[i] = 1.0f + static_cast<float>(i % 50);
+    picture.confidence[i] = 0.25f + 0.01f * static_cast<float>(i % 60);
+  }
+  const Graph graph = Propagation(8).Build();
+  const DensePicture metres = Complete(graph, size, picture);
+  for (float& depth : picture.depth) depth *= 1024;  // exact, so that only logarithms round
+  const DensePicture others = Complete(graph, size, picture);
+  for (std::size_t i = 0; i < metres.depth.size(); ++i) {
+    ASSERT_NEAR(others.depth[i] / 1024, metres.depth[i], 1e-5 * metres.depth[i]);
+    ASSERT_EQ(others.confidence[i], metres.confidence[i]);
+  }
+}
+
+TEST(DepthCompletion, WhatIsNoPointDoesNotCount) {
+  const PictureSize size{16, 32};
+  Picture good(size);
+  good.depth[40] = 3;
+  good.confidence[40] = 1;
+  Picture bad = good;
+  bad.depth[100] = std::numeric_limits<float>::quiet_NaN();
+  bad.depth[101] = std::numeric_limits<float>::infinity();
+  bad.depth[102] = -1;
+  bad.depth[103] = 5;
+  for (const std::size_t i : {100, 101, 102}) bad.confidence[i] = 1;
+  bad.confidence[103] = std::numeric_limits<float>::quiet_NaN();
+  bad.confidence[40] = 7;  // more than certain
+  // Without median_log, which would do the same.
+  NetworkBuilder net(1);
+  net.Input("depth", 1);
+  net.Input("confidence", 1);
+  net.NormalizedConvolution("mean", "depth", "confidence", 1, 1, 5);
+  net.Output("depth", "mean");
+  net.Output("confidence", "mean.1");
+  const Graph graph = net.Build();
+  const DensePicture a = Complete(graph, size, good);
+  const DensePicture b = Complete(graph, size, bad);
+  EXPECT_EQ(a.depth, b.depth);
+  EXPECT_EQ(a.confidence, b.confidence);
+  EXPECT_THAT(a.depth, Each(testing::Ge(0)));
+}
+
+TEST(DepthCompletion, GivesTheImageAsRedGreenBlueBetween0And1) {
+  const PictureSize size{2, 4};
+  Picture picture(size);
+  for (std::size_t i = 0; i < picture.rgb.size(); ++i) {
+    picture.rgb[i] = static_cast<std::uint8_t>(51 * (i % 3));  // 0, 0.2, 0.4
+  }
+  NetworkBuilder net(1);
+  net.Input("image", 3);
+  net.Input("depth", 1);
+  net.Input("confidence", 1);
+  net.Node("green", "slice", {"image"}, {{"first", 1}, {"count", 1}});
+  net.Node("blue", "slice", {"image"}, {{"first", 2}, {"count", 1}});
+  net.Output("depth", "green");
+  net.Output("confidence", "blue");
+  const DensePicture dense = Complete(net.Build(), size, picture);
+  EXPECT_THAT(dense.depth, Each(testing::FloatEq(0.2f)));
+  EXPECT_THAT(dense.confidence, Each(testing::FloatEq(0.4f)));
+}
+
+TEST(DepthCompletion, RefusesNetworksForSomethingElse) {
+  const auto refusal = [](const auto& change) {
+    NetworkBuilder net = Propagation(1);
+    change(&net);
+    const Graph graph = net.Build();
+    return MessageOf<UserError>([&] { DepthCompletion(graph, {8, 16}); });
+  };
+  EXPECT_THAT(refusal([](NetworkBuilder* net) { net->json["outputs"][0]["name"] = "z"; }),
+              AllOf(HasSubstr("\"test\" is not for depth completion"), HasSubstr("\"depth\"")));
+  EXPECT_THAT(refusal([](NetworkBuilder* net) { net->json["outputs"][1]["name"] = "z"; }),
+              HasSubstr("no output \"confidence\""));
+  EXPECT_THAT(refusal([](NetworkBuilder* net) { net->json["outputs"][2]["name"] = "z"; }),
+              HasSubstr("no output \"scale\""));
+  EXPECT_THAT(refusal([](NetworkBuilder* net) { net->json["outputs"][0]["tensor"] = "points.2"; }),
+              HasSubstr("output \"log_depth\" should have 1 channel of the picture's size"));
+  EXPECT_THAT(refusal([](NetworkBuilder* net) { net->json["outputs"][2]["tensor"] = "mean"; }),
+              HasSubstr("output \"scale\" should have 1 channel of 1x1"));
+  EXPECT_THAT(refusal([](NetworkBuilder* net) { net->Input("image", 4); }),
+              HasSubstr("input \"image\" should have 3 channels"));
+  EXPECT_THAT(refusal([](NetworkBuilder* net) { net->Input("normals", 3); }),
+              HasSubstr("nothing is known of its input \"normals\""));
+}
+
+}  // namespace
+}  // namespace orb360::nn

@@ -1,0 +1,77 @@
+#include "nn/models/resample.h"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace orb360::nn {
+namespace {
+
+using ::testing::ElementsAre;
+
+std::vector<float> Resampled(const std::vector<float>& from, PictureSize from_size,
+                             PictureSize to_size) {
+  std::vector<float> to(static_cast<std::size_t>(to_size.height) * to_size.width, -1);
+  ResampleBilinear(from, from_size, to, to_size);
+  return to;
+}
+
+TEST(Resample, TheSameSizeIsTheSamePicture) {
+  std::vector<float> picture(6 * 11);
+  for (std::size_t i = 0; i < picture.size(); ++i) picture[i] = static_cast<float>(i * i);
+  EXPECT_EQ(Resampled(picture, {6, 11}, {6, 11}), picture);
+}
+
+TEST(Resample, ColumnsContinueAtTheOtherSideAndRowsRepeat) {
+  // Twice as wide: samples at -1/4, 1/4, 3/4, 5/4 of two columns.
+  EXPECT_THAT(Resampled({0, 4}, {1, 2}, {1, 4}), ElementsAre(1, 1, 3, 3));
+  EXPECT_THAT(Resampled({0, 4}, {2, 1}, {4, 1}), ElementsAre(0, 1, 3, 4));
+}
+
+TEST(Resample, KeepsSmoothPicturesOfTheSphere) {
+  const auto wave = [](PictureSize size) {
+    std::vector<float> picture;
+    for (int v = 0; v < size.height; ++v) {
+      for (int u = 0; u < size.width; ++u) {
+        const double longitude = 2 * std::numbers::pi * (u + 0.5) / size.width;
+        const double latitude = std::numbers::pi * (v + 0.5) / size.height;
+        picture.push_back(static_cast<float>(std::sin(longitude) + std::cos(latitude)));
+      }
+    }
+    return picture;
+  };
+  const PictureSize from{96, 200};
+  const PictureSize to{128, 192};
+  const std::vector<float> expected = wave(to);
+  const std::vector<float> actual = Resampled(wave(from), from, to);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    // Curvature times the squared step over eight, in both directions.
+    ASSERT_NEAR(actual[i], expected[i], 3e-4) << i;
+  }
+}
+
+TEST(Resample, PointsMoveToThePixelThatHoldsThem) {
+  const std::vector<float> depth = {0, 5, 0, 0, 3, 0};
+  const std::vector<float> confidence = {0, 0.5f, 0, 0, 0.75f, 0};
+  std::vector<float> to_depth(12, -1);
+  std::vector<float> to_confidence(12, -1);
+  ResamplePoints(depth, confidence, {2, 3}, to_depth, to_confidence, {2, 6});
+  EXPECT_THAT(to_depth, ElementsAre(0, 0, 0, 5, 0, 0, 0, 0, 0, 3, 0, 0));
+  EXPECT_THAT(to_confidence, ElementsAre(0, 0, 0, 0.5f, 0, 0, 0, 0, 0, 0.75f, 0, 0));
+}
+
+TEST(Resample, TheNearestOfSeveralPointsStays) {
+  const std::vector<float> depth = {7, 2, 9, 0};
+  const std::vector<float> confidence = {0.1f, 0.2f, 0.3f, 0};
+  std::vector<float> to_depth(1);
+  std::vector<float> to_confidence(1);
+  ResamplePoints(depth, confidence, {2, 2}, to_depth, to_confidence, {1, 1});
+  EXPECT_EQ(to_depth[0], 2);
+  EXPECT_EQ(to_confidence[0], 0.2f);
+}
+
+}  // namespace
+}  // namespace orb360::nn
