@@ -14,5 +14,7 @@ using Command = std::function<int()>;
 void AddRunCommand(CLI::App* app, Command* chosen);
 void AddEvaluateCommand(CLI::App* app, Command* chosen);
 void AddConfigCommand(CLI::App* app, Command* chosen);
+void AddCompleteCommand(CLI::App* app, Command* chosen);
+void AddWeightsCommand(CLI::App* app, Command* chosen);
 
 }  // namespace orb360

@@ -38,6 +38,8 @@ int Main(int argc, char** argv) {
   orb360::AddRunCommand(&app, &command);
   orb360::AddEvaluateCommand(&app, &command);
   orb360::AddConfigCommand(&app, &command);
+  orb360::AddCompleteCommand(&app, &command);
+  orb360::AddWeightsCommand(&app, &command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

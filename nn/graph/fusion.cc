@@ -124,7 +124,9 @@ class Fusion {
 std::vector<FusedNode> FuseNodes(const Graph& graph) { return Fusion(graph).Run(); }
 
 std::vector<FusedNode> KeepNodes(const Graph& graph) {
-  return {graph.nodes.begin(), graph.nodes.end()};
+  std::vector<FusedNode> nodes;
+  for (const Node& node : graph.nodes) nodes.push_back({node});
+  return nodes;
 }
 
 }  // namespace orb360::nn

@@ -1,0 +1,66 @@
+// libFuzzer's target for what reads a network behind the digest: ParseGraph must refuse with a
+// UserError or give a graph that can be planned; nothing else, whatever the bytes.
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "nn/base/check.h"
+#include "nn/graph/cpu_needs.h"
+#include "nn/graph/fusion.h"
+#include "nn/graph/lowering.h"
+#include "nn/graph/parse_graph.h"
+#include "nn/graph/placement.h"
+#include "tests/fuzz/graph_input.h"
+
+namespace orb360::nn {
+namespace {
+
+/// Plans as for the CPU, without kernels.
+class NoKernels : public Backend {
+ public:
+  NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const override {
+    return CpuNeedsOf(graph, node);
+  }
+  Step MakeStep(const Graph&, const FusedNode&, int, int) const override { return {}; }
+  Step MakeCopy(int, int, int) const override { return {}; }
+};
+
+/// Pieces of memory that are needed at the same time must not overlap.
+void CheckPlan(const Placement& placement) {
+  for (std::size_t i = 0; i < placement.pieces.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Lifetime& a = placement.pieces[i];
+      const Lifetime& b = placement.pieces[j];
+      const bool meet = a.first <= b.last && b.first <= a.last;
+      const bool overlap = placement.offsets[i] < placement.offsets[j] + b.bytes &&
+                           placement.offsets[j] < placement.offsets[i] + a.bytes;
+      if (meet && overlap) std::abort();
+    }
+  }
+}
+
+void Check(std::string_view text) {
+  std::optional<GraphInput> input = ReadGraphInput(text);
+  if (!input) return;
+  try {
+    const Graph graph = ParseGraph(input->json, std::move(input->weights));
+    const int side = graph.size_multiple;
+    for (const bool fuses : {true, false}) {
+      const Lowered lowered =
+          Lower(graph, fuses ? FuseNodes(graph) : KeepNodes(graph), NoKernels(), side, 2 * side);
+      CheckPlan(PlaceValues(lowered, /*keeps_values=*/!fuses));
+    }
+  } catch (const UserError&) {
+    // The refusal of what is not allowed.
+  }
+}
+
+}  // namespace
+}  // namespace orb360::nn
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  orb360::nn::Check({reinterpret_cast<const char*>(data), size});
+  return 0;
+}
