@@ -38,20 +38,6 @@ class RunMaker {
       ConfidencePool(in[0], in[1], out[0], out[1], rule, threads);
     };
   }
-  Step::Run operator()(const ConvolutionOp& op) const {
-    const Weight& weight = this->weight(0);
-    const ConvolutionSpec spec{.in_channels = weight.shape[1],
-                               .out_channels = weight.shape[0],
-                               .kernel = weight.shape[3],
-                               .stride = op.stride,
-                               .padding = op.padding,
-                               .slope = fused_.slope};
-    const auto kernel =
-        std::make_shared<const Convolution>(spec, weight.values, this->weight(1).values);
-    return [kernel, adds = fused_.adds_residual, threads = threads_](Views in, Views out, Scratch) {
-      kernel->Run(in[0], adds ? &in[1] : nullptr, out[0], threads);
-    };
-  }
   Step::Run operator()(const DenseOp&) const {
     const Weight& weight = this->weight(0);
     const auto kernel = std::make_shared<const Dense>(weight.values, this->weight(1).values,
@@ -102,6 +88,7 @@ class RunMaker {
   Step::Run operator()(const LatitudeSineOp&) const {
     return [](Views, Views out, Scratch) { LatitudeSine(out[0]); };
   }
+  Step::Run operator()(const ConvolutionOp&) const { return NotHere(); }
   Step::Run operator()(const NormalizedConvolutionOp&) const { return NotHere(); }
   Step::Run operator()(const ConcatenateOp&) const { return NotHere(); }
   Step::Run operator()(const SliceOp&) const { return NotHere(); }
@@ -147,6 +134,24 @@ Step MakeChain(const Graph& graph, const Node& node, int width, int threads) {
           chain->ScratchBytes(width, threads)};
 }
 
+Step MakeConvolution(const Graph& graph, const FusedNode& fused, int threads) {
+  const auto weight = [&](std::size_t i) -> const Weight& {
+    return graph.weights[static_cast<std::size_t>(fused.node.weights[i])];
+  };
+  const auto& op = std::get<ConvolutionOp>(fused.node.operation);
+  const ConvolutionSpec spec{.in_channels = weight(0).shape[1],
+                             .out_channels = weight(0).shape[0],
+                             .kernel = weight(0).shape[3],
+                             .stride = op.stride,
+                             .padding = op.padding,
+                             .slope = fused.slope};
+  const auto kernel = std::make_shared<const Convolution>(spec, weight(0).values, weight(1).values);
+  return {[kernel, adds = fused.adds_residual, threads](Views in, Views out, Scratch scratch) {
+            kernel->Run(in[0], adds ? &in[1] : nullptr, out[0], scratch, threads);
+          },
+          kernel->ScratchBytes(threads)};
+}
+
 }  // namespace
 
 NodeNeeds CpuBackend::NeedsOf(const Graph& graph, const FusedNode& node) const {
@@ -158,6 +163,9 @@ Step CpuBackend::MakeStep(const Graph& graph, const FusedNode& fused, int height
     const auto output = static_cast<std::size_t>(fused.node.outputs.front());
     const Shape shape = ShapeFor(graph.tensors[output], height, width);
     return MakeChain(graph, fused.node, shape.width, threads_);
+  }
+  if (std::holds_alternative<ConvolutionOp>(fused.node.operation)) {
+    return MakeConvolution(graph, fused, threads_);
   }
   return {std::visit(RunMaker(graph, fused, threads_), fused.node.operation)};
 }

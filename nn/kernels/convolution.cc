@@ -2,9 +2,12 @@
 
 #include <algorithm>
 
+#include <omp.h>
+
 #include "nn/base/check.h"
 #include "nn/kernels/convolution_bf16.h"
 #include "nn/kernels/convolution_direct.h"
+#include "nn/kernels/convolution_winograd.h"
 
 namespace orb360::nn {
 namespace {
@@ -44,6 +47,20 @@ AlignedVector<float> PackDirect(const ConvolutionSpec& spec, std::span<const flo
   return packed;
 }
 
+// Gives every thread equally many batches of tiles, or one less.
+void RunByTiles(const WinogradConvolution& run, std::byte* scratch, int threads) {
+  const int tiles = CountWinogradTiles(run.output.shape);
+  const std::size_t bytes = WinogradScratchBytes(run.input.shape.channels);
+  int batches = (tiles + kMaxWinogradTiles - 1) / kMaxWinogradTiles;
+  batches = std::min(tiles, (batches + threads - 1) / threads * threads);
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+  for (int batch = 0; batch < batches; ++batch) {
+    const auto begin = static_cast<int>(std::int64_t{batch} * tiles / batches);
+    const auto end = static_cast<int>((std::int64_t{batch} + 1) * tiles / batches);
+    RunWinograd(run, begin, end, scratch + omp_get_thread_num() * bytes);
+  }
+}
+
 }  // namespace
 
 Convolution::Convolution(const ConvolutionSpec& spec, std::span<const float> weight,
@@ -67,8 +84,19 @@ Convolution::Convolution(const ConvolutionSpec& spec, std::span<const float> wei
     rounded_weight_ = PackBFloat16(weight, spec.out_channels, spec.in_channels, spec.kernel);
   } else {
     groups_ = DirectGroups(channels);
-    weight_ = PackDirect(spec, weight, groups_);
+    weight_ = is_winograd() ? PackWinograd(weight, spec.out_channels, spec.in_channels, groups_)
+                            : PackDirect(spec, weight, groups_);
   }
+}
+
+bool Convolution::is_winograd() const {
+  const auto [in, out, kernel, stride, padding, slope, type] = spec_;
+  return type == DataType::kFloat && kernel == 3 && stride == 1 && std::min(in, out) >= 32 &&
+         std::max(in, out) < 160;
+}
+
+std::size_t Convolution::ScratchBytes(int threads) const {
+  return is_winograd() ? threads * WinogradScratchBytes(spec_.in_channels) : 0;
 }
 
 Shape Convolution::OutputShape(const Shape& input) const {
@@ -95,10 +123,17 @@ void Convolution::CheckTensors(const TensorView& input, const TensorView* residu
 }
 
 void Convolution::Run(const TensorView& input, const TensorView* residual, const TensorView& output,
-                      int threads) const {
+                      std::span<std::byte> scratch, int threads) const {
   CheckTensors(input, residual, output);
+  ORB360_CHECK(scratch.size() >= ScratchBytes(threads), scratch.size(), ScratchBytes(threads));
+  ORB360_CHECK(reinterpret_cast<std::uintptr_t>(scratch.data()) % kAlignment == 0);
   FillHalo(input, spec_.padding, spec_.kernel / 2);
   const TensorView added = residual == nullptr ? TensorView{} : *residual;
+  if (is_winograd()) {
+    RunByTiles({spec_.slope, &groups_, weight_.data(), bias_.data(), input, added, output},
+               scratch.data(), threads);
+    return;
+  }
   const DirectConvolution direct{spec_.kernel, spec_.stride, spec_.slope, &groups_, weight_.data(),
                                  bias_.data(), input,        added,       output};
   const BFloat16Convolution rounded{spec_.kernel, spec_.stride, spec_.slope, rounded_weight_.data(),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,7 +30,8 @@ constexpr int kMaxPlanarChannels = 8;
 
 /// A dense convolution with its weights packed in the order the kernel reads them, its bias, and
 /// what usually follows: y = activation(convolution(x) + bias + residual). NaN and infinity spread
-/// to the outputs whose window holds them, and to no others.
+/// to the outputs whose window holds them; those of 3x3 convolutions of floats with many channels,
+/// which are computed in tiles of 4x4 outputs, to whole tiles.
 ///
 /// | type | input | output |
 /// |---|---|---|
@@ -46,18 +48,23 @@ class Convolution {
   const ConvolutionSpec& spec() const { return spec_; }
   Shape OutputShape(const Shape& input) const;
 
+  /// Bytes of scratch that Run needs.
+  std::size_t ScratchBytes(int threads) const;
+
   /// The input's halo must be at least kernel / 2 and is overwritten with the padding. `output`
   /// must not overlap the input. `residual`, if not null, has the output's shape, layout and type
-  /// and may be the output itself; there is none where floats become bfloat16. The same bits for
-  /// any number of threads.
+  /// and may be the output itself; there is none where floats become bfloat16. `scratch`, of
+  /// ScratchBytes(), is aligned to kAlignment. The same bits for any number of threads.
   void Run(const TensorView& input, const TensorView* residual, const TensorView& output,
-           int threads) const;
+           std::span<std::byte> scratch, int threads) const;
 
  private:
   // True where floats in planes become blocks of bfloat16.
   bool is_bfloat16_stem() const {
     return spec_.type == DataType::kBFloat16 && spec_.in_channels <= kMaxPlanarChannels;
   }
+  // True for what is computed in tiles by Winograd's method.
+  bool is_winograd() const;
   void CheckTensors(const TensorView& input, const TensorView* residual,
                     const TensorView& output) const;
 

@@ -15,53 +15,15 @@
 // foreach_target must come first.
 #include <hwy/highway.h>
 
+#include "nn/kernels/convolution_tile-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace orb360::nn {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-constexpr int kBlock = BlockOf(DataType::kFloat);
-
-// A vector holds a block of output channels, or the whole fraction of one that fits a register.
-using D = hn::CappedTag<float, kBlock>;
-using V = hn::Vec<D>;
-constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
-constexpr int kVectorsPerBlock = kBlock / kLanes;
-
-// The tile that stays in registers: all output channels of a group at a few pixels of a row. A
-// step takes one input channel of one tap: it loads the tile's weights, broadcasts each pixel's
-// input, and adds their products.
-//
-// - The units finish 2 FMAs a cycle with a latency of 4 cycles (Intel since Skylake, AMD since Zen;
-//   4 units x 4 cycles on the widest ARM cores): 8 sums must be on their way, 16 there.
-// - They load 2 vectors a cycle: a tile of b vectors x p pixels loads b + p of them for b * p FMAs,
-//   and keeps up if b + p <= b * p.
-// - All sums, the b weights and one input fit the registers.
-//
-// AVX-512, 32 registers: 2 x 14 takes 31 of them, loads 16 times in 14 cycles and needs 128 bytes
-// of weights in that time, which the second-level cache delivers; 3 x 9 does the same for an odd
-// number of blocks, and 1 x 28 loads as much as it multiplies.
-// AVX2, 16 registers: 2 x 6 takes 15. SSE4, without FMA, needs one more for the product: 4 x 2
-// takes 8 + 4 + 2. NEON, 32 registers: 4 x 6 takes 29.
-#if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
-constexpr int kMaxBlocks = 3;
-constexpr int MaxPixels(int blocks) { return blocks == 1 ? 28 : blocks == 2 ? 14 : 9; }
-#elif HWY_TARGET == HWY_AVX2 || HWY_ARCH_ARM_A64
-constexpr int kMaxBlocks = 1;
-constexpr int MaxPixels(int /*blocks*/) { return 6; }
-#else
-constexpr int kMaxBlocks = 1;
-constexpr int MaxPixels(int /*blocks*/) { return 2; }
-#endif
 
 // What the tiles of a row have in common.
 struct Row {
-  int kernel;
-  int in_channels;
-  ptrdiff_t in_row;    // elements from a row of the input to the next
-  ptrdiff_t in_plane;  // from a block (kBlocked) or a channel (kPlanar) to the next
-  const float* weight;
-  const float* bias;
+  TileSource source;
   float slope;
   int out_channels;  // that exist in this group
   ptrdiff_t out_plane;
@@ -92,10 +54,6 @@ HWY_INLINE void StoreTile(const Row& row, V (&sum)[kVectors][kPixels], const flo
                           void* out_pixels) {
   const D d;
   const V slope = hn::Set(d, row.slope);
-  const auto finish = [&](V value) HWY_ATTR {
-    // NaN fails the comparison and stays NaN.
-    return hn::IfThenElse(hn::Gt(value, hn::Zero(d)), value, hn::Mul(value, slope));
-  };
   if (row.out_type == DataType::kBFloat16) {
     constexpr int kOutBlock = BlockOf(DataType::kBFloat16);
     HWY_UNROLL(16)
@@ -106,7 +64,7 @@ HWY_INLINE void StoreTile(const Row& row, V (&sum)[kVectors][kPixels], const flo
       const auto exists = hn::FirstN(d, std::max(0, row.out_channels - v * kLanes));
       HWY_UNROLL(28)
       for (int p = 0; p < kPixels; ++p) {
-        StoreRounded(hn::IfThenElseZero(exists, finish(sum[v][p])), to + p * kOutBlock);
+        StoreRounded(hn::IfThenElseZero(exists, Activate(sum[v][p], slope)), to + p * kOutBlock);
       }
     }
     return;
@@ -127,7 +85,7 @@ HWY_INLINE void StoreTile(const Row& row, V (&sum)[kVectors][kPixels], const flo
           value = hn::Add(value, hn::LoadU(d, residual + channel / kBlock * row.residual_plane +
                                                   p * kBlock + lane));
         }
-        hn::StoreU(hn::IfThenElseZero(exists, finish(value)), d,
+        hn::StoreU(hn::IfThenElseZero(exists, Activate(value, slope)), d,
                    out + channel / kBlock * row.out_plane + p * kBlock + lane);
       }
     }
@@ -148,43 +106,11 @@ HWY_INLINE void StoreTile(const Row& row, V (&sum)[kVectors][kPixels], const flo
   }
 }
 
-// `kInStep` is the distance of two pixels' inputs: the stride, in blocks if the input is blocked.
 template <int kBlocks, int kPixels, int kInStep>
 void ComputeTile(const Row& row, const float* in, const float* residual, void* out) {
-  constexpr bool kPlanarInput = kInStep < kBlock;
   constexpr int kVectors = kBlocks * kVectorsPerBlock;
-  const D d;
   V sum[kVectors][kPixels];
-  HWY_UNROLL(16)
-  for (int v = 0; v < kVectors; ++v) {
-    const V bias = hn::Load(d, row.bias + v * kLanes);
-    HWY_UNROLL(28)
-    for (int p = 0; p < kPixels; ++p) sum[v][p] = bias;
-  }
-  const float* HWY_RESTRICT weight = row.weight;
-  const ptrdiff_t channel_step = kPlanarInput ? row.in_plane : 1;
-  for (int first = 0; first < row.in_channels; first += kBlock) {
-    const int count = std::min(kBlock, row.in_channels - first);
-    for (int v = 0; v < row.kernel; ++v) {
-      for (int u = 0; u < row.kernel; ++u) {
-        const float* HWY_RESTRICT x = in + v * row.in_row + u * (kPlanarInput ? 1 : kBlock);
-        for (int c = 0; c < count; ++c) {
-          V w[kVectors];
-          HWY_UNROLL(16)
-          for (int i = 0; i < kVectors; ++i) w[i] = hn::Load(d, weight + i * kLanes);
-          HWY_UNROLL(28)
-          for (int p = 0; p < kPixels; ++p) {
-            const V value = hn::Set(d, x[p * kInStep]);
-            HWY_UNROLL(16)
-            for (int i = 0; i < kVectors; ++i) sum[i][p] = hn::MulAdd(value, w[i], sum[i][p]);
-          }
-          x += channel_step;
-          weight += kVectors * kLanes;
-        }
-      }
-    }
-    in += row.in_plane;
-  }
+  SumTile<kVectors, kPixels, kInStep>(row.source, in, sum);
   StoreTile<kVectors, kPixels>(row, sum, residual, out);
 }
 
@@ -235,12 +161,8 @@ void RunDirectRows(const DirectConvolution& run, int first, int last) {
     const TileFunction* functions = TileFunctions(blocks, run.stride * in_block);
     const int first_channel = first_block * kBlock;
     const int plane = first_channel / out_block;
-    const Row row{run.kernel,
-                  run.input.shape.channels,
-                  run.input.row_stride,
-                  run.input.plane_stride,
-                  weight,
-                  bias,
+    const Row row{{run.kernel, run.input.shape.channels, run.input.row_stride,
+                   run.input.plane_stride, weight, bias},
                   run.slope,
                   std::min(blocks * kBlock, output.shape.channels - first_channel),
                   output.plane_stride,

@@ -12,6 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "nn/base/aligned_vector.h"
 #include "nn/base/check.h"
 #include "tests/dispatch_targets.h"
 #include "tests/nn/tensor_memory.h"
@@ -100,6 +101,12 @@ void Fill(const TensorView& tensor, const std::vector<float>& values) {
   Reorder(planar.view, tensor);
 }
 
+void RunOn(const Convolution& convolution, const TensorView& input, const TensorView* residual,
+           const TensorView& output, int threads) {
+  AlignedVector<std::byte> scratch(convolution.ScratchBytes(threads), std::byte{0x7f});
+  convolution.Run(input, residual, output, scratch, threads);
+}
+
 // The output, channel by channel, behind whatever the blocks are filled up with.
 std::vector<float> Compute(const Case& c, const Data& data, int threads,
                            BFloat16Unit unit = BestBFloat16Unit()) {
@@ -112,7 +119,7 @@ std::vector<float> Compute(const Case& c, const Data& data, int threads,
   EXPECT_EQ(convolution.OutputShape(c.input_shape()), c.output_shape());
   Fill(input.view, data.input);
   Fill(residual.view, data.residual);
-  convolution.Run(input.view, c.with_residual ? &residual.view : nullptr, output.view, threads);
+  RunOn(convolution, input.view, c.with_residual ? &residual.view : nullptr, output.view, threads);
   TensorView whole = output.view;
   if (c.output_layout == Layout::kBlocked) {
     whole.shape.channels = whole.planes() * BlockOf(c.output_type);
@@ -306,7 +313,7 @@ TEST(Convolution, AddsAResidualInPlace) {
   TensorMemory output({c.output_shape(), Layout::kBlocked, DataType::kFloat, 0});
   Fill(input.view, data.input);
   Fill(output.view, data.residual);
-  convolution.Run(input.view, &output.view, output.view, 2);
+  RunOn(convolution, input.view, &output.view, output.view, 2);
   std::size_t next = 0;
   for (int o = 0; o < 32; ++o) {
     for (int y = 0; y < 6; ++y) {
@@ -323,7 +330,8 @@ TEST(Convolution, ReadsAndWritesSlicesOfChannels) {
   TensorMemory input({{52, 4, 9}, Layout::kBlocked, DataType::kFloat, 1});
   TensorMemory output({{48, 4, 9}, Layout::kBlocked, DataType::kFloat, 1});
   Fill(ChannelSlice(input.view, 32, 20), data.input);
-  convolution.Run(ChannelSlice(input.view, 32, 20), nullptr, ChannelSlice(output.view, 16, 16), 1);
+  RunOn(convolution, ChannelSlice(input.view, 32, 20), nullptr, ChannelSlice(output.view, 16, 16),
+        1);
   float untouched;
   std::memset(&untouched, 0x7f, sizeof(untouched));
   std::size_t next = 0;
@@ -449,13 +457,13 @@ TEST(Convolution, RefusesWhatDoesNotFit) {
   TensorMemory narrow({{16, 4, 4}, Layout::kBlocked, DataType::kFloat, 0});
   TensorMemory planar({{16, 4, 4}, Layout::kPlanar, DataType::kFloat, 1});
   TensorMemory small({{16, 4, 3}, Layout::kBlocked, DataType::kFloat, 0});
-  EXPECT_THROW(convolution.Run(narrow.view, nullptr, input.view, 1), ContractError);
-  EXPECT_THROW(convolution.Run(planar.view, nullptr, narrow.view, 1), ContractError);
-  EXPECT_THROW(convolution.Run(input.view, nullptr, small.view, 1), ContractError);
-  EXPECT_THROW(convolution.Run(input.view, &small.view, narrow.view, 1), ContractError);
+  EXPECT_THROW(RunOn(convolution, narrow.view, nullptr, input.view, 1), ContractError);
+  EXPECT_THROW(RunOn(convolution, planar.view, nullptr, narrow.view, 1), ContractError);
+  EXPECT_THROW(RunOn(convolution, input.view, nullptr, small.view, 1), ContractError);
+  EXPECT_THROW(RunOn(convolution, input.view, &small.view, narrow.view, 1), ContractError);
   TensorMemory rounded({{16, 4, 4}, Layout::kBlocked, DataType::kBFloat16, 1});
-  EXPECT_THROW(convolution.Run(rounded.view, nullptr, narrow.view, 1), ContractError);
-  EXPECT_THROW(convolution.Run(input.view, nullptr, rounded.view, 1), ContractError);
+  EXPECT_THROW(RunOn(convolution, rounded.view, nullptr, narrow.view, 1), ContractError);
+  EXPECT_THROW(RunOn(convolution, input.view, nullptr, rounded.view, 1), ContractError);
   const ConvolutionSpec of_bfloat16{16, 16, 3, 1, Padding::kZero, 1, DataType::kBFloat16};
   EXPECT_THROW(Convolution(of_bfloat16, weight, {}, BFloat16Unit::kNone), ContractError);
 }

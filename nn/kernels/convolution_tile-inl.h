@@ -1,0 +1,114 @@
+// The tile of a convolution that stays in registers, for each instruction set. Included by files
+// that Highway compiles for all of them.
+
+#if defined(ORB360_NN_KERNELS_CONVOLUTION_TILE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ORB360_NN_KERNELS_CONVOLUTION_TILE_INL_H_
+#undef ORB360_NN_KERNELS_CONVOLUTION_TILE_INL_H_
+#else
+#define ORB360_NN_KERNELS_CONVOLUTION_TILE_INL_H_
+#endif
+
+#include <algorithm>
+#include <cstddef>
+
+#include <hwy/highway.h>
+
+#include "nn/tensor.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orb360::nn {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr int kBlock = BlockOf(DataType::kFloat);
+
+// A vector holds a block of output channels, or the whole fraction of one that fits a register.
+using D = hn::CappedTag<float, kBlock>;
+using V = hn::Vec<D>;
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
+constexpr int kVectorsPerBlock = kBlock / kLanes;
+
+// The tile that stays in registers: all output channels of a group at a few pixels of a row. A
+// step takes one input channel of one tap: it loads the tile's weights, broadcasts each pixel's
+// input, and adds their products.
+//
+// - The units finish 2 FMAs a cycle with a latency of 4 cycles (Intel since Skylake, AMD since Zen;
+//   4 units x 4 cycles on the widest ARM cores): 8 sums must be on their way, 16 there.
+// - They load 2 vectors a cycle: a tile of b vectors x p pixels loads b + p of them for b * p FMAs,
+//   and keeps up if b + p <= b * p.
+// - All sums, the b weights and one input fit the registers.
+//
+// AVX-512, 32 registers: 2 x 14 takes 31 of them, loads 16 times in 14 cycles and needs 128 bytes
+// of weights in that time, which the second-level cache delivers; 3 x 9 does the same for an odd
+// number of blocks, and 1 x 28 loads as much as it multiplies.
+// AVX2, 16 registers: 2 x 6 takes 15. SSE4, without FMA, needs one more for the product: 4 x 2
+// takes 8 + 4 + 2. NEON, 32 registers: 4 x 6 takes 29.
+#if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
+constexpr int kMaxBlocks = 3;
+constexpr int MaxPixels(int blocks) { return blocks == 1 ? 28 : blocks == 2 ? 14 : 9; }
+#elif HWY_TARGET == HWY_AVX2 || HWY_ARCH_ARM_A64
+constexpr int kMaxBlocks = 1;
+constexpr int MaxPixels(int /*blocks*/) { return 6; }
+#else
+constexpr int kMaxBlocks = 1;
+constexpr int MaxPixels(int /*blocks*/) { return 2; }
+#endif
+
+// What is convolved. In the planes of its input stand blocks of channels (kBlocked) or single ones.
+struct TileSource {
+  int kernel;
+  int in_channels;
+  ptrdiff_t in_row;     // elements from a row of the input to the next
+  ptrdiff_t in_plane;   // from a plane to the next
+  const float* weight;  // [block of input channels][tap][input channel][output channel]
+  const float* bias;
+};
+
+// The sums of kPixels pixels; `in` is the first tap of the first of them. `kInStep` is the distance
+// of two pixels' inputs: the stride, in blocks if the input is blocked.
+template <int kVectors, int kPixels, int kInStep>
+HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVectors][kPixels]) {
+  constexpr bool kIsPlanar = kInStep < kBlock;
+  const D d;
+  HWY_UNROLL(16)
+  for (int v = 0; v < kVectors; ++v) {
+    const V bias = hn::Load(d, source.bias + v * kLanes);
+    HWY_UNROLL(28)
+    for (int p = 0; p < kPixels; ++p) sum[v][p] = bias;
+  }
+  const float* HWY_RESTRICT weight = source.weight;
+  const ptrdiff_t channel_step = kIsPlanar ? source.in_plane : 1;
+  for (int first = 0; first < source.in_channels; first += kBlock) {
+    const int count = std::min(kBlock, source.in_channels - first);
+    for (int v = 0; v < source.kernel; ++v) {
+      for (int u = 0; u < source.kernel; ++u) {
+        const float* HWY_RESTRICT x = in + v * source.in_row + u * (kIsPlanar ? 1 : kBlock);
+        for (int c = 0; c < count; ++c) {
+          V w[kVectors];
+          HWY_UNROLL(16)
+          for (int i = 0; i < kVectors; ++i) w[i] = hn::Load(d, weight + i * kLanes);
+          HWY_UNROLL(28)
+          for (int p = 0; p < kPixels; ++p) {
+            const V value = hn::Set(d, x[p * kInStep]);
+            HWY_UNROLL(16)
+            for (int i = 0; i < kVectors; ++i) sum[i][p] = hn::MulAdd(value, w[i], sum[i][p]);
+          }
+          x += channel_step;
+          weight += kVectors * kLanes;
+        }
+      }
+    }
+    in += source.in_plane;
+  }
+}
+
+// y = x > 0 ? x : slope * x. NaN fails the comparison and stays NaN.
+HWY_INLINE V Activate(V value, V slope) {
+  return hn::IfThenElse(hn::Gt(value, hn::Zero(D())), value, hn::Mul(value, slope));
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace orb360::nn
+HWY_AFTER_NAMESPACE();
+
+#endif  // ORB360_NN_KERNELS_CONVOLUTION_TILE_INL_H_

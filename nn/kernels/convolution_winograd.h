@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "nn/base/aligned_vector.h"
+#include "nn/tensor.h"
+
+namespace orb360::nn {
+
+/// One run of a 3x3 convolution of stride 1 by Winograd's minimal filtering F(4x4, 3x3): every tile
+/// of 4x4 outputs takes 36 products for each pair of channels instead of 144. Input tiles of 6x6,
+/// filters and outputs are transformed there and back (Lavin and Gray, "Fast Algorithms for
+/// Convolutional Neural Networks", 2016).
+struct WinogradConvolution {
+  float slope = 1;
+  const std::vector<int>* groups = nullptr;  // as for the direct kernel
+  const float* weight = nullptr;             // by PackWinograd
+  const float* bias = nullptr;               // of every output channel of every group
+  TensorView input;                          // floats, kBlocked, with their padding in the halo
+  TensorView residual;                       // data is null if there is none
+  TensorView output;                         // floats
+};
+
+/// Transforms the filters, out_channels x in_channels x 3 x 3:
+/// [group][product of 36][input channel][output channel].
+AlignedVector<float> PackWinograd(std::span<const float> weight, int out_channels, int in_channels,
+                                  const std::vector<int>& groups);
+
+/// Tiles that cover the output; they are counted row by row.
+int CountWinogradTiles(const Shape& output);
+
+/// The most tiles that RunWinograd takes at once.
+constexpr int kMaxWinogradTiles = 28;
+
+/// Bytes that RunWinograd needs for its work.
+std::size_t WinogradScratchBytes(int in_channels);
+
+/// Computes tiles `first` to `last` - 1. `scratch` is aligned to kAlignment.
+void RunWinograd(const WinogradConvolution& run, int first, int last, std::byte* scratch);
+
+}  // namespace orb360::nn
