@@ -14,6 +14,8 @@ struct Layer {
   int kernel;
   int stride;
   int reduction;
+  /// As the network's executor allows it: see ConvolutionSpec::may_tile.
+  bool may_tile = true;
 };
 
 /// A network's convolutions; equal shapes stand once.
@@ -32,7 +34,7 @@ inline const LayerList kCompletionLayers = {"completion",
                                              {"E4", 96, 128, 3, 2, 8},
                                              {"E4 residual", 128, 128, 3, 1, 16},
                                              {"E5", 128, 160, 3, 2, 16},
-                                             {"E5 residual", 160, 160, 3, 1, 32},
+                                             {"E5 residual", 160, 160, 3, 1, 32, false},
                                              {"L4", 160, 128, 1, 1, 32},
                                              {"D4", 128, 128, 3, 1, 16},
                                              {"L3", 128, 96, 1, 1, 16},

@@ -59,7 +59,7 @@ Message Value(const std::string& name, const std::vector<int>& dims) {
 }  // namespace
 
 std::string OnnxModel(const Problem& problem) {
-  const auto [name, in, out, kernel, stride, reduction] = problem.layer;
+  const auto [name, in, out, kernel, stride, reduction, may_tile] = problem.layer;
   const auto beyond = [k = kernel, s = stride](int outputs, int inputs) {
     return (outputs - 1) * s + k - inputs - k / 2;
   };

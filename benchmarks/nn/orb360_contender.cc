@@ -13,7 +13,7 @@ class Orb360 : public Contender {
   Orb360(const Problem& problem, DataType type, int threads)
       : threads_(threads),
         convolution_({problem.layer.in_channels, problem.layer.out_channels, problem.layer.kernel,
-                      problem.layer.stride, Padding::kZero, 1, type},
+                      problem.layer.stride, Padding::kZero, 1, type, problem.layer.may_tile},
                      problem.weight, problem.bias) {
     const Shape shape{problem.layer.in_channels, problem.height, problem.width};
     const bool is_stem = shape.channels <= kMaxPlanarChannels;

@@ -1,5 +1,6 @@
 #include "nn/graph/cpu_backend.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <utility>
@@ -139,12 +140,19 @@ Step MakeConvolution(const Graph& graph, const FusedNode& fused, int threads) {
     return graph.weights[static_cast<std::size_t>(fused.node.weights[i])];
   };
   const auto& op = std::get<ConvolutionOp>(fused.node.operation);
-  const ConvolutionSpec spec{.in_channels = weight(0).shape[1],
-                             .out_channels = weight(0).shape[0],
-                             .kernel = weight(0).shape[3],
-                             .stride = op.stride,
-                             .padding = op.padding,
-                             .slope = fused.slope};
+  // A panorama that turns by the smallest step the network takes must turn by whole tiles here as
+  // well, so that the result turns with it bit for bit.
+  const int halvings =
+      graph.tensors[static_cast<std::size_t>(fused.node.outputs[0])].extent.halvings;
+  const int step = graph.size_multiple >> std::max(halvings, 0);
+  const ConvolutionSpec spec{
+      .in_channels = weight(0).shape[1],
+      .out_channels = weight(0).shape[0],
+      .kernel = weight(0).shape[3],
+      .stride = op.stride,
+      .padding = op.padding,
+      .slope = fused.slope,
+      .may_tile = op.padding == Padding::kZero || step % kConvolutionTile == 0};
   const auto kernel = std::make_shared<const Convolution>(spec, weight(0).values, weight(1).values);
   return {[kernel, adds = fused.adds_residual, threads](Views in, Views out, Scratch scratch) {
             kernel->Run(in[0], adds ? &in[1] : nullptr, out[0], scratch, threads);

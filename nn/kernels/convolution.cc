@@ -12,7 +12,12 @@
 namespace orb360::nn {
 namespace {
 
+static_assert(kConvolutionTile == kWinogradTile);
+
 constexpr int kBlock = BlockOf(DataType::kFloat);
+
+// A full block of either: with fewer, most of what is transformed would be what fills it up.
+constexpr int kFewestWinogradChannels = kBlock;
 
 // Output rows that are computed in one go, group of channels after group: the input they read
 // stays in half of a second-level cache of 1 MiB meanwhile (the other half is for the weights), and
@@ -90,9 +95,9 @@ Convolution::Convolution(const ConvolutionSpec& spec, std::span<const float> wei
 }
 
 bool Convolution::is_winograd() const {
-  const auto [in, out, kernel, stride, padding, slope, type] = spec_;
-  return type == DataType::kFloat && kernel == 3 && stride == 1 && std::min(in, out) >= 32 &&
-         std::max(in, out) < 160;
+  const auto [in, out, kernel, stride, padding, slope, type, may_tile] = spec_;
+  return type == DataType::kFloat && kernel == 3 && stride == 1 &&
+         std::min(in, out) >= kFewestWinogradChannels && may_tile;
 }
 
 std::size_t Convolution::ScratchBytes(int threads) const {

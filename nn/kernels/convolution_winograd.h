@@ -28,6 +28,9 @@ struct WinogradConvolution {
 AlignedVector<float> PackWinograd(std::span<const float> weight, int out_channels, int in_channels,
                                   const std::vector<int>& groups);
 
+/// Outputs of a tile in a row.
+constexpr int kWinogradTile = 4;
+
 /// Tiles that cover the output; they are counted row by row.
 int CountWinogradTiles(const Shape& output);
 

@@ -147,7 +147,7 @@ struct Sum {
 };
 
 Sum Expected(const Case& c, const Data& data, int o, int y, int x) {
-  const auto& [in_channels, out_channels, kernel, stride, padding, slope, type] = c.spec;
+  const auto& [in_channels, out_channels, kernel, stride, padding, slope, type, may_tile] = c.spec;
   const int reach = kernel / 2;
   Sum sum;
   for (int i = 0; i < in_channels; ++i) {
@@ -258,10 +258,45 @@ TEST(Convolution, IsThePlainSumForEveryWidth) {
   }
 }
 
+TEST(Convolution, InTilesIsThePlainSumForEverySize) {
+  for (int width = 1; width <= 17; ++width) {
+    for (const int height : {1, 3, 4, 5, 9}) {
+      Case c{{16, 20, 3, 1, Padding::kWrapReplicate, 0.1f}, height, width};
+      c.with_residual = width % 2 == 0;
+      ExpectRight(c);
+      c.output_layout = Layout::kPlanar;
+      ExpectRight(c);
+    }
+  }
+  ExpectRight({{48, 80, 3, 1, Padding::kWrapCrossPole, 0}, 26, 54});
+}
+
+TEST(Convolution, TurnsWithThePictureByAnyColumnOrByTiles) {
+  Case c{{32, 32, 3, 1, Padding::kWrapReplicate, 0.1f}, 6, 12};
+  for (const bool may_tile : {false, true}) {
+    c.spec.may_tile = may_tile;
+    Data data(c);
+    const std::vector<float> before = Compute(c, data, 1);
+    const int columns = may_tile ? kConvolutionTile : 1;
+    for (std::size_t row = 0; row < data.input.size(); row += c.width) {
+      const auto begin = data.input.begin() + static_cast<std::ptrdiff_t>(row);
+      std::rotate(begin, begin + columns, begin + c.width);
+    }
+    const std::vector<float> turned = Compute(c, data, 1);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const std::size_t column = i % c.width;
+      ASSERT_EQ(turned[i], before[i - column + (column + columns) % c.width]) << i;
+    }
+  }
+}
+
 TEST(Convolution, IsThePlainSumForEveryNumberOfChannels) {
   for (const int in : {1, 2, 15, 16, 33, 80}) {
     for (const int out : {1, 16, 31, 38, 48, 64, 80, 97}) {
-      ExpectRight({{in, out, 3, 1, Padding::kZero, 0.2f}, 3, 15});
+      Case c{{in, out, 3, 1, Padding::kZero, 0.2f}, 3, 15};
+      ExpectRight(c);
+      c.spec.may_tile = false;
+      ExpectRight(c);
       ExpectRight({{in, out, 1, 1, Padding::kZero, 1}, 2, 29});
     }
   }
@@ -349,7 +384,8 @@ TEST(Convolution, CarriesNanAndInfinityToTheirWindowsOnly) {
   for (const float value :
        {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     for (const int stride : {1, 2}) {
-      const Case c{{24, 20, 3, stride, Padding::kZero, 0}, 9, 37};
+      Case c{{24, 20, 3, stride, Padding::kZero, 0}, 9, 37};
+      c.spec.may_tile = false;
       Data data(c);
       std::fill(data.weight.begin(), data.weight.end(), 1.0f);
       data.input[(20 * 9 + 4) * 37 + 18] = value;  // channel 20, row 4, column 18
