@@ -1,6 +1,7 @@
 #include "nn/kernels/convolution.h"
 
 #include <algorithm>
+#include <bit>
 
 #include <omp.h>
 
@@ -53,8 +54,11 @@ AlignedVector<float> PackDirect(const ConvolutionSpec& spec, std::span<const flo
 }
 
 // Gives every thread equally many batches of tiles, or one less.
-void RunByTiles(const WinogradConvolution& run, std::byte* scratch, int threads) {
+void RunByTiles(const WinogradConvolution& run, const DirectConvolution& direct, std::byte* scratch,
+                int threads) {
+  const auto [channels, height, width] = run.output.shape;
   const int tiles = CountWinogradTiles(run.output.shape);
+  const int across = (width + kWinogradTile - 1) / kWinogradTile;
   const std::size_t bytes = WinogradScratchBytes(run.input.shape.channels);
   int batches = (tiles + kMaxWinogradTiles - 1) / kMaxWinogradTiles;
   batches = std::min(tiles, (batches + threads - 1) / threads * threads);
@@ -62,7 +66,14 @@ void RunByTiles(const WinogradConvolution& run, std::byte* scratch, int threads)
   for (int batch = 0; batch < batches; ++batch) {
     const auto begin = static_cast<int>(std::int64_t{batch} * tiles / batches);
     const auto end = static_cast<int>((std::int64_t{batch} + 1) * tiles / batches);
-    RunWinograd(run, begin, end, scratch + omp_get_thread_num() * bytes);
+    std::uint32_t left_out = RunWinograd(run, begin, end, scratch + omp_get_thread_num() * bytes);
+    for (; left_out != 0; left_out &= left_out - 1) {
+      const int tile = begin + std::countr_zero(left_out);
+      const int y = tile / across * kWinogradTile;
+      const int x = tile % across * kWinogradTile;
+      RunDirect(direct,
+                {y, std::min(y + kWinogradTile, height), x, std::min(x + kWinogradTile, width)});
+    }
   }
 }
 
@@ -89,8 +100,10 @@ Convolution::Convolution(const ConvolutionSpec& spec, std::span<const float> wei
     rounded_weight_ = PackBFloat16(weight, spec.out_channels, spec.in_channels, spec.kernel);
   } else {
     groups_ = DirectGroups(channels);
-    weight_ = is_winograd() ? PackWinograd(weight, spec.out_channels, spec.in_channels, groups_)
-                            : PackDirect(spec, weight, groups_);
+    weight_ = PackDirect(spec, weight, groups_);
+    if (is_winograd()) {
+      filters_ = PackWinograd(weight, spec.out_channels, spec.in_channels, groups_);
+    }
   }
 }
 
@@ -134,13 +147,13 @@ void Convolution::Run(const TensorView& input, const TensorView* residual, const
   ORB360_CHECK(reinterpret_cast<std::uintptr_t>(scratch.data()) % kAlignment == 0);
   FillHalo(input, spec_.padding, spec_.kernel / 2);
   const TensorView added = residual == nullptr ? TensorView{} : *residual;
+  const DirectConvolution direct{spec_.kernel, spec_.stride, spec_.slope, &groups_, weight_.data(),
+                                 bias_.data(), input,        added,       output};
   if (is_winograd()) {
-    RunByTiles({spec_.slope, &groups_, weight_.data(), bias_.data(), input, added, output},
+    RunByTiles({spec_.slope, &groups_, filters_.data(), bias_.data(), input, added, output}, direct,
                scratch.data(), threads);
     return;
   }
-  const DirectConvolution direct{spec_.kernel, spec_.stride, spec_.slope, &groups_, weight_.data(),
-                                 bias_.data(), input,        added,       output};
   const BFloat16Convolution rounded{spec_.kernel, spec_.stride, spec_.slope, rounded_weight_.data(),
                                     bias_.data(), input,        added,       output};
   const int rows = output.shape.height;
@@ -149,7 +162,7 @@ void Convolution::Run(const TensorView& input, const TensorView* residual, const
   for (int first = 0; first < rows; first += band) {
     const int last = std::min(rows, first + band);
     if (rounded_weight_.empty()) {
-      RunDirect(direct, first, last);
+      RunDirect(direct, {first, last, 0, output.shape.width});
     } else if (unit_ == BFloat16Unit::kAmx) {
       RunAmx(rounded, first, last);
     } else {

@@ -36,7 +36,7 @@ constexpr int kMaxPlanarChannels = 8;
 
 /// A dense convolution with its weights packed in the order the kernel reads them, its bias, and
 /// what usually follows: y = activation(convolution(x) + bias + residual). NaN and infinity spread
-/// to the outputs whose window holds them; where tiles are computed, to whole tiles.
+/// to the outputs whose window holds them, and to no others.
 ///
 /// | type | input | output |
 /// |---|---|---|
@@ -75,8 +75,9 @@ class Convolution {
 
   ConvolutionSpec spec_;
   BFloat16Unit unit_;
-  std::vector<int> groups_;  // blocks of output channels that are computed together
-  AlignedVector<float> weight_;
+  std::vector<int> groups_;       // blocks of output channels that are computed together
+  AlignedVector<float> weight_;   // for the direct kernel
+  AlignedVector<float> filters_;  // for tiles
   AlignedVector<std::uint16_t> rounded_weight_;  // for `unit_`
   AlignedVector<float> bias_;
 };

@@ -148,7 +148,7 @@ const TileFunction* TileFunctions(int blocks, int in_step) {
 
 int PreferredBlocks() { return kMaxBlocks; }
 
-void RunDirectRows(const DirectConvolution& run, int first, int last) {
+void RunDirectPart(const DirectConvolution& run, const Rectangle& part) {
   const TensorView& output = run.output;
   const int in_block = run.input.layout == Layout::kBlocked ? kBlock : 1;
   const int out_block = output.layout == Layout::kBlocked ? BlockOf(output.type) : 1;
@@ -172,17 +172,17 @@ void RunDirectRows(const DirectConvolution& run, int first, int last) {
                   first_channel % out_block};
     // Tiles of equal width, give or take a pixel: a remainder of few pixels would have too few
     // sums on their way.
-    const int width = output.shape.width;
+    const int width = part.right - part.left;
     const int max_pixels = MaxPixels(blocks);
     const int tiles = (width + max_pixels - 1) / max_pixels;
-    for (int y = first; y < last; ++y) {
+    for (int y = part.top; y < part.bottom; ++y) {
       const float* in = run.input.row<float>(0, y * run.stride - reach);
       std::byte* out = static_cast<std::byte*>(output.data) +
                        (plane * output.plane_stride + y * output.row_stride) *
                            static_cast<ptrdiff_t>(SizeOf(output.type));
       for (int t = 0; t < tiles; ++t) {
-        const int x = t * width / tiles;
-        const int end = (t + 1) * width / tiles;
+        const int x = part.left + t * width / tiles;
+        const int end = part.left + (t + 1) * width / tiles;
         functions[end - x - 1](row, in + (x * run.stride - reach) * in_block,
                                run.residual.data == nullptr
                                    ? nullptr
@@ -204,7 +204,7 @@ HWY_AFTER_NAMESPACE();
 namespace orb360::nn {
 
 HWY_EXPORT(PreferredBlocks);
-HWY_EXPORT(RunDirectRows);
+HWY_EXPORT(RunDirectPart);
 
 std::vector<int> DirectGroups(int out_channels) {
   int left = (out_channels + BlockOf(DataType::kFloat) - 1) / BlockOf(DataType::kFloat);
@@ -215,8 +215,8 @@ std::vector<int> DirectGroups(int out_channels) {
   return groups;
 }
 
-void RunDirect(const DirectConvolution& run, int first, int last) {
-  HWY_DYNAMIC_DISPATCH(RunDirectRows)(run, first, last);
+void RunDirect(const DirectConvolution& run, const Rectangle& part) {
+  HWY_DYNAMIC_DISPATCH(RunDirectPart)(run, part);
 }
 
 }  // namespace orb360::nn

@@ -26,7 +26,15 @@ struct DirectConvolution {
 /// How the blocks of output channels are best grouped on this processor.
 std::vector<int> DirectGroups(int out_channels);
 
-/// Computes rows `first` to `last` - 1 of the output.
-void RunDirect(const DirectConvolution& run, int first, int last);
+/// A part of a tensor's rows and columns; the ends are not in it.
+struct Rectangle {
+  int top = 0;
+  int bottom = 0;
+  int left = 0;
+  int right = 0;
+};
+
+/// Computes a part of the output.
+void RunDirect(const DirectConvolution& run, const Rectangle& part);
 
 }  // namespace orb360::nn

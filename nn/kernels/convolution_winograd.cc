@@ -1,9 +1,7 @@
 #include "nn/kernels/convolution_winograd.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <utility>
 
 // As in convolution_direct.cc.
@@ -95,7 +93,8 @@ struct Tile {
 };
 
 // Transforms the inputs of one tile to `out`, where the 36 results of a block lie `stride` apart.
-void TransformTile(const TensorView& input, Tile tile, float* out, ptrdiff_t block_stride,
+// False if the inputs, or the results, are not all finite.
+bool TransformTile(const TensorView& input, Tile tile, float* out, ptrdiff_t block_stride,
                    ptrdiff_t stride) {
   const D d;
   const int top = tile.y * kOut - 1;
@@ -104,6 +103,7 @@ void TransformTile(const TensorView& input, Tile tile, float* out, ptrdiff_t blo
   const int rows = std::min(kIn, input.shape.height + 1 - top);
   const int columns = std::min(kIn, input.shape.width + 1 - left);
   HWY_ALIGN float edge[kProducts * kBlock];
+  V zero_if_finite = hn::Zero(d);
   for (int block = 0; block < input.planes(); ++block, out += block_stride) {
     const float* in = input.row<float>(block, top) + ptrdiff_t{left} * kBlock;
     ptrdiff_t row_stride = input.row_stride;
@@ -136,9 +136,14 @@ void TransformTile(const TensorView& input, Tile tile, float* out, ptrdiff_t blo
         TransformInput<1>(x + v * kIn, row);
         HWY_UNROLL(6)
         for (int u = 0; u < kIn; ++u) hn::Store(row[u], d, out + (v * kIn + u) * stride + lane);
+        // The results at 0 and infinity hold every input: the even ones and the odd ones.
+        if (v == 0 || v == kIn - 1) {
+          zero_if_finite = hn::MulAdd(hn::Add(row[0], row[kIn - 1]), hn::Zero(d), zero_if_finite);
+        }
       }
     }
   }
+  return hn::AllTrue(d, hn::Eq(zero_if_finite, hn::Zero(d)));
 }
 
 // The sums over input channels of one product of kCount tiles.
@@ -237,7 +242,8 @@ void StoreBlock(const WinogradConvolution& run, Tile tile, int block, const floa
   }
 }
 
-void RunWinogradTiles(const WinogradConvolution& run, int first, int last, float* scratch) {
+std::uint32_t RunWinogradTiles(const WinogradConvolution& run, int first, int last,
+                               float* scratch) {
   HWY_ALIGN static constexpr float kZeros[kMaxGroup * kBlock] = {};
   const int count = last - first;
   const int across = (run.output.shape.width + kOut - 1) / kOut;
@@ -248,8 +254,11 @@ void RunWinogradTiles(const WinogradConvolution& run, int first, int last, float
   float* const products = scratch + kProducts * ProductStride(in_blocks, kMaxWinogradTiles);
   const ptrdiff_t plane = ptrdiff_t{count} * kBlock;
   const auto tile = [&](int t) { return Tile{(first + t) / across, (first + t) % across}; };
+  std::uint32_t left_out = 0;
   for (int t = 0; t < count; ++t) {
-    TransformTile(run.input, tile(t), inputs + t * kBlock, plane, in_stride);
+    if (!TransformTile(run.input, tile(t), inputs + t * kBlock, plane, in_stride)) {
+      left_out |= std::uint32_t{1} << t;
+    }
   }
   const float* weight = run.weight;
   int first_block = 0;
@@ -269,12 +278,14 @@ void RunWinogradTiles(const WinogradConvolution& run, int first, int last, float
     }
     for (int block = 0; block < blocks; ++block) {
       for (int t = 0; t < count; ++t) {
+        if ((left_out >> t & 1) != 0) continue;
         StoreBlock(run, tile(t), first_block + block, products + block * plane + t * kBlock,
                    out_stride);
       }
     }
     first_block += blocks;
   }
+  return left_out;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -341,8 +352,9 @@ std::size_t WinogradScratchBytes(int in_channels) {
                                   ProductStride(kMaxGroup, kMaxWinogradTiles));
 }
 
-void RunWinograd(const WinogradConvolution& run, int first, int last, std::byte* scratch) {
-  HWY_DYNAMIC_DISPATCH(RunWinogradTiles)(run, first, last, reinterpret_cast<float*>(scratch));
+std::uint32_t RunWinograd(const WinogradConvolution& run, int first, int last, std::byte* scratch) {
+  return HWY_DYNAMIC_DISPATCH(RunWinogradTiles)(run, first, last,
+                                                reinterpret_cast<float*>(scratch));
 }
 
 }  // namespace orb360::nn

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -34,13 +35,15 @@ constexpr int kWinogradTile = 4;
 /// Tiles that cover the output; they are counted row by row.
 int CountWinogradTiles(const Shape& output);
 
-/// The most tiles that RunWinograd takes at once.
+/// The most tiles that RunWinograd takes at once: two register tiles of 14, and at most 32.
 constexpr int kMaxWinogradTiles = 28;
 
 /// Bytes that RunWinograd needs for its work.
 std::size_t WinogradScratchBytes(int in_channels);
 
-/// Computes tiles `first` to `last` - 1. `scratch` is aligned to kAlignment.
-void RunWinograd(const WinogradConvolution& run, int first, int last, std::byte* scratch);
+/// Computes tiles `first` to `last` - 1. `scratch` is aligned to kAlignment. Leaves out the tiles
+/// whose input has NaN or infinity, which would spread over all of the tile: bit i of the result
+/// is set if tile first + i is one of those.
+std::uint32_t RunWinograd(const WinogradConvolution& run, int first, int last, std::byte* scratch);
 
 }  // namespace orb360::nn

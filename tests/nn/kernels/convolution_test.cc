@@ -341,18 +341,22 @@ TEST(Convolution, ActivatesWithAnySlope) {
 TEST(Convolution, AddsAResidualInPlace) {
   Case c{{32, 32, 3, 1, Padding::kWrapReplicate, 0.1f}, 6, 31};
   c.with_residual = true;
-  const Data data(c);
-  const std::vector<float> expected = Compute(c, data, 1);
-  const Convolution convolution(c.spec, data.weight, data.bias);
-  TensorMemory input({c.input_shape(), Layout::kBlocked, DataType::kFloat, 1});
-  TensorMemory output({c.output_shape(), Layout::kBlocked, DataType::kFloat, 0});
-  Fill(input.view, data.input);
-  Fill(output.view, data.residual);
-  RunOn(convolution, input.view, &output.view, output.view, 2);
-  std::size_t next = 0;
-  for (int o = 0; o < 32; ++o) {
-    for (int y = 0; y < 6; ++y) {
-      for (int x = 0; x < 31; ++x) ASSERT_EQ(At(output.view, o, y, x), expected[next++]);
+  Data data(c);
+  // Where infinity is, tiles are computed in another way.
+  for (const float value : {0.0f, std::numeric_limits<float>::infinity()}) {
+    data.input[40] = value;
+    const std::vector<float> expected = Compute(c, data, 1);
+    const Convolution convolution(c.spec, data.weight, data.bias);
+    TensorMemory input({c.input_shape(), Layout::kBlocked, DataType::kFloat, 1});
+    TensorMemory output({c.output_shape(), Layout::kBlocked, DataType::kFloat, 0});
+    Fill(input.view, data.input);
+    Fill(output.view, data.residual);
+    RunOn(convolution, input.view, &output.view, output.view, 2);
+    std::size_t next = 0;
+    for (int o = 0; o < 32; ++o) {
+      for (int y = 0; y < 6; ++y) {
+        for (int x = 0; x < 31; ++x) ASSERT_EQ(At(output.view, o, y, x), expected[next++]);
+      }
     }
   }
 }
@@ -384,8 +388,7 @@ TEST(Convolution, CarriesNanAndInfinityToTheirWindowsOnly) {
   for (const float value :
        {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     for (const int stride : {1, 2}) {
-      Case c{{24, 20, 3, stride, Padding::kZero, 0}, 9, 37};
-      c.spec.may_tile = false;
+      const Case c{{24, 20, 3, stride, Padding::kZero, 0}, 9, 37};
       Data data(c);
       std::fill(data.weight.begin(), data.weight.end(), 1.0f);
       data.input[(20 * 9 + 4) * 37 + 18] = value;  // channel 20, row 4, column 18
