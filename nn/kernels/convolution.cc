@@ -56,7 +56,8 @@ AlignedVector<float> PackDirect(const ConvolutionSpec& spec, std::span<const flo
 // Gives every thread equally many batches of tiles, or one less.
 void RunByTiles(const WinogradConvolution& run, const DirectConvolution& direct, std::byte* scratch,
                 int threads) {
-  const auto [channels, height, width] = run.output.shape;
+  const int height = run.output.shape.height;
+  const int width = run.output.shape.width;
   const int tiles = CountWinogradTiles(run.output.shape);
   const int across = (width + kWinogradTile - 1) / kWinogradTile;
   const std::size_t bytes = WinogradScratchBytes(run.input.shape.channels);
