@@ -5,10 +5,85 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 
 #include "nn/base/check.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "nn/kernels/median_log.cc"
+#include <hwy/foreach_target.h>
+// foreach_target must come first.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
 namespace orb360::nn {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// At most a cache line, so that a vector never reaches over the end of a tensor's row.
+using D = hn::CappedTag<float, 16>;
+using V = hn::Vec<D>;
+
+// Depth and confidence of points, 0 elsewhere.
+void SelectPoints(const float* depth, const float* confidence, int columns, float* x, float* c) {
+  const D d;
+  const V zero = hn::Zero(d);
+  const V one = hn::Set(d, 1.0f);
+  const V largest = hn::Set(d, std::numeric_limits<float>::max());
+  for (int u = 0; u < columns; u += static_cast<int>(hn::Lanes(d))) {
+    const V v_depth = hn::LoadU(d, depth + u);
+    const V v_confidence = hn::LoadU(d, confidence + u);
+    // Comparisons with NaN do not hold.
+    const auto is_point = hn::And(hn::And(hn::Gt(v_depth, zero), hn::Le(v_depth, largest)),
+                                  hn::Gt(v_confidence, zero));
+    hn::StoreU(hn::IfThenElseZero(is_point, v_depth), d, x + u);
+    hn::StoreU(hn::IfThenElseZero(is_point, hn::Min(v_confidence, one)), d, c + u);
+  }
+}
+
+// Calls visit(column) for every point of a row.
+template <class Visit>
+HWY_INLINE void ForEachPoint(const float* x, int columns, const Visit& visit) {
+  const D d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  for (int u = 0; u < columns; u += lanes) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, hn::Gt(hn::LoadU(d, x + u), hn::Zero(d)), bytes);
+    std::uint32_t points = bytes[0] | std::uint32_t{bytes[1]} << 8;
+    if (columns - u < lanes) points &= (1u << (columns - u)) - 1;
+    for (; points != 0; points &= points - 1) visit(u + std::countr_zero(points));
+  }
+}
+
+// Counts the points of a row whose bits above `shift + bits` are `prefix` by the `bits` below.
+void CountDigits(const float* x, int columns, std::uint32_t prefix, int shift, int bits,
+                 std::int64_t* count) {
+  const std::uint32_t mask = (1u << bits) - 1;
+  ForEachPoint(x, columns, [&](int u) {
+    const auto value = std::bit_cast<std::uint32_t>(x[u]);
+    // In 64 bits, as there is nothing above the first digit.
+    if (std::uint64_t{value} >> (shift + bits) == prefix) ++count[(value >> shift) & mask];
+  });
+}
+
+// In double precision, where no ratio of floats overflows.
+void TakeLog(float* x, int columns, float median) {
+  ForEachPoint(x, columns, [&](int u) {
+    x[u] = static_cast<float>(std::log(static_cast<double>(x[u]) / median));
+  });
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace orb360::nn
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace orb360::nn {
+
+HWY_EXPORT(SelectPoints);
+HWY_EXPORT(CountDigits);
+HWY_EXPORT(TakeLog);
+
 namespace {
 
 // The lower median of what is positive in `values`, or 1 if nothing is. Positive floats are ordered
@@ -17,29 +92,22 @@ namespace {
 float LowerMedian(const TensorView& values) {
   std::uint32_t prefix = 0;  // what is known of the median's bits
   std::int64_t rank = 0;     // of the median among the values with this prefix
-  int known = 0;
+  int shift = 32;            // bits that are not known
   for (const int bits : {11, 11, 10}) {
     std::array<std::int64_t, 1 << 11> count{};
-    const int shift = 32 - known - bits;
+    shift -= bits;
     for (int v = 0; v < values.shape.height; ++v) {
-      const float* row = values.row<float>(0, v);
-      for (int u = 0; u < values.shape.width; ++u) {
-        if (!(row[u] > 0)) continue;
-        const auto value = std::bit_cast<std::uint32_t>(row[u]);
-        const bool matches = known == 0 || value >> (32 - known) == prefix;
-        if (matches) ++count[(value >> shift) & ((1u << bits) - 1)];
-      }
+      HWY_DYNAMIC_DISPATCH(CountDigits)
+      (values.row<float>(0, v), values.shape.width, prefix, shift, bits, count.data());
     }
-    if (known == 0) {
-      std::int64_t points = 0;
-      for (const std::int64_t n : count) points += n;
+    if (shift + bits == 32) {
+      const std::int64_t points = std::accumulate(count.begin(), count.end(), std::int64_t{0});
       if (points == 0) return 1;
       rank = (points - 1) / 2;
     }
     std::uint32_t digit = 0;
     for (; rank >= count[digit]; ++digit) rank -= count[digit];
     prefix = prefix << bits | digit;
-    known += bits;
   }
   return std::bit_cast<float>(prefix);
 }
@@ -54,32 +122,19 @@ void MedianLog(const TensorView& depth, const TensorView& confidence, const Tens
   }
   ORB360_CHECK(median.type == DataType::kFloat && median.layout == Layout::kPlanar);
   ORB360_CHECK((median.shape == Shape{1, 1, 1}));
-  const auto [channels, rows, columns] = depth.shape;
+  const int rows = depth.shape.height;
+  const int columns = depth.shape.width;
 #pragma omp parallel for num_threads(threads) schedule(static)
   for (int v = 0; v < rows; ++v) {
-    const float* depths = depth.row<float>(0, v);
-    const float* confidences = confidence.row<float>(0, v);
-    float* values = x.row<float>(0, v);
-    float* weights = c.row<float>(0, v);
-    for (int u = 0; u < columns; ++u) {
-      const bool is_point =
-          depths[u] > 0 && depths[u] <= std::numeric_limits<float>::max() && confidences[u] > 0;
-      values[u] = is_point ? depths[u] : 0;
-      weights[u] = is_point ? (confidences[u] < 1 ? confidences[u] : 1) : 0;
-    }
+    HWY_DYNAMIC_DISPATCH(SelectPoints)
+    (depth.row<float>(0, v), confidence.row<float>(0, v), columns, x.row<float>(0, v),
+     c.row<float>(0, v));
   }
   const float middle = LowerMedian(x);
 #pragma omp parallel for num_threads(threads) schedule(static)
-  for (int v = 0; v < rows; ++v) {
-    float* values = x.row<float>(0, v);
-    // In double precision, where no ratio of floats overflows; points are few.
-    for (int u = 0; u < columns; ++u) {
-      if (values[u] > 0) {
-        values[u] = static_cast<float>(std::log(static_cast<double>(values[u]) / middle));
-      }
-    }
-  }
+  for (int v = 0; v < rows; ++v) HWY_DYNAMIC_DISPATCH(TakeLog)(x.row<float>(0, v), columns, middle);
   *median.row<float>(0, 0) = middle;
 }
 
 }  // namespace orb360::nn
+#endif

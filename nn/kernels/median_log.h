@@ -10,7 +10,8 @@ namespace orb360::nn {
 /// elsewhere; `median` (1 channel, 1 x 1) is s. NaN and infinity in either input end here: x, c and
 /// s are always finite.
 ///
-/// Planar floats of one channel; x and c must not be the inputs.
+/// Planar floats of one channel; x and c must not be the inputs, and their rows may be overwritten
+/// up to the next multiple of kAlignment.
 void MedianLog(const TensorView& depth, const TensorView& confidence, const TensorView& x,
                const TensorView& c, const TensorView& median, int threads);
 

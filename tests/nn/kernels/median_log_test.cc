@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "nn/base/check.h"
+#include "tests/dispatch_targets.h"
 #include "tests/nn/kernels/plain_picture.h"
 
 namespace orb360::nn {
@@ -37,34 +38,36 @@ void RunMedianLog(const PlainPicture& depth, const PlainPicture& confidence, int
 }
 
 void ExpectAsExpected(const PlainPicture& depth, const PlainPicture& confidence) {
-  std::vector<double> points;
-  const auto is_point = [&](std::size_t i) {
-    return std::isfinite(depth.values[i]) && depth.values[i] > 0 && confidence.values[i] > 0;
-  };
-  for (std::size_t i = 0; i < depth.values.size(); ++i) {
-    if (is_point(i)) points.push_back(depth.values[i]);
-  }
-  std::sort(points.begin(), points.end());
-  const double s = points.empty() ? 1 : points[(points.size() - 1) / 2];
-  PlainPicture x(depth.shape);
-  PlainPicture c(depth.shape);
-  PlainPicture tolerance(depth.shape);
-  for (std::size_t i = 0; i < depth.values.size(); ++i) {
-    if (!is_point(i)) continue;
-    x.values[i] = std::log(depth.values[i] / s);
-    c.values[i] = std::min(confidence.values[i], 1.0);
-    tolerance.values[i] = 1.01 * 0x1p-24 * std::abs(x.values[i]);
-  }
-  Result one(depth.shape);
-  Result two(depth.shape);
-  RunMedianLog(depth, confidence, 1, one);
-  RunMedianLog(depth, confidence, 2, two);
-  EXPECT_EQ(one.s(), s);
-  ExpectNear(one.x.view, x, tolerance);
-  ExpectEqual(one.c.view, c);
-  EXPECT_EQ(two.s(), s);
-  ExpectSameBits(one.x.view, two.x.view);
-  ExpectSameBits(one.c.view, two.c.view);
+  ForEachDispatchTarget([&] {
+    std::vector<double> points;
+    const auto is_point = [&](std::size_t i) {
+      return std::isfinite(depth.values[i]) && depth.values[i] > 0 && confidence.values[i] > 0;
+    };
+    for (std::size_t i = 0; i < depth.values.size(); ++i) {
+      if (is_point(i)) points.push_back(depth.values[i]);
+    }
+    std::sort(points.begin(), points.end());
+    const double s = points.empty() ? 1 : points[(points.size() - 1) / 2];
+    PlainPicture x(depth.shape);
+    PlainPicture c(depth.shape);
+    PlainPicture tolerance(depth.shape);
+    for (std::size_t i = 0; i < depth.values.size(); ++i) {
+      if (!is_point(i)) continue;
+      x.values[i] = std::log(depth.values[i] / s);
+      c.values[i] = std::min(confidence.values[i], 1.0);
+      tolerance.values[i] = 1.01 * 0x1p-24 * std::abs(x.values[i]);
+    }
+    Result one(depth.shape);
+    Result two(depth.shape);
+    RunMedianLog(depth, confidence, 1, one);
+    RunMedianLog(depth, confidence, 2, two);
+    EXPECT_EQ(one.s(), s);
+    ExpectNear(one.x.view, x, tolerance);
+    ExpectEqual(one.c.view, c);
+    EXPECT_EQ(two.s(), s);
+    ExpectSameBits(one.x.view, two.x.view);
+    ExpectSameBits(one.c.view, two.c.view);
+  });
 }
 
 TEST(MedianLog, IsTheLogarithmOfDepthOverTheLowerMedian) {
