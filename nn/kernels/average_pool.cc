@@ -74,8 +74,9 @@ HWY_EXPORT(AverageRow);
 
 void AveragePool(const TensorView& x, const TensorView& y, int threads) {
   ORB360_CHECK(x.type == DataType::kFloat && y.type == DataType::kFloat && x.layout == y.layout);
-  const auto [channels, rows, columns] = y.shape;
-  ORB360_CHECK((x.shape == Shape{channels, 2 * rows, 2 * columns}));
+  const int rows = y.shape.height;
+  const int columns = y.shape.width;
+  ORB360_CHECK((x.shape == Shape{y.shape.channels, 2 * rows, 2 * columns}));
   const auto average_row = HWY_DYNAMIC_DISPATCH(AverageRow);
   const bool is_blocked = x.layout == Layout::kBlocked;
   const int planes = y.planes();

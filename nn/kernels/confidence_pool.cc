@@ -2,6 +2,9 @@
 
 #include "nn/base/check.h"
 
+// Vectors of unknown length cannot stand in arrays.
+#undef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "nn/kernels/confidence_pool.cc"
 #include <hwy/foreach_target.h>
@@ -67,12 +70,11 @@ void ConfidencePool(const TensorView& x, const TensorView& c, const TensorView& 
   for (const TensorView* tensor : {&x, &c, &y, &y_confidence}) {
     ORB360_CHECK(tensor->layout == Layout::kPlanar && tensor->type == DataType::kFloat);
   }
-  const auto [channels, rows, columns] = y.shape;
-  ORB360_CHECK((x.shape == Shape{channels, 2 * rows, 2 * columns}));
+  const int rows = y.shape.height;
+  ORB360_CHECK((x.shape == Shape{y.shape.channels, 2 * rows, 2 * y.shape.width}));
   ORB360_CHECK(c.shape == x.shape && y_confidence.shape == y.shape);
-  const int count = rows;
 #pragma omp parallel for num_threads(threads) schedule(static)
-  for (int v = 0; v < count; ++v) ConfidencePoolRow(x, c, y, y_confidence, rule, v);
+  for (int v = 0; v < rows; ++v) ConfidencePoolRow(x, c, y, y_confidence, rule, v);
 }
 
 }  // namespace orb360::nn

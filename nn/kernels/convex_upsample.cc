@@ -4,6 +4,9 @@
 
 #include "nn/base/check.h"
 
+// Vectors of unknown length cannot stand in arrays.
+#undef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "nn/kernels/convex_upsample.cc"
 #include <hwy/foreach_target.h>
@@ -73,8 +76,9 @@ void ConvexUpsample(const TensorView& x, const TensorView& weights, const Tensor
   for (const TensorView* tensor : {&x, &weights, &y}) {
     ORB360_CHECK(tensor->layout == Layout::kPlanar && tensor->type == DataType::kFloat);
   }
-  const auto [channels, rows, columns] = x.shape;
-  ORB360_CHECK(channels == 1, channels);
+  const int rows = x.shape.height;
+  const int columns = x.shape.width;
+  ORB360_CHECK(x.shape.channels == 1, x.shape.channels);
   ORB360_CHECK((weights.shape == Shape{kConvexUpsampleWeights, rows, columns}));
   ORB360_CHECK((y.shape == Shape{1, 2 * rows, 2 * columns}));
   FillHalo(x, padding, kConvexUpsampleHalo);

@@ -234,8 +234,9 @@ void NormalizedChain::Run(std::span<const NormalizedInput> inputs, const Confide
                           std::span<std::byte> scratch, int threads,
                           const PooledOutput* pooled) const {
   CheckPlanar(output);
-  const auto [channels, height, width] = output.x.shape;
-  ORB360_CHECK(channels == layers_.back().outputs(), channels);
+  const int height = output.x.shape.height;
+  const int width = output.x.shape.width;
+  ORB360_CHECK(output.x.shape.channels == layers_.back().outputs(), output.x.shape.channels);
   if (pooled != nullptr) {
     CheckPlanar(pooled->tensor);
     const auto [pooled_channels, pooled_height, pooled_width] = pooled->tensor.x.shape;
