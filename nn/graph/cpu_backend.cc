@@ -1,8 +1,10 @@
 #include "nn/graph/cpu_backend.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -26,16 +28,18 @@ namespace {
 using Views = std::span<const TensorView>;
 using Scratch = std::span<std::byte>;
 
+ConfidenceRule RuleOf(const ConfidencePoolOp& op) {
+  return op.rule == ConfidencePoolOp::Rule::kQuarter ? ConfidenceRule::kQuarter
+                                                     : ConfidenceRule::kSquareRoot;
+}
+
 class RunMaker {
  public:
   RunMaker(const Graph& graph, const FusedNode& fused, int threads)
       : graph_(graph), fused_(fused), threads_(threads) {}
 
   Step::Run operator()(const ConfidencePoolOp& op) const {
-    const ConfidenceRule rule = op.rule == ConfidencePoolOp::Rule::kQuarter
-                                    ? ConfidenceRule::kQuarter
-                                    : ConfidenceRule::kSquareRoot;
-    return [rule, threads = threads_](Views in, Views out, Scratch) {
+    return [rule = RuleOf(op), threads = threads_](Views in, Views out, Scratch) {
       ConfidencePool(in[0], in[1], out[0], out[1], rule, threads);
     };
   }
@@ -119,18 +123,34 @@ class RunMaker {
   int threads_;
 };
 
-Step MakeChain(const Graph& graph, const Node& node, int width, int threads) {
+NormalizedConvolution MakeLink(const Graph& graph, const Node& node) {
   const auto weight = [&](std::size_t i) -> const Weight& {
     return graph.weights[static_cast<std::size_t>(node.weights[i])];
   };
   const std::vector<int>& shape = weight(0).shape;
-  std::vector<NormalizedConvolution> layers;
-  layers.emplace_back(weight(0).values, weight(1).values, shape[0], shape[1], shape[3],
-                      std::get<NormalizedConvolutionOp>(node.operation).padding);
-  const auto chain = std::make_shared<const NormalizedChain>(std::move(layers));
-  return {[chain, threads](Views in, Views out, Scratch scratch) {
-            const NormalizedInput input{{in[0], in[1]}};
-            chain->Run({&input, 1}, {out[0], out[1]}, scratch, threads);
+  return {weight(0).values, weight(1).values,
+          shape[0],         shape[1],
+          shape[3],         std::get<NormalizedConvolutionOp>(node.operation).padding};
+}
+
+Step MakeChain(const Graph& graph, const FusedNode& fused, int width, int threads) {
+  std::vector<NormalizedConvolution> links = {MakeLink(graph, fused.node)};
+  for (const Node& node : fused.chain) links.push_back(MakeLink(graph, node));
+  const auto chain = std::make_shared<const NormalizedChain>(std::move(links));
+  std::array<bool, FusedNode::kMostPairs> doubled{};
+  std::ranges::copy(fused.doubled, doubled.begin());
+  const std::optional<ConfidenceRule> rule =
+      fused.pool ? std::optional(RuleOf(*fused.pool)) : std::nullopt;
+  return {[=](Views in, Views out, Scratch scratch) {
+            std::array<NormalizedInput, FusedNode::kMostPairs> inputs;
+            const std::size_t pairs = in.size() / 2;
+            for (std::size_t i = 0; i < pairs; ++i) {
+              inputs[i] = {{in[2 * i], in[2 * i + 1]}, doubled[i]};
+            }
+            PooledOutput pooled;
+            if (rule) pooled = {{out[2], out[3]}, *rule};
+            chain->Run({inputs.data(), pairs}, {out[0], out[1]}, scratch, threads,
+                       rule ? &pooled : nullptr);
           },
           chain->ScratchBytes(width, threads)};
 }
@@ -170,7 +190,7 @@ Step CpuBackend::MakeStep(const Graph& graph, const FusedNode& fused, int height
   if (std::holds_alternative<NormalizedConvolutionOp>(fused.node.operation)) {
     const auto output = static_cast<std::size_t>(fused.node.outputs.front());
     const Shape shape = ShapeFor(graph.tensors[output], height, width);
-    return MakeChain(graph, fused.node, shape.width, threads_);
+    return MakeChain(graph, fused, shape.width, threads_);
   }
   if (std::holds_alternative<ConvolutionOp>(fused.node.operation)) {
     return MakeConvolution(graph, fused, threads_);

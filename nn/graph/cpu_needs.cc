@@ -1,6 +1,7 @@
 #include "nn/graph/cpu_needs.h"
 
 #include <cstddef>
+#include <vector>
 
 #include "nn/kernels/convex_upsample.h"
 #include "nn/kernels/convolution.h"
@@ -25,7 +26,9 @@ class Needs {
   Needs(const Graph& graph, const FusedNode& fused) : graph_(graph), fused_(fused) {}
 
   NodeNeeds operator()(const NormalizedConvolutionOp&) const {
-    return {{kPlanar, kPlanar}, {kPlanar, kPlanar}, {}};
+    return {std::vector<PortNeeds>(fused_.node.inputs.size(), kPlanar),
+            std::vector<PortNeeds>(fused_.node.outputs.size(), kPlanar),
+            {}};
   }
   NodeNeeds operator()(const ConfidencePoolOp&) const {
     return {{kPlanar, kPlanar}, {kPlanar, kPlanar}, {}};

@@ -1,8 +1,11 @@
 #include "nn/graph/fusion.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <utility>
+
+#include "nn/graph/chain_fusion.h"
 
 namespace orb360::nn {
 namespace {
@@ -19,9 +22,9 @@ std::optional<float> SlopeOf(const Operation& operation) {
   return {};
 }
 
-class Fusion {
+class ConvolutionFusion {
  public:
-  explicit Fusion(const Graph& graph)
+  explicit ConvolutionFusion(const Graph& graph)
       : graph_(graph),
         writer_(graph.tensors.size(), kNobody),
         reader_(graph.tensors.size(), kNobody),
@@ -42,7 +45,7 @@ class Fusion {
     std::vector<std::optional<FusedNode>> at(graph_.nodes.size());
     for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
       if (is_merged_[i]) continue;
-      FusedNode fused{graph_.nodes[i]};
+      FusedNode fused{.node = graph_.nodes[i]};
       std::size_t position = i;
       if (std::holds_alternative<ConvolutionOp>(fused.node.operation)) {
         MergeAddition(&fused, &position);
@@ -50,7 +53,11 @@ class Fusion {
       }
       at[position] = std::move(fused);
     }
-    return Needed(std::move(at));
+    std::vector<FusedNode> nodes;
+    for (std::optional<FusedNode>& node : at) {
+      if (node) nodes.push_back(std::move(*node));
+    }
+    return nodes;
   }
 
  private:
@@ -92,40 +99,37 @@ class Fusion {
     Merge(reader, fused, position);
   }
 
-  /// Those that the graph's outputs depend on, in order.
-  std::vector<FusedNode> Needed(std::vector<std::optional<FusedNode>> at) const {
-    std::vector<bool> is_needed(graph_.tensors.size());
-    for (const Graph::Output& output : graph_.outputs) is_needed[Index(output.tensor)] = true;
-    for (std::size_t i = at.size(); i-- > 0;) {
-      if (!at[i]) continue;
-      bool writes_needed = false;
-      for (const int tensor : at[i]->node.outputs) writes_needed |= is_needed[Index(tensor)];
-      if (!writes_needed) {
-        at[i].reset();
-        continue;
-      }
-      for (const int tensor : at[i]->node.inputs) is_needed[Index(tensor)] = true;
-    }
-    std::vector<FusedNode> nodes;
-    for (std::optional<FusedNode>& node : at) {
-      if (node) nodes.push_back(std::move(*node));
-    }
-    return nodes;
-  }
-
   const Graph& graph_;
   std::vector<int> writer_;  // node of each tensor
   std::vector<int> reader_;  // likewise, or how many there are
   std::vector<bool> is_merged_;
 };
 
+/// Those that the graph's outputs depend on, in order.
+std::vector<FusedNode> Needed(const Graph& graph, std::vector<FusedNode> nodes) {
+  std::vector<bool> is_tensor_needed(graph.tensors.size());
+  for (const Graph::Output& output : graph.outputs) is_tensor_needed[Index(output.tensor)] = true;
+  std::vector<FusedNode> needed;
+  for (std::size_t i = nodes.size(); i-- > 0;) {
+    const bool is_needed = std::ranges::any_of(
+        nodes[i].node.outputs, [&](int tensor) { return is_tensor_needed[Index(tensor)]; });
+    if (!is_needed) continue;
+    for (const int tensor : nodes[i].node.inputs) is_tensor_needed[Index(tensor)] = true;
+    needed.push_back(std::move(nodes[i]));
+  }
+  std::ranges::reverse(needed);
+  return needed;
+}
+
 }  // namespace
 
-std::vector<FusedNode> FuseNodes(const Graph& graph) { return Fusion(graph).Run(); }
+std::vector<FusedNode> FuseNodes(const Graph& graph) {
+  return Needed(graph, MergeChains(graph, ConvolutionFusion(graph).Run()));
+}
 
 std::vector<FusedNode> KeepNodes(const Graph& graph) {
   std::vector<FusedNode> nodes;
-  for (const Node& node : graph.nodes) nodes.push_back({node});
+  for (const Node& node : graph.nodes) nodes.push_back({.node = node});
   return nodes;
 }
 

@@ -1,6 +1,7 @@
 #include "nn/graph/memory_plan.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -16,18 +17,12 @@ std::size_t Aligned(std::size_t bytes) {
 
 bool Meet(const Lifetime& a, const Lifetime& b) { return a.first <= b.last && b.first <= a.last; }
 
-}  // namespace
-
-MemoryPlan PlanMemory(std::span<const Lifetime> pieces) {
-  std::vector<std::size_t> order(pieces.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(
-      order, [&](std::size_t a, std::size_t b) { return pieces[a].bytes > pieces[b].bytes; });
-
+/// Places the pieces one after the other, each where it leaves the smallest gap between those that
+/// are needed at the same time, or behind them all.
+MemoryPlan PlaceInOrder(std::span<const Lifetime> pieces, std::span<const std::size_t> order) {
   MemoryPlan plan{std::vector<std::size_t>(pieces.size()), 0};
   std::vector<std::size_t> placed;  // by offset
   for (const std::size_t piece : order) {
-    ORB360_CHECK(pieces[piece].first <= pieces[piece].last, pieces[piece].first);
     const std::size_t bytes = Aligned(pieces[piece].bytes);
     std::size_t best = 0;
     std::size_t best_gap = std::numeric_limits<std::size_t>::max();
@@ -49,6 +44,23 @@ MemoryPlan PlanMemory(std::span<const Lifetime> pieces) {
     placed.insert(behind, piece);
   }
   return plan;
+}
+
+}  // namespace
+
+MemoryPlan PlanMemory(std::span<const Lifetime> pieces) {
+  for (const Lifetime& piece : pieces) ORB360_CHECK(piece.first <= piece.last, piece.first);
+  const auto plan_by = [&](const auto& key) {
+    std::vector<std::size_t> order(pieces.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, std::ranges::greater(), key);
+    return PlaceInOrder(pieces, order);
+  };
+  // Long-lived pieces fragment the memory unless they lie together, large ones unless they have a
+  // choice of places; which matters more depends on the network.
+  MemoryPlan large_first = plan_by([&](std::size_t i) { return pieces[i].bytes; });
+  MemoryPlan long_first = plan_by([&](std::size_t i) { return pieces[i].last - pieces[i].first; });
+  return large_first.bytes < long_first.bytes ? large_first : long_first;
 }
 
 }  // namespace orb360::nn

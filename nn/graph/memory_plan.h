@@ -19,8 +19,9 @@ struct MemoryPlan {
   std::size_t bytes = 0;             // of the whole block
 };
 
-/// Packs pieces so that none overlap that are needed during the same step, large ones first, each
-/// at the place that leaves the smallest gap. The same pieces give the same plan.
+/// Packs pieces so that none overlap that are needed during the same step: each at the place that
+/// leaves the smallest gap, in two orders (the largest first, the longest needed first), of which
+/// the better one is taken. The same pieces give the same plan.
 MemoryPlan PlanMemory(std::span<const Lifetime> pieces);
 
 }  // namespace orb360::nn

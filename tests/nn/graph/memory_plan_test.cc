@@ -14,8 +14,6 @@
 namespace orb360::nn {
 namespace {
 
-using ::testing::ElementsAre;
-
 void ExpectNoOverlap(const std::vector<Lifetime>& pieces, const std::vector<std::size_t>& offsets,
                      std::size_t bytes) {
   ASSERT_EQ(offsets.size(), pieces.size());
@@ -65,12 +63,11 @@ TEST(MemoryPlan, AChainNeedsTwoPieces) {
   EXPECT_EQ(PlanMemory(chain).bytes, 2u * 6400);
 }
 
-TEST(MemoryPlan, FillsTheSmallestGapThatFits) {
-  // The first three leave gaps of 640 and 128 bytes during step 1 once the last two are gone.
-  const std::vector<Lifetime> pieces = {{1280, 0, 1}, {640, 0, 0}, {512, 0, 1}, {128, 1, 1}};
-  const MemoryPlan plan = PlanMemory(pieces);
-  EXPECT_EQ(plan.bytes, 1280u + 640 + 512);
-  EXPECT_THAT(plan.offsets, ElementsAre(0, 1280, 1920, 1280));
+TEST(MemoryPlan, FillsGaps) {
+  // The second leaves a gap during step 1 in which the fourth has room.
+  EXPECT_EQ(
+      PlanMemory(std::vector<Lifetime>{{1280, 0, 1}, {640, 0, 0}, {512, 0, 1}, {128, 1, 1}}).bytes,
+      1280u + 640 + 512);
 }
 
 TEST(MemoryPlan, NothingNeedsNothing) { EXPECT_EQ(PlanMemory({}).bytes, 0u); }

@@ -166,11 +166,27 @@ class Author {
                     channels, x.level};
     made_.push_back(y);
     made_.push_back({y.name + ".1", channels, x.level});
+    if (Below(2) == 0) {  // a chain
+      const std::string z =
+          net_.NormalizedConvolution(NewName(), y.name, y.name + ".1", channels, 2, 3, padding);
+      made_.push_back({z, 2, x.level});
+      made_.push_back({z + ".1", 2, x.level});
+    }
     if (x.level >= kDeepest || Below(2) == 0) return;
     const std::string pooled = net_.Node(NewName(), "confidence_pool", {y.name, y.name + ".1"},
                                          {{"rule", Below(2) == 0 ? "quarter" : "sqrt"}}, 2);
     made_.push_back({pooled, channels, x.level + 1});
     made_.push_back({pooled + ".1", channels, x.level + 1});
+    if (Below(2) == 0) return;
+    // And up again, joined with what was there before.
+    const std::string up = net_.Node(NewName(), "upsample_nearest", {pooled});
+    const std::string up_c = net_.Node(NewName(), "upsample_nearest", {pooled + ".1"});
+    const std::string both = net_.Node(NewName(), "concatenate", {y.name, up});
+    const std::string both_c = net_.Node(NewName(), "concatenate", {y.name + ".1", up_c});
+    const std::string joined =
+        net_.NormalizedConvolution(NewName(), both, both_c, 2 * channels, 1, 3, padding);
+    made_.push_back({joined, 1, x.level});
+    made_.push_back({joined + ".1", 1, x.level});
   }
   void AddConvexUpsampling(const Made& x) {
     if (x.level == kSingle || x.level == 0) return;
