@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "nn/base/check.h"
+#include "nn/base/cpu.h"
 #include "nn/graph/cpu_needs.h"
 #include "nn/kernels/average_pool.h"
 #include "nn/kernels/confidence_pool.h"
@@ -155,7 +156,7 @@ Step MakeChain(const Graph& graph, const FusedNode& fused, int width, int thread
           chain->ScratchBytes(width, threads)};
 }
 
-Step MakeConvolution(const Graph& graph, const FusedNode& fused, int threads) {
+Step MakeConvolution(const Graph& graph, const FusedNode& fused, DataType precision, int threads) {
   const auto weight = [&](std::size_t i) -> const Weight& {
     return graph.weights[static_cast<std::size_t>(fused.node.weights[i])];
   };
@@ -172,6 +173,7 @@ Step MakeConvolution(const Graph& graph, const FusedNode& fused, int threads) {
       .stride = op.stride,
       .padding = op.padding,
       .slope = fused.slope,
+      .type = ConvolutionType(graph, fused, precision),
       .may_tile = op.padding == Padding::kZero || step % kConvolutionTile == 0};
   const auto kernel = std::make_shared<const Convolution>(spec, weight(0).values, weight(1).values);
   return {[kernel, adds = fused.adds_residual, threads](Views in, Views out, Scratch scratch) {
@@ -182,8 +184,14 @@ Step MakeConvolution(const Graph& graph, const FusedNode& fused, int threads) {
 
 }  // namespace
 
+CpuBackend::CpuBackend(int threads, DataType precision) : threads_(threads), precision_(precision) {
+  if (precision == DataType::kBFloat16 && BestBFloat16Unit() == BFloat16Unit::kNone) {
+    throw UserError("this processor has neither AVX-512 BF16 nor AMX; compute with 32 bits");
+  }
+}
+
 NodeNeeds CpuBackend::NeedsOf(const Graph& graph, const FusedNode& node) const {
-  return CpuNeedsOf(graph, node);
+  return CpuNeedsOf(graph, node, precision_);
 }
 
 Step CpuBackend::MakeStep(const Graph& graph, const FusedNode& fused, int height, int width) const {
@@ -193,7 +201,7 @@ Step CpuBackend::MakeStep(const Graph& graph, const FusedNode& fused, int height
     return MakeChain(graph, fused, shape.width, threads_);
   }
   if (std::holds_alternative<ConvolutionOp>(fused.node.operation)) {
-    return MakeConvolution(graph, fused, threads_);
+    return MakeConvolution(graph, fused, precision_, threads_);
   }
   return {std::visit(RunMaker(graph, fused, threads_), fused.node.operation)};
 }

@@ -7,7 +7,9 @@ namespace orb360::nn {
 /// The kernels of nn/kernels.
 class CpuBackend : public Backend {
  public:
-  explicit CpuBackend(int threads) : threads_(threads) {}
+  /// `precision`: what convolutions multiply; they add up floats in any case. Throws UserError for
+  /// kBFloat16 where the processor has nothing for it.
+  explicit CpuBackend(int threads, DataType precision = DataType::kFloat);
 
   NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const override;
   Step MakeStep(const Graph& graph, const FusedNode& node, int height, int width) const override;
@@ -15,6 +17,7 @@ class CpuBackend : public Backend {
 
  private:
   int threads_;
+  DataType precision_;
 };
 
 }  // namespace orb360::nn

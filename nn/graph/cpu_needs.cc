@@ -11,6 +11,7 @@ namespace orb360::nn {
 namespace {
 
 using Layouts = PortNeeds::Layouts;
+using Types = PortNeeds::Types;
 
 constexpr PortNeeds kPlanar{.layouts = Layouts::kPlanar};
 constexpr PortNeeds kFree{};
@@ -23,7 +24,8 @@ constexpr PortNeeds WithHalo(PortNeeds needs, int halo) {
 
 class Needs {
  public:
-  Needs(const Graph& graph, const FusedNode& fused) : graph_(graph), fused_(fused) {}
+  Needs(const Graph& graph, const FusedNode& fused, DataType precision)
+      : graph_(graph), fused_(fused), precision_(precision) {}
 
   NodeNeeds operator()(const NormalizedConvolutionOp&) const {
     return {std::vector<PortNeeds>(fused_.node.inputs.size(), kPlanar),
@@ -34,12 +36,18 @@ class Needs {
     return {{kPlanar, kPlanar}, {kPlanar, kPlanar}, {}};
   }
   NodeNeeds operator()(const ConvolutionOp&) const {
-    const int inputs = graph_.tensors[static_cast<std::size_t>(fused_.node.inputs[0])].channels;
-    const PortNeeds input{
-        .layouts = inputs <= kMaxPlanarChannels ? Layouts::kPlanar : Layouts::kBlocked,
-        .halo = KernelSize(graph_, fused_.node) / 2};
-    if (!fused_.adds_residual) return {{input}, {kTied}, {}};
-    return {{input, kTied}, {kTied}, {1}};
+    const bool is_picture = channels(fused_.node.inputs[0]) <= kMaxPlanarChannels;
+    PortNeeds input{.layouts = is_picture ? Layouts::kPlanar : Layouts::kBlocked,
+                    .halo = KernelSize(graph_, fused_.node) / 2};
+    PortNeeds output = kTied;
+    if (ConvolutionType(graph_, fused_, precision_) == DataType::kBFloat16) {
+      if (is_picture)
+        return {{input}, {{.layouts = Layouts::kBlocked, .types = Types::kBFloat16}}, {}};
+      input.types = Types::kBFloat16;
+      output.types = Types::kEither;
+    }
+    if (!fused_.adds_residual) return {{input}, {output}, {}};
+    return {{input, output}, {output}, {1}};
   }
   NodeNeeds operator()(const DenseOp&) const { return {{kFree}, {kFree}, {}}; }
   NodeNeeds operator()(const GlobalAveragePoolOp&) const { return {{kFree}, {kFree}, {}}; }
@@ -64,14 +72,29 @@ class Needs {
   }
 
  private:
+  int channels(int tensor) const {
+    return graph_.tensors[static_cast<std::size_t>(tensor)].channels;
+  }
+
   const Graph& graph_;
   const FusedNode& fused_;
+  const DataType precision_;
 };
 
 }  // namespace
 
-NodeNeeds CpuNeedsOf(const Graph& graph, const FusedNode& node) {
-  return std::visit(Needs(graph, node), node.node.operation);
+NodeNeeds CpuNeedsOf(const Graph& graph, const FusedNode& node, DataType precision) {
+  return std::visit(Needs(graph, node, precision), node.node.operation);
+}
+
+DataType ConvolutionType(const Graph& graph, const FusedNode& node, DataType precision) {
+  const auto channels = [&](int tensor) {
+    return graph.tensors[static_cast<std::size_t>(tensor)].channels;
+  };
+  const bool stays_float =
+      channels(node.node.inputs[0]) <= kMaxPlanarChannels &&
+      (node.adds_residual || channels(node.node.outputs[0]) <= kMaxPlanarChannels);
+  return stays_float ? DataType::kFloat : precision;
 }
 
 }  // namespace orb360::nn

@@ -73,7 +73,7 @@ Executor::Workspace::Workspace(const Executor& executor) {
 Executor::Executor(const Graph& graph, int height, int width, const ExecutorOptions& options) {
   ORB360_CHECK(options.threads >= 1, options.threads);
   CheckPictureSize(graph, height, width);
-  const CpuBackend backend(options.threads);
+  const CpuBackend backend(options.threads, options.precision);
   lowered_ = Lower(graph, options.keeps_tensors ? KeepNodes(graph) : FuseNodes(graph), backend,
                    height, width);
   placement_ = PlaceValues(lowered_, options.keeps_tensors);

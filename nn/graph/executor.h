@@ -16,6 +16,9 @@ namespace orb360::nn {
 
 struct ExecutorOptions {
   int threads = 1;
+  /// What convolutions multiply: kBFloat16 is faster and rounds to 8 bits, for processors that have
+  /// it (UserError for others). Everything else is computed with floats.
+  DataType precision = DataType::kFloat;
   /// Runs every node by itself and keeps what each of them writes (Executor::Find): to look inside,
   /// not to be fast.
   bool keeps_tensors = false;

@@ -93,6 +93,8 @@ class Choice {
       if (needs.layouts == Layouts::kBlocked) format.layout = Layout::kBlocked;
       if (needs.types == Types::kFloat) format.type = DataType::kFloat;
       if (needs.types == Types::kBFloat16) format.type = DataType::kBFloat16;
+      // bfloat16 is for convolutions, which read blocks.
+      if (format.layout == Layout::kPlanar) format.type = DataType::kFloat;
       formats_[Index(tensor)] = format;
     }
   }

@@ -1,5 +1,6 @@
 #include "nn/kernels/copy_channels.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "nn/base/bfloat16.h"
@@ -45,6 +46,41 @@ void CopySingly(const TensorView& from, const TensorView& to, const Row& row) {
   }
 }
 
+// Whole blocks of the other type: a block of bfloat16 holds the channels of two blocks of floats,
+// of which the second may not exist.
+void RoundBlocks(const TensorView& from, const TensorView& to, const Row& row) {
+  constexpr int kFloats = BlockOf(DataType::kFloat);
+  constexpr int kHalves = BlockOf(DataType::kBFloat16);
+  for (int i = 0; i < row.count; i += kFloats) {
+    const float* read = from.row<float>((row.from_first + i) / kFloats, row.y);
+    const int target = row.to_first + i;
+    BFloat16* write = to.row<BFloat16>(target / kHalves, row.y) + target % kHalves;
+    const bool is_last = i + kFloats >= row.count && target % kHalves == 0;
+    for (int x = 0; x < to.shape.width; ++x) {
+      for (int lane = 0; lane < kFloats; ++lane) {
+        write[x * kHalves + lane] = ToBFloat16(read[x * kFloats + lane]);
+      }
+      if (!is_last) continue;
+      for (int lane = kFloats; lane < kHalves; ++lane) write[x * kHalves + lane] = {};
+    }
+  }
+}
+
+void WidenBlocks(const TensorView& from, const TensorView& to, const Row& row) {
+  constexpr int kFloats = BlockOf(DataType::kFloat);
+  constexpr int kHalves = BlockOf(DataType::kBFloat16);
+  for (int i = 0; i < row.count; i += kFloats) {
+    const int source = row.from_first + i;
+    const BFloat16* read = from.row<BFloat16>(source / kHalves, row.y) + source % kHalves;
+    float* write = to.row<float>((row.to_first + i) / kFloats, row.y);
+    for (int x = 0; x < to.shape.width; ++x) {
+      for (int lane = 0; lane < kFloats; ++lane) {
+        write[x * kFloats + lane] = ToFloat(read[x * kHalves + lane]);
+      }
+    }
+  }
+}
+
 // Whole planes of the same kind.
 void CopyPlanes(const TensorView& from, const TensorView& to, const Row& row) {
   const int step = StepOf(to);
@@ -60,14 +96,23 @@ void CopyPlanes(const TensorView& from, const TensorView& to, const Row& row) {
   }
 }
 
-bool AreWholePlanes(const TensorView& from, int from_first, const TensorView& to, int to_first,
-                    int count) {
-  const int step = StepOf(to);
+using CopyRow = void (*)(const TensorView&, const TensorView&, const Row&);
+
+/// The fastest way for these channels.
+CopyRow Choose(const TensorView& from, int from_first, const TensorView& to, int to_first,
+               int count) {
+  const bool from_float = from.type == DataType::kFloat;
+  const bool to_float = to.type == DataType::kFloat;
+  const int step = std::max(StepOf(from), StepOf(to));
   // A last block that is not full has zeros behind, which `to` needs there, too.
   const bool ends_whole = count % step == 0 || (from_first + count == from.shape.channels &&
                                                 to_first + count == to.shape.channels);
-  return from.layout == to.layout && from.type == to.type && from_first % step == 0 &&
-         to_first % step == 0 && ends_whole;
+  const bool are_whole =
+      from.layout == to.layout && from_first % step == 0 && to_first % step == 0 && ends_whole;
+  if (are_whole && from.type == to.type) return CopyPlanes;
+  if (are_whole && to.layout == Layout::kBlocked) return from_float ? RoundBlocks : WidenBlocks;
+  if (from_float) return to_float ? CopySingly<float, float> : CopySingly<float, BFloat16>;
+  return to_float ? CopySingly<BFloat16, float> : CopySingly<BFloat16, BFloat16>;
 }
 
 }  // namespace
@@ -79,13 +124,7 @@ void CopyChannels(const TensorView& from, int from_first, const TensorView& to, 
                from_first, count, from.shape.channels);
   ORB360_CHECK(to_first >= 0 && to_first + count <= to.shape.channels, to_first, count,
                to.shape.channels);
-  const bool are_planes = AreWholePlanes(from, from_first, to, to_first, count);
-  const bool from_float = from.type == DataType::kFloat;
-  const bool to_float = to.type == DataType::kFloat;
-  const auto copy = are_planes ? CopyPlanes
-                    : from_float
-                        ? (to_float ? CopySingly<float, float> : CopySingly<float, BFloat16>)
-                        : (to_float ? CopySingly<BFloat16, float> : CopySingly<BFloat16, BFloat16>);
+  const CopyRow copy = Choose(from, from_first, to, to_first, count);
 #pragma omp parallel for num_threads(threads) schedule(static)
   for (int y = 0; y < to.shape.height; ++y) copy(from, to, {y, from_first, to_first, count});
 }

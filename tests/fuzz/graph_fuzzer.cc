@@ -20,11 +20,15 @@ namespace {
 /// Plans as for the CPU, without kernels.
 class NoKernels : public Backend {
  public:
+  explicit NoKernels(DataType precision) : precision_(precision) {}
   NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const override {
-    return CpuNeedsOf(graph, node);
+    return CpuNeedsOf(graph, node, precision_);
   }
   Step MakeStep(const Graph&, const FusedNode&, int, int) const override { return {}; }
   Step MakeCopy(int, int, int) const override { return {}; }
+
+ private:
+  DataType precision_;
 };
 
 /// Pieces of memory that are needed at the same time must not overlap.

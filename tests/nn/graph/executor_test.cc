@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "nn/base/check.h"
+#include "nn/base/cpu.h"
 #include "tests/nn/graph/network_run.h"
 #include "tests/nn/graph/random_network.h"
 #include "tests/nn/reference_interpreter.h"
@@ -112,6 +113,40 @@ TEST(Executor, AddsWhatAConvolutionReadsOrAnotherOneWrites) {
       }
     }
   }
+}
+
+TEST(Executor, BFloat16StaysNearFloatOrIsRefused) {
+  const ExecutorOptions half{.threads = 2, .precision = DataType::kBFloat16};
+  if (BestBFloat16Unit() == BFloat16Unit::kNone) {
+    EXPECT_THROW(Executor(RandomNetwork(20, 1).Build(), 8, 16, half), UserError);
+    return;
+  }
+  double sum = 0;
+  std::int64_t count = 0;
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    const Graph graph = RandomNetwork(40, seed).Build();
+    const std::vector<PlainPicture> inputs = RandomInputs(8, 16, seed);
+    const auto expected = RunOnce(Executor(graph, 8, 16), inputs);
+    const auto actual = RunOnce(Executor(graph, 8, 16, half), inputs);
+    // Fusion changes where numbers are rounded to bfloat16, but not by how much.
+    ExecutorOptions plain = half;
+    plain.keeps_tensors = true;
+    const auto unfused = RunOnce(Executor(graph, 8, 16, plain), inputs);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      double largest = 1;
+      for (const float value : expected[i]) largest = std::max<double>(largest, std::abs(value));
+      for (std::size_t j = 0; j < expected[i].size(); ++j) {
+        // Eight bits, in up to some ten convolutions one after the other; where confidences decide
+        // what is pooled, now and then another value.
+        ASSERT_TRUE(std::isfinite(actual[i][j]) && std::isfinite(unfused[i][j])) << seed;
+        sum += std::abs(actual[i][j] - expected[i][j]) / largest;
+        sum += std::abs(unfused[i][j] - expected[i][j]) / largest;
+        count += 2;
+      }
+    }
+  }
+  EXPECT_LT(sum / static_cast<double>(count), 0x1p-8);
+  EXPECT_GT(sum, 0) << "nothing was rounded";
 }
 
 TEST(Executor, ThreadsDoNotChangeABit) {

@@ -84,6 +84,26 @@ TEST(CopyChannels, RoundsToBFloat16AndBack) {
   }
 }
 
+// Whole blocks go by another way than single channels; the numbers must be the same.
+TEST(CopyChannels, RoundsWholeBlocksLikeSingleChannels) {
+  for (const int channels : {5, 16, 20, 32, 40, 64, 70}) {
+    const PlainPicture source = RandomPicture({channels, 3, 5}, -1, 1, 1);
+    const FilledTensor from(source, Layout::kBlocked, 1);
+    const TensorMemory half({{channels, 3, 5}, Layout::kBlocked, DataType::kBFloat16, 1});
+    const TensorMemory back({{channels, 3, 5}, Layout::kBlocked, DataType::kFloat, 0});
+    CopyChannels(from.view, 0, half.view, 0, channels, 2);
+    CopyChannels(half.view, 0, back.view, 0, channels, 2);
+    PlainPicture expected = source;
+    for (double& value : expected.values) value = ToFloat(ToBFloat16(static_cast<float>(value)));
+    SCOPED_TRACE(channels);
+    ExpectEqual(back.view, expected);
+    const int padded = (channels + 31) / 32 * 32;
+    for (int c = channels; c < padded; ++c) {
+      EXPECT_EQ(ToFloat(half.view.row<BFloat16>(c / 32, 2)[4 * 32 + c % 32]), 0) << c;
+    }
+  }
+}
+
 TEST(CopyChannels, RefusesChannelsThatAreNotThere) {
   const TensorMemory a({{4, 2, 2}, Layout::kPlanar, DataType::kFloat, 0});
   const TensorMemory b({{4, 2, 3}, Layout::kPlanar, DataType::kFloat, 0});
