@@ -178,24 +178,6 @@ Model Refine(const Correspondences& data, const Model& model, const TukeyLoss& l
 
 }  // namespace
 
-RelativePose MakeRelativePose(const Rigid3& camera1_from_camera2,
-                              std::span<const Vector3d> bearings1,
-                              std::span<const Vector3d> bearings2, std::vector<bool> inliers) {
-  std::vector<double> parallax;
-  parallax.reserve(inliers.size());
-  for (size_t i = 0; i < inliers.size(); ++i) {
-    if (!inliers[i]) continue;
-    parallax.push_back(AngleBetween(bearings1[i], camera1_from_camera2.rotation * bearings2[i]));
-  }
-  RelativePose result{camera1_from_camera2, std::move(inliers), static_cast<int>(parallax.size())};
-  if (!parallax.empty()) {
-    const auto middle = parallax.begin() + parallax.size() / 2;
-    std::nth_element(parallax.begin(), middle, parallax.end());
-    result.median_parallax = *middle;
-  }
-  return result;
-}
-
 std::optional<RelativePose> EstimateRelativePose(std::span<const Vector3d> bearings1,
                                                  std::span<const Vector3d> bearings2,
                                                  Sigmas sigmas1, Sigmas sigmas2,
@@ -233,11 +215,11 @@ std::optional<RelativePose> EstimateRelativePose(std::span<const Vector3d> beari
   const double inlier_limit = options.max_error * options.max_error;
   std::vector<bool> inliers(count);
   for (size_t i = 0; i < count; ++i) inliers[i] = error(*model, i) < inlier_limit;
-  RelativePose result =
-      MakeRelativePose({Eigen::Quaterniond(model->rotation).normalized(), model->translation},
-                       bearings1, bearings2, std::move(inliers));
-  if (result.num_inliers < options.min_inliers) return std::nullopt;
-  return result;
+  const auto num_inliers = static_cast<int>(std::count(inliers.begin(), inliers.end(), true));
+  if (num_inliers < options.min_inliers) return std::nullopt;
+  return RelativePose{{Eigen::Quaterniond(model->rotation).normalized(), model->translation},
+                      std::move(inliers),
+                      num_inliers};
 }
 
 }  // namespace orb360

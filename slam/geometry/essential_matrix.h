@@ -50,16 +50,7 @@ struct RelativePose {
   Rigid3 camera1_from_camera2;  ///< translation of unit length, or zero from EstimateRotation
   std::vector<bool> inliers;    ///< one for each correspondence
   int num_inliers = 0;
-  /// Median over the inliers of the angle in radians at which their rays meet. Of the order of the
-  /// noise where there was no translation: then its direction means nothing.
-  double median_parallax = 0.0;
 };
-
-/// A relative pose with its inliers counted and their parallax measured.
-RelativePose MakeRelativePose(const Rigid3& camera1_from_camera2,
-                              std::span<const Eigen::Vector3d> bearings1,
-                              std::span<const Eigen::Vector3d> bearings2,
-                              std::vector<bool> inliers);
 
 /// Relative pose from unit bearings of the same points in two cameras, correspondences at equal
 /// positions, up to 60 % of them wrong: five-point samples, cheirality by positive range (any
@@ -68,7 +59,8 @@ RelativePose MakeRelativePose(const Rigid3& camera1_from_camera2,
 /// The error of a correspondence is its angle to the epipolar geometry, shared between both
 /// bearings: |b1.(t x R b2)| / sqrt(sigma1^2 |t x R b2|^2 + sigma2^2 |t x b1|^2) standard
 /// deviations. Where the rays would meet behind a camera it is the angle between them, so that far
-/// points stay inliers.
+/// points stay inliers. Where the camera only turned, the translation's direction means nothing:
+/// the rays then meet at angles of the order of the noise.
 ///
 /// Empty when fewer than options.min_inliers agree. Throws ContractError when sizes differ.
 std::optional<RelativePose> EstimateRelativePose(std::span<const Eigen::Vector3d> bearings1,

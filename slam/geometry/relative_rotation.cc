@@ -1,5 +1,6 @@
 #include "slam/geometry/relative_rotation.h"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
@@ -71,11 +72,11 @@ std::optional<RelativePose> EstimateRotation(std::span<const Vector3d> bearings1
   const double limit = options.max_error * options.max_error;
   std::vector<bool> inliers(count);
   for (size_t i = 0; i < count; ++i) inliers[i] = error(*rotation, i) < limit;
-  RelativePose result =
-      MakeRelativePose({Eigen::Quaterniond(*rotation).normalized(), Vector3d::Zero()}, bearings1,
-                       bearings2, std::move(inliers));
-  if (result.num_inliers < options.min_inliers) return std::nullopt;
-  return result;
+  const auto num_inliers = static_cast<int>(std::count(inliers.begin(), inliers.end(), true));
+  if (num_inliers < options.min_inliers) return std::nullopt;
+  return RelativePose{{Eigen::Quaterniond(*rotation).normalized(), Vector3d::Zero()},
+                      std::move(inliers),
+                      num_inliers};
 }
 
 }  // namespace orb360

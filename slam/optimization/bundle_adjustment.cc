@@ -12,6 +12,12 @@
 #include "slam/optimization/bearing_residual.h"
 
 namespace orb360 {
+namespace {
+
+// Where the loss changes from squares to lengths; the reason is told at BundleOptions::robust.
+constexpr double kHuberSigmas = 1.0;
+
+}  // namespace
 
 BundleReport SolveBundle(const BundleOptions& options, BundleProblem* bundle) {
   ORB360_CHECK(bundle->pose_fixed.size() == bundle->world_from_camera.size());
@@ -25,7 +31,7 @@ BundleReport SolveBundle(const BundleOptions& options, BundleProblem* bundle) {
   }
   std::vector<Eigen::Vector3d> points = bundle->points;
 
-  ceres::HuberLoss loss(std::sqrt(kChiSquared95));
+  ceres::HuberLoss loss(kHuberSigmas);
   ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>> manifold;
   ceres::Problem::Options problem_options;
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
