@@ -154,6 +154,8 @@ void RunDirectPart(const DirectConvolution& run, const Rectangle& part) {
   const int out_block = output.layout == Layout::kBlocked ? BlockOf(output.type) : 1;
   const auto out_pixel_bytes = static_cast<ptrdiff_t>(SizeOf(output.type)) * out_block;
   const int reach = run.kernel / 2;
+  constexpr ptrdiff_t kNear = (ptrdiff_t{1} << 20) / ptrdiff_t{sizeof(float)};  // 1 MiB
+  const bool is_far = run.input.planes() * run.input.plane_stride > kNear;
   const float* weight = run.weight;
   const float* bias = run.bias;
   int first_block = 0;
@@ -162,7 +164,7 @@ void RunDirectPart(const DirectConvolution& run, const Rectangle& part) {
     const int first_channel = first_block * kBlock;
     const int plane = first_channel / out_block;
     const Row row{{run.kernel, run.input.shape.channels, run.input.row_stride,
-                   run.input.plane_stride, weight, bias},
+                   run.input.plane_stride, weight, bias, is_far},
                   run.slope,
                   std::min(blocks * kBlock, output.shape.channels - first_channel),
                   output.plane_stride,

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include "nn/tensor.h"
@@ -62,6 +63,7 @@ struct TileSource {
   ptrdiff_t in_plane;   // from a plane to the next
   const float* weight;  // [block of input channels][tap][input channel][output channel]
   const float* bias;
+  bool is_far = false;  // not in the second-level cache
 };
 
 // The sums of kPixels pixels; `in` is the first tap of the first of them. `kInStep` is the distance
@@ -83,6 +85,11 @@ HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVec
     for (int v = 0; v < source.kernel; ++v) {
       for (int u = 0; u < source.kernel; ++u) {
         const float* HWY_RESTRICT x = in + v * source.in_row + u * (kIsPlanar ? 1 : kBlock);
+        if (!kIsPlanar && source.is_far && u == source.kernel - 1) {
+          // The last column of taps is the first to meet new pixels: those of the next tile.
+          HWY_UNROLL(28)
+          for (int p = 0; p < kPixels; ++p) hwy::Prefetch(x + (kPixels + p) * kInStep);
+        }
         for (int c = 0; c < count; ++c) {
           V w[kVectors];
           HWY_UNROLL(16)
