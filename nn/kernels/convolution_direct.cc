@@ -48,60 +48,94 @@ HWY_INLINE void StoreRounded(V value, std::uint16_t* to) {
   hn::StoreU(hn::DemoteTo(d16, hn::BitCast(di, chosen)), d16, to);
 }
 
-// Writes a tile, with what follows the convolution. `residual` is null if there is none.
-template <int kVectors, int kPixels>
-HWY_INLINE void StoreTile(const Row& row, V (&sum)[kVectors][kPixels], const float* residual,
-                          void* out_pixels) {
+// Writes the sums of some pixels, [vector][pixel][lane], to blocks of bfloat16.
+HWY_NOINLINE void StoreRoundedTile(const Row& row, const float* sums, int vectors, int pixels,
+                                   std::uint16_t* out) {
+  constexpr int kOutBlock = BlockOf(DataType::kBFloat16);
   const D d;
   const V slope = hn::Set(d, row.slope);
-  if (row.out_type == DataType::kBFloat16) {
-    constexpr int kOutBlock = BlockOf(DataType::kBFloat16);
-    HWY_UNROLL(16)
-    for (int v = 0; v < kVectors; ++v) {
-      const int channel = row.first_lane + v * kLanes;
-      std::uint16_t* to = static_cast<std::uint16_t*>(out_pixels) +
-                          channel / kOutBlock * row.out_plane + channel % kOutBlock;
-      const auto exists = hn::FirstN(d, std::max(0, row.out_channels - v * kLanes));
-      HWY_UNROLL(28)
-      for (int p = 0; p < kPixels; ++p) {
-        StoreRounded(hn::IfThenElseZero(exists, Activate(sum[v][p], slope)), to + p * kOutBlock);
-      }
+  for (int v = 0; v < vectors; ++v) {
+    const int channel = row.first_lane + v * kLanes;
+    std::uint16_t* to = out + channel / kOutBlock * row.out_plane + channel % kOutBlock;
+    const auto exists = hn::FirstN(d, std::max(0, row.out_channels - v * kLanes));
+    for (int p = 0; p < pixels; ++p, sums += kLanes, to += kOutBlock) {
+      StoreRounded(hn::IfThenElseZero(exists, Activate(hn::Load(d, sums), slope)), to);
     }
-    return;
   }
-  auto* out = static_cast<float*>(out_pixels);
-  if (row.out_layout == Layout::kBlocked) {
-    HWY_UNROLL(16)
-    for (int v = 0; v < kVectors; ++v) {
-      const int channel = v * kLanes;
-      const ptrdiff_t lane = channel % kBlock;
-      // What fills up the last block is zero whatever the input is: zero weights would not be
-      // enough beside infinity.
-      const auto exists = hn::FirstN(d, std::max(0, row.out_channels - channel));
-      HWY_UNROLL(28)
-      for (int p = 0; p < kPixels; ++p) {
-        V value = sum[v][p];
+}
+
+// Writes the sums of some pixels, [vector][pixel][lane], to planes.
+HWY_NOINLINE void StorePlanarTile(const Row& row, const float* sums, int vectors, int pixels,
+                                  const float* residual, float* out) {
+  const auto finish = [&](int channel, int pixel) {
+    float value = sums[(channel / kLanes * pixels + pixel) * kLanes + channel % kLanes];
+    if (residual != nullptr) value += residual[channel * row.residual_plane + pixel];
+    out[channel * row.out_plane + pixel] = value > 0 ? value : row.slope * value;
+  };
+  const int channels = std::min(row.out_channels, vectors * kLanes);
+  int whole_channels = 0;
+  int whole_pixels = 0;
+#if HWY_TARGET != HWY_SCALAR
+  // Squares of 4 channels x 4 pixels are turned in registers.
+  const hn::Full128<float> d;
+  const hn::Full128<double> d_pair;
+  const auto slope = hn::Set(d, row.slope);
+  whole_channels = channels / 4 * 4;
+  whole_pixels = pixels / 4 * 4;
+  for (int c = 0; c < whole_channels; c += 4) {
+    for (int p = 0; p < whole_pixels; p += 4) {
+      const float* from = sums + (c / kLanes * pixels + p) * kLanes + c % kLanes;
+      const auto p0 = hn::LoadU(d, from);
+      const auto p1 = hn::LoadU(d, from + kLanes);
+      const auto p2 = hn::LoadU(d, from + 2 * kLanes);
+      const auto p3 = hn::LoadU(d, from + 3 * kLanes);
+      const auto low01 = hn::BitCast(d_pair, hn::InterleaveLower(d, p0, p1));
+      const auto low23 = hn::BitCast(d_pair, hn::InterleaveLower(d, p2, p3));
+      const auto high01 = hn::BitCast(d_pair, hn::InterleaveUpper(d, p0, p1));
+      const auto high23 = hn::BitCast(d_pair, hn::InterleaveUpper(d, p2, p3));
+      const auto store = [&](int channel, auto pair) HWY_ATTR {
+        auto value = hn::BitCast(d, pair);
         if (residual != nullptr) {
-          value = hn::Add(value, hn::LoadU(d, residual + channel / kBlock * row.residual_plane +
-                                                  p * kBlock + lane));
+          value = hn::Add(value, hn::LoadU(d, residual + channel * row.residual_plane + p));
         }
-        hn::StoreU(hn::IfThenElseZero(exists, Activate(value, slope)), d,
-                   out + channel / kBlock * row.out_plane + p * kBlock + lane);
-      }
+        value = hn::IfThenElse(hn::Gt(value, hn::Zero(d)), value, hn::Mul(value, slope));
+        hn::StoreU(value, d, out + channel * row.out_plane + p);
+      };
+      store(c, hn::InterleaveLower(d_pair, low01, low23));
+      store(c + 1, hn::InterleaveUpper(d_pair, low01, low23));
+      store(c + 2, hn::InterleaveLower(d_pair, high01, high23));
+      store(c + 3, hn::InterleaveUpper(d_pair, high01, high23));
     }
-    return;
   }
-  HWY_ALIGN float tile[kPixels * kVectors * kLanes];
+#endif
+  for (int c = 0; c < channels; ++c) {
+    for (int p = c < whole_channels ? whole_pixels : 0; p < pixels; ++p) finish(c, p);
+  }
+}
+
+// Writes a tile to blocks of floats, with what follows the convolution. `residual` is null if there
+// is none.
+template <int kVectors, int kPixels>
+HWY_INLINE void StoreTile(const Row& row, const V (&sum)[kVectors][kPixels], const float* residual,
+                          float* out) {
+  const D d;
+  const V slope = hn::Set(d, row.slope);
+  HWY_UNROLL(16)
   for (int v = 0; v < kVectors; ++v) {
+    const int channel = v * kLanes;
+    const ptrdiff_t lane = channel % kBlock;
+    // What fills up the last block is zero whatever the input is: zero weights would not be
+    // enough beside infinity.
+    const auto exists = hn::FirstN(d, std::max(0, row.out_channels - channel));
+    HWY_UNROLL(28)
     for (int p = 0; p < kPixels; ++p) {
-      hn::Store(sum[v][p], d, tile + (p * kVectors + v) * kLanes);
-    }
-  }
-  for (int c = 0; c < row.out_channels; ++c) {
-    for (int p = 0; p < kPixels; ++p) {
-      float value = tile[p * kVectors * kLanes + c];
-      if (residual != nullptr) value += residual[c * row.residual_plane + p];
-      out[c * row.out_plane + p] = value > 0 ? value : row.slope * value;
+      V value = sum[v][p];
+      if (residual != nullptr) {
+        value = hn::Add(value, hn::LoadU(d, residual + channel / kBlock * row.residual_plane +
+                                                p * kBlock + lane));
+      }
+      hn::StoreU(hn::IfThenElseZero(exists, Activate(value, slope)), d,
+                 out + channel / kBlock * row.out_plane + p * kBlock + lane);
     }
   }
 }
@@ -111,7 +145,21 @@ void ComputeTile(const Row& row, const float* in, const float* residual, void* o
   constexpr int kVectors = kBlocks * kVectorsPerBlock;
   V sum[kVectors][kPixels];
   SumTile<kVectors, kPixels, kInStep>(row.source, in, sum);
-  StoreTile<kVectors, kPixels>(row, sum, residual, out);
+  if (row.out_layout == Layout::kBlocked && row.out_type == DataType::kFloat) {
+    StoreTile<kVectors, kPixels>(row, sum, residual, static_cast<float*>(out));
+    return;
+  }
+  HWY_ALIGN float sums[kVectors * kPixels * kLanes];
+  HWY_UNROLL(16)
+  for (int v = 0; v < kVectors; ++v) {
+    HWY_UNROLL(28)
+    for (int p = 0; p < kPixels; ++p) hn::Store(sum[v][p], D(), sums + (v * kPixels + p) * kLanes);
+  }
+  if (row.out_type == DataType::kBFloat16) {
+    StoreRoundedTile(row, sums, kVectors, kPixels, static_cast<std::uint16_t*>(out));
+  } else {
+    StorePlanarTile(row, sums, kVectors, kPixels, residual, static_cast<float*>(out));
+  }
 }
 
 using TileFunction = void (*)(const Row&, const float*, const float*, void*);

@@ -66,11 +66,28 @@ struct TileSource {
   bool is_far = false;  // not in the second-level cache
 };
 
+// Adds the products of one input channel and one tap.
+template <int kInStep, int kVectors, int kPixels>
+HWY_INLINE void MultiplyAdd(const float* HWY_RESTRICT x, const float* HWY_RESTRICT weight,
+                            V (&sum)[kVectors][kPixels]) {
+  const D d;
+  V w[kVectors];
+  HWY_UNROLL(16)
+  for (int i = 0; i < kVectors; ++i) w[i] = hn::Load(d, weight + i * kLanes);
+  HWY_UNROLL(28)
+  for (int p = 0; p < kPixels; ++p) {
+    const V value = hn::Set(d, x[p * kInStep]);
+    HWY_UNROLL(16)
+    for (int i = 0; i < kVectors; ++i) sum[i][p] = hn::MulAdd(value, w[i], sum[i][p]);
+  }
+}
+
 // The sums of kPixels pixels; `in` is the first tap of the first of them. `kInStep` is the distance
 // of two pixels' inputs: the stride, in blocks if the input is blocked.
 template <int kVectors, int kPixels, int kInStep>
 HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVectors][kPixels]) {
   constexpr bool kIsPlanar = kInStep < kBlock;
+  constexpr int kTurn = 4;
   const D d;
   HWY_UNROLL(16)
   for (int v = 0; v < kVectors; ++v) {
@@ -90,16 +107,18 @@ HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVec
           HWY_UNROLL(28)
           for (int p = 0; p < kPixels; ++p) hwy::Prefetch(x + (kPixels + p) * kInStep);
         }
-        for (int c = 0; c < count; ++c) {
-          V w[kVectors];
-          HWY_UNROLL(16)
-          for (int i = 0; i < kVectors; ++i) w[i] = hn::Load(d, weight + i * kLanes);
-          HWY_UNROLL(28)
-          for (int p = 0; p < kPixels; ++p) {
-            const V value = hn::Set(d, x[p * kInStep]);
-            HWY_UNROLL(16)
-            for (int i = 0; i < kVectors; ++i) sum[i][p] = hn::MulAdd(value, w[i], sum[i][p]);
+        int c = 0;
+        // Four input channels a turn: counting and branching take the FMAs' ports as well.
+        for (; c + kTurn <= count; c += kTurn) {
+          HWY_UNROLL(4)
+          for (int i = 0; i < kTurn; ++i) {
+            MultiplyAdd<kInStep>(x + i * channel_step, weight + i * kVectors * kLanes, sum);
           }
+          x += kTurn * channel_step;
+          weight += kTurn * kVectors * kLanes;
+        }
+        for (; c < count; ++c) {
+          MultiplyAdd<kInStep>(x, weight, sum);
           x += channel_step;
           weight += kVectors * kLanes;
         }
