@@ -42,7 +42,8 @@ constexpr int kMaxPlanarChannels = 8;
 /// |---|---|---|
 /// | float | float, blocked; up to kMaxPlanarChannels also planar | float, blocked or planar |
 /// | bfloat16 | bfloat16, blocked | bfloat16, blocked; float, blocked or planar |
-/// | bfloat16, up to kMaxPlanarChannels | float, planar, not rounded | bfloat16, blocked |
+/// | bfloat16, up to kMaxPlanarChannels | float, planar; rounded where AMX multiplies | bfloat16,
+/// blocked |
 class Convolution {
  public:
   /// `weight` is out_channels x in_channels x kernel x kernel, row by row; `bias` has out_channels
@@ -67,6 +68,9 @@ class Convolution {
   // True where floats in planes become blocks of bfloat16.
   bool is_bfloat16_stem() const {
     return spec_.type == DataType::kBFloat16 && spec_.in_channels <= kMaxPlanarChannels;
+  }
+  bool is_amx_stem() const {
+    return is_bfloat16_stem() && unit_ == BFloat16Unit::kAmx && spec_.kernel == 3;
   }
   // True for what is computed in tiles by Winograd's method.
   bool is_winograd() const;

@@ -2,49 +2,13 @@
 
 #if defined(__x86_64__)
 
+#include "nn/kernels/amx_tiles.h"
 #include "nn/kernels/convolution_bf16_store.h"
-
-#define ORB360_AMX                                            \
-  __attribute__((                                             \
-      target("avx512f,avx512bw,avx512vl,avx512dq,avx512bf16," \
-             "amx-tile,amx-bf16")))
 
 namespace orb360::nn {
 namespace {
 
-// There are 8 tiles of 16 rows of 64 bytes. 0 to 3 hold sums: 16 pixels x 16 output channels, tile
-// 2 a + b those of inputs 4 + a and weights 6 + b. An input tile is 16 pixels x 32 channels, just
-// as they lie in memory; a weight tile 16 pairs of input channels x 16 output channels. A step
-// loads four tiles in 8 cycles each, and multiplies four times in 16 cycles each: 2 x 2 is the
-// smallest shape in which the multiplications hide the loads, and no larger one fits.
-constexpr int kRows = 16;
-constexpr int kPixels = 2 * kRows;
 constexpr int kTileBytes = 1024;
-
-struct alignas(64) TileConfiguration {
-  std::uint8_t palette = 1;
-  std::uint8_t start_row = 0;
-  std::uint8_t reserved[14] = {};
-  std::uint16_t row_bytes[16] = {};
-  std::uint8_t rows[16] = {};
-};
-static_assert(sizeof(TileConfiguration) == 64);
-
-// Shapes all tiles for `pixels` pixels of a row at once, up to kPixels.
-ORB360_AMX void Configure(int pixels) {
-  TileConfiguration tiles;
-  for (int tile = 0; tile < 8; ++tile) {
-    tiles.row_bytes[tile] = 64;
-    tiles.rows[tile] = kRows;
-  }
-  for (const int a : {0, 1}) {
-    const auto rows = static_cast<std::uint8_t>(std::clamp(pixels - a * kRows, 1, kRows));
-    tiles.rows[4 + a] = tiles.rows[2 * a] = tiles.rows[2 * a + 1] = rows;
-  }
-  // GCC 12 believes that only the first 8 bytes are read.
-  asm volatile("" : : "r"(&tiles) : "memory");
-  _tile_loadconfig(&tiles);
-}
 
 // The sums of up to 16 (kInputs = 1) or 32 pixels and 16 (kHalves = 1) or 32 output channels. `in`
 // is the first tap of the first pixel.
@@ -71,7 +35,7 @@ ORB360_AMX void Multiply(const BFloat16Convolution& run, const std::uint16_t* in
           _tile_dpbf16ps(1, 4, 7);
         }
         if constexpr (kInputs == 2) {
-          _tile_loadd(5, x + kRows * run.stride * kBlock, pixel_bytes);
+          _tile_loadd(5, x + kTileRows * run.stride * kBlock, pixel_bytes);
           _tile_dpbf16ps(2, 5, 6);
           if constexpr (kHalves == 2) _tile_dpbf16ps(3, 5, 7);
         }
@@ -81,9 +45,9 @@ ORB360_AMX void Multiply(const BFloat16Convolution& run, const std::uint16_t* in
   }
   _tile_stored(0, sums[0], 64);
   if constexpr (kHalves == 2) _tile_stored(1, sums[1], 64);
-  if constexpr (kInputs == 2) _tile_stored(2, sums[0] + kRows * kBFloat16Half, 64);
+  if constexpr (kInputs == 2) _tile_stored(2, sums[0] + kTileRows * kBFloat16Half, 64);
   if constexpr (kInputs == 2 && kHalves == 2) {
-    _tile_stored(3, sums[1] + kRows * kBFloat16Half, 64);
+    _tile_stored(3, sums[1] + kTileRows * kBFloat16Half, 64);
   }
 }
 
@@ -93,7 +57,7 @@ ORB360_AMX void RunColumns(const BFloat16Convolution& run, int first, int last, 
   constexpr std::ptrdiff_t kBlock = BlockOf(DataType::kBFloat16);
   const int reach = run.kernel / 2;
   const auto multiply_for = [&](int halves) {
-    if (step > kRows) return halves == 2 ? Multiply<2, 2> : Multiply<2, 1>;
+    if (step > kTileRows) return halves == 2 ? Multiply<2, 2> : Multiply<2, 1>;
     return halves == 2 ? Multiply<1, 2> : Multiply<1, 1>;
   };
   const std::uint16_t* weight = run.weight;
@@ -117,13 +81,13 @@ ORB360_AMX void RunColumns(const BFloat16Convolution& run, int first, int last, 
 
 ORB360_AMX void RunAmx(const BFloat16Convolution& run, int first, int last) {
   const int width = run.output.shape.width;
-  const int whole = width / kPixels * kPixels;
+  const int whole = width / kTilePixels * kTilePixels;
   if (whole > 0) {
-    Configure(kPixels);
-    RunColumns(run, first, last, 0, whole, kPixels);
+    ShapeTiles(kTilePixels, 16);
+    RunColumns(run, first, last, 0, whole, kTilePixels);
   }
   if (whole < width) {
-    Configure(width - whole);
+    ShapeTiles(width - whole, 16);
     RunColumns(run, first, last, whole, width, width - whole);
   }
   _tile_release();

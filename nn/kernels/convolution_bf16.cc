@@ -1,39 +1,76 @@
 #include "nn/kernels/convolution_bf16.h"
 
-#include <algorithm>
 #include <cstddef>
 
 namespace orb360::nn {
 
+namespace {
+
+AlignedVector<std::uint16_t> Round(AlignedVector<float>& values) {
+  AlignedVector<std::uint16_t> rounded(values.size());
+  const Shape shape{1, 1, static_cast<int>(values.size())};
+  Reorder(TensorFormat{shape, Layout::kPlanar, DataType::kFloat, 0}.View(values.data()),
+          TensorFormat{shape, Layout::kPlanar, DataType::kBFloat16, 0}.View(rounded.data()));
+  return rounded;
+}
+
+struct Filters {
+  std::span<const float> weight;  // out_channels x in_channels x taps
+  int out_channels;
+  int in_channels;
+  int taps;
+};
+
+// Appends the weights of half a group and of `count` input channels, in pairs; zeros for what does
+// not exist.
+void AppendPairs(const Filters& filters, int first_out, int first_in, int count, int tap,
+                 AlignedVector<float>* packed) {
+  for (int i = first_in; i < first_in + count; i += 2) {
+    for (int o = first_out; o < first_out + kBFloat16Half; ++o) {
+      for (const int in : {i, i + 1}) {
+        const bool exists = o < filters.out_channels && in < filters.in_channels;
+        const std::size_t filter = static_cast<std::size_t>(o) * filters.in_channels + in;
+        packed->push_back(exists ? filters.weight[filter * filters.taps + tap] : 0);
+      }
+    }
+  }
+}
+
+}  // namespace
+
 AlignedVector<std::uint16_t> PackBFloat16(std::span<const float> weight, int out_channels,
                                           int in_channels, int kernel) {
-  const int taps = kernel * kernel;
+  const Filters filters{weight, out_channels, in_channels, kernel * kernel};
   constexpr int kBlock = BlockOf(DataType::kBFloat16);
   AlignedVector<float> packed;
   for (int group = 0; group * kBFloat16Group < out_channels; ++group) {
-    for (int block = 0; block * kBlock < in_channels; ++block) {
-      for (int tap = 0; tap < taps; ++tap) {
+    for (int first_in = 0; first_in < in_channels; first_in += kBlock) {
+      for (int tap = 0; tap < filters.taps; ++tap) {
         for (int half = 0; half < HalvesInGroup(group, out_channels); ++half) {
-          for (int i = block * kBlock; i < (block + 1) * kBlock; i += 2) {
-            const int first = group * kBFloat16Group + half * kBFloat16Half;
-            for (int o = first; o < first + kBFloat16Half; ++o) {
-              for (const int in : {i, i + 1}) {
-                const bool exists = o < out_channels && in < in_channels;
-                packed.push_back(
-                    exists ? weight[(static_cast<std::size_t>(o) * in_channels + in) * taps + tap]
-                           : 0);
-              }
-            }
-          }
+          AppendPairs(filters, group * kBFloat16Group + half * kBFloat16Half, first_in, kBlock, tap,
+                      &packed);
         }
       }
     }
   }
-  AlignedVector<std::uint16_t> rounded(packed.size());
-  const Shape shape{1, 1, static_cast<int>(packed.size())};
-  Reorder(TensorFormat{shape, Layout::kPlanar, DataType::kFloat, 0}.View(packed.data()),
-          TensorFormat{shape, Layout::kPlanar, DataType::kBFloat16, 0}.View(rounded.data()));
-  return rounded;
+  return Round(packed);
+}
+
+AlignedVector<std::uint16_t> PackBFloat16Stem(std::span<const float> weight, int out_channels,
+                                              int in_channels) {
+  const Filters filters{weight, out_channels, in_channels, 9};
+  AlignedVector<float> packed;
+  for (int group = 0; group * kBFloat16Group < out_channels; ++group) {
+    for (int row = 0; row < 3; ++row) {
+      for (int half = 0; half < HalvesInGroup(group, out_channels); ++half) {
+        for (int column = 0; column < 3; ++column) {
+          AppendPairs(filters, group * kBFloat16Group + half * kBFloat16Half, 0, 8,
+                      row * 3 + column, &packed);
+        }
+      }
+    }
+  }
+  return Round(packed);
 }
 
 }  // namespace orb360::nn

@@ -15,7 +15,7 @@ struct BFloat16Convolution {
   float slope = 1;
   const std::uint16_t* weight = nullptr;  // by PackBFloat16
   const float* bias = nullptr;            // of all channels of all blocks of the output
-  TensorView input;                       // kBlocked, kBFloat16, with its padding in its halo
+  TensorView input;                       // with its padding in its halo
   TensorView residual;                    // data is null if there is none
   TensorView output;                      // kBFloat16 blocks, or kFloat in any layout
 };
@@ -37,9 +37,17 @@ constexpr int HalvesInGroup(int group, int out_channels) {
 AlignedVector<std::uint16_t> PackBFloat16(std::span<const float> weight, int out_channels,
                                           int in_channels, int kernel);
 
+/// The same for RunAmxStem: [group][kernel row][half][kernel column][pair of input channels]
+/// [output channel][channel of the pair], where the last four are a tile of 768 bytes.
+AlignedVector<std::uint16_t> PackBFloat16Stem(std::span<const float> weight, int out_channels,
+                                              int in_channels);
+
 /// Compute rows `first` to `last` - 1 of the output with AMX or AVX-512's VDPBF16PS, which the
 /// processor must have.
 void RunAmx(const BFloat16Convolution& run, int first, int last);
 void RunAvx512BFloat16(const BFloat16Convolution& run, int first, int last);
+
+/// The same for a kernel of 3x3 on up to 8 planes of floats, which are rounded on the way.
+void RunAmxStem(const BFloat16Convolution& run, int first, int last);
 
 }  // namespace orb360::nn

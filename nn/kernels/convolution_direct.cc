@@ -127,7 +127,7 @@ HWY_INLINE void StoreTile(const Row& row, const V (&sum)[kVectors][kPixels], con
     // What fills up the last block is zero whatever the input is: zero weights would not be
     // enough beside infinity.
     const auto exists = hn::FirstN(d, std::max(0, row.out_channels - channel));
-    HWY_UNROLL(28)
+    HWY_UNROLL(14)
     for (int p = 0; p < kPixels; ++p) {
       V value = sum[v][p];
       if (residual != nullptr) {
@@ -152,7 +152,7 @@ void ComputeTile(const Row& row, const float* in, const float* residual, void* o
   HWY_ALIGN float sums[kVectors * kPixels * kLanes];
   HWY_UNROLL(16)
   for (int v = 0; v < kVectors; ++v) {
-    HWY_UNROLL(28)
+    HWY_UNROLL(14)
     for (int p = 0; p < kPixels; ++p) hn::Store(sum[v][p], D(), sums + (v * kPixels + p) * kLanes);
   }
   if (row.out_type == DataType::kBFloat16) {

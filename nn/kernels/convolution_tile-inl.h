@@ -9,6 +9,7 @@
 #endif
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 
 #include <hwy/cache_control.h>
@@ -41,12 +42,12 @@ constexpr int kVectorsPerBlock = kBlock / kLanes;
 //
 // AVX-512, 32 registers: 2 x 14 takes 31 of them, loads 16 times in 14 cycles and needs 128 bytes
 // of weights in that time, which the second-level cache delivers; 3 x 9 does the same for an odd
-// number of blocks, and 1 x 28 loads as much as it multiplies.
+// number of blocks. A single block loads as often as it multiplies, with 14 pixels or with 28.
 // AVX2, 16 registers: 2 x 6 takes 15. SSE4, without FMA, needs one more for the product: 4 x 2
 // takes 8 + 4 + 2. NEON, 32 registers: 4 x 6 takes 29.
 #if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
 constexpr int kMaxBlocks = 3;
-constexpr int MaxPixels(int blocks) { return blocks == 1 ? 28 : blocks == 2 ? 14 : 9; }
+constexpr int MaxPixels(int blocks) { return blocks == 3 ? 9 : 14; }
 #elif HWY_TARGET == HWY_AVX2 || HWY_ARCH_ARM_A64
 constexpr int kMaxBlocks = 1;
 constexpr int MaxPixels(int /*blocks*/) { return 6; }
@@ -74,7 +75,7 @@ HWY_INLINE void MultiplyAdd(const float* HWY_RESTRICT x, const float* HWY_RESTRI
   V w[kVectors];
   HWY_UNROLL(16)
   for (int i = 0; i < kVectors; ++i) w[i] = hn::Load(d, weight + i * kLanes);
-  HWY_UNROLL(28)
+  HWY_UNROLL(14)
   for (int p = 0; p < kPixels; ++p) {
     const V value = hn::Set(d, x[p * kInStep]);
     HWY_UNROLL(16)
@@ -92,7 +93,7 @@ HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVec
   HWY_UNROLL(16)
   for (int v = 0; v < kVectors; ++v) {
     const V bias = hn::Load(d, source.bias + v * kLanes);
-    HWY_UNROLL(28)
+    HWY_UNROLL(14)
     for (int p = 0; p < kPixels; ++p) sum[v][p] = bias;
   }
   const float* HWY_RESTRICT weight = source.weight;
@@ -104,7 +105,7 @@ HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVec
         const float* HWY_RESTRICT x = in + v * source.in_row + u * (kIsPlanar ? 1 : kBlock);
         if (!kIsPlanar && source.is_far && u == source.kernel - 1) {
           // The last column of taps is the first to meet new pixels: those of the next tile.
-          HWY_UNROLL(28)
+          HWY_UNROLL(14)
           for (int p = 0; p < kPixels; ++p) hwy::Prefetch(x + (kPixels + p) * kInStep);
         }
         int c = 0;
@@ -113,10 +114,13 @@ HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVec
           HWY_UNROLL(4)
           for (int i = 0; i < kTurn; ++i) {
             MultiplyAdd<kInStep>(x + i * channel_step, weight + i * kVectors * kLanes, sum);
+            // Keeps the compiler from loading ahead: there is no register to spare.
+            std::atomic_signal_fence(std::memory_order_acq_rel);
           }
           x += kTurn * channel_step;
           weight += kTurn * kVectors * kLanes;
         }
+        HWY_UNROLL(1)
         for (; c < count; ++c) {
           MultiplyAdd<kInStep>(x, weight, sum);
           x += channel_step;

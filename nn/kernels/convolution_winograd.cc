@@ -156,7 +156,7 @@ void Multiply(const TileSource& source, const float* in, float* out, ptrdiff_t o
   HWY_UNROLL(16)
   for (int v = 0; v < kVectors; ++v) {
     float* to = out + v * kLanes / kBlock * out_plane + v * kLanes % kBlock;
-    HWY_UNROLL(28)
+    HWY_UNROLL(14)
     for (int p = 0; p < kCount; ++p) hn::Store(sum[v][p], d, to + p * kBlock);
   }
 }
