@@ -9,6 +9,7 @@
 #include <thread>
 
 #include <CLI/CLI.hpp>
+#include <dnnl.hpp>
 #include <hwy/highway.h>
 #include <nlohmann/json.hpp>
 
@@ -30,6 +31,7 @@ struct Options {
   int runs = 20;
   double seconds = 0.5;  // for a layer, if more than `runs` fit
   bool best = false;     // minima instead of medians
+  bool avx2 = false;
   bool json = false;
 };
 
@@ -186,8 +188,13 @@ int Main(int argc, char** argv) {
   app.add_option("--runs", options.runs, "at least")->check(CLI::PositiveNumber);
   app.add_option("--seconds", options.seconds, "for a layer, at least");
   app.add_flag("--best", options.best, "minima instead of medians, for a busy machine");
+  app.add_flag("--avx2", options.avx2, "without AVX-512; oneDNN too, but not ONNX Runtime");
   app.add_flag("--json", options.json, "print only the summary, as JSON");
   CLI11_PARSE(app, argc, argv);
+  if (options.avx2) {
+    hwy::DisableTargets(HWY_AVX2 - 1);  // a better set of instructions has a lower bit
+    dnnl::set_max_cpu_isa(dnnl::cpu_isa::avx2);
+  }
   std::vector<Result> results;
   for (const LayerList& list : {kCompletionLayers, kEncoderDecoderLayers, kMultiStreamLayers}) {
     if (std::count(options.networks.begin(), options.networks.end(), list.network) == 0) continue;

@@ -60,6 +60,7 @@ ORB360_AMX void RunColumns(const BFloat16Convolution& run, int first, int last, 
     if (step > kTileRows) return halves == 2 ? Multiply<2, 2> : Multiply<2, 1>;
     return halves == 2 ? Multiply<1, 2> : Multiply<1, 1>;
   };
+  LateStore store(run);
   const std::uint16_t* weight = run.weight;
   for (int group = 0; group * kBFloat16Group < run.output.shape.channels; ++group) {
     const int halves = HalvesInGroup(group, run.output.shape.channels);
@@ -67,14 +68,14 @@ ORB360_AMX void RunColumns(const BFloat16Convolution& run, int first, int last, 
     for (int y = first; y < last; ++y) {
       const std::uint16_t* in = run.input.row<std::uint16_t>(0, y * run.stride - reach);
       for (int x = from; x < to; x += step) {
-        alignas(64) BFloat16Sums sums[2];
-        multiply(run, in + (x * run.stride - reach) * kBlock, weight, sums);
-        StoreSums(run, group, y, x, step, sums);
+        multiply(run, in + (x * run.stride - reach) * kBlock, weight, store.next());
+        store.Push(group, y, x, step);
       }
     }
     weight +=
         std::ptrdiff_t{run.input.planes()} * run.kernel * run.kernel * halves * kTileBytes / 2;
   }
+  store.Flush();
 }
 
 }  // namespace

@@ -98,6 +98,7 @@ ORB360_AMX void Multiply(const std::uint16_t* lines, int stride, int pixels, int
 ORB360_AMX void RunColumns(const BFloat16Convolution& run, int first, int last, int from, int to,
                            int step) {
   alignas(64) std::uint16_t lines[kTaps * kLine * kChannels];
+  LateStore store(run);
   for (int y = first; y < last; ++y) {
     for (int start = from; start < to; start += kRun) {
       const int end = std::min(start + kRun, to);
@@ -110,15 +111,15 @@ ORB360_AMX void RunColumns(const BFloat16Convolution& run, int first, int last, 
       for (int group = 0; group * kBFloat16Group < run.output.shape.channels; ++group) {
         const int halves = HalvesInGroup(group, run.output.shape.channels);
         for (int x = start; x < end; x += step) {
-          alignas(64) BFloat16Sums sums[2];
           Multiply(lines + (x - start) * run.stride * kChannels, run.stride, step, halves, weight,
-                   sums);
-          StoreSums(run, group, y, x, step, sums);
+                   store.next());
+          store.Push(group, y, x, step);
         }
         weight += std::ptrdiff_t{kTaps} * halves * kTileNumbers;
       }
     }
   }
+  store.Flush();
 }
 
 }  // namespace

@@ -99,4 +99,40 @@ ORB360_AVX512_BF16 inline void StoreSums(const BFloat16Convolution& run, int gro
   }
 }
 
+/// Stores the sums of every tile one tile late: the vector units then work while the tiles of the
+/// next one multiply, instead of in turn with them.
+class LateStore {
+ public:
+  explicit LateStore(const BFloat16Convolution& run) : run_(run) {}
+  LateStore(const LateStore&) = delete;
+  LateStore& operator=(const LateStore&) = delete;
+
+  /// Where the next tile's sums go.
+  BFloat16Sums* next() { return sums_[next_]; }
+  /// The sums in next() are those of `pixels` pixels from (y, x) on.
+  ORB360_AVX512_BF16 void Push(int group, int y, int x, int pixels) {
+    Flush();
+    waiting_ = {group, y, x, pixels};
+    next_ = 1 - next_;
+  }
+  ORB360_AVX512_BF16 void Flush() {
+    if (waiting_.pixels == 0) return;
+    StoreSums(run_, waiting_.group, waiting_.y, waiting_.x, waiting_.pixels, sums_[1 - next_]);
+    waiting_.pixels = 0;
+  }
+
+ private:
+  struct Waiting {
+    int group = 0;
+    int y = 0;
+    int x = 0;
+    int pixels = 0;
+  };
+
+  const BFloat16Convolution& run_;
+  Waiting waiting_;
+  int next_ = 0;
+  alignas(64) BFloat16Sums sums_[2][2];
+};
+
 }  // namespace orb360::nn
