@@ -88,7 +88,8 @@ HWY_INLINE void MultiplyAdd(const float* HWY_RESTRICT x, const float* HWY_RESTRI
 template <int kVectors, int kPixels, int kInStep>
 HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVectors][kPixels]) {
   constexpr bool kIsPlanar = kInStep < kBlock;
-  constexpr int kTurn = 4;
+  // Input channels a turn: counting and branching take the FMAs' ports as well. Planes are few.
+  constexpr int kTurn = kIsPlanar ? 1 : 4;
   const D d;
   HWY_UNROLL(16)
   for (int v = 0; v < kVectors; ++v) {
@@ -109,7 +110,6 @@ HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVec
           for (int p = 0; p < kPixels; ++p) hwy::Prefetch(x + (kPixels + p) * kInStep);
         }
         int c = 0;
-        // Four input channels a turn: counting and branching take the FMAs' ports as well.
         for (; c + kTurn <= count; c += kTurn) {
           HWY_UNROLL(4)
           for (int i = 0; i < kTurn; ++i) {
@@ -121,7 +121,7 @@ HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVec
           weight += kTurn * kVectors * kLanes;
         }
         HWY_UNROLL(1)
-        for (; c < count; ++c) {
+        for (; kTurn > 1 && c < count; ++c) {
           MultiplyAdd<kInStep>(x, weight, sum);
           x += channel_step;
           weight += kVectors * kLanes;
