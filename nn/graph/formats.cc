@@ -69,7 +69,7 @@ class Choice {
   void Vote(int tensor, const Wish& vote) {
     Wish& wish = wishes_[Index(tensor)];
     if (vote.layout && wish.layout != UsualLayout(channels(tensor))) wish.layout = vote.layout;
-    if (vote.type && wish.type != DataType::kFloat) wish.type = vote.type;
+    if (vote.type && wish.type != DataType::kBFloat16) wish.type = vote.type;
   }
 
   Format Wished(int tensor) const {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <hdf5.h>
+#include <hdf5_hl.h>
 #include <openssl/evp.h>
 
 #include "nn/base/check.h"
@@ -84,13 +85,12 @@ void CheckHeader(const Bytes& bytes) {
   }
 }
 
-/// The file in memory as the HDF5 library sees it.
+/// The file in memory as the HDF5 library sees it: `bytes` themselves, which must outlive the
+/// handle. (Copies of them would take as long as the digest.)
 Hdf5Handle OpenImage(Bytes* bytes) {
-  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  constexpr std::size_t kGrowth = 1 << 16;  // bytes; never used for reading
-  H5Pset_fapl_core(access.get(), kGrowth, /*backing_store=*/0);
-  H5Pset_file_image(access.get(), bytes->data(), bytes->size());
-  Hdf5Handle file(H5Fopen("network", H5F_ACC_RDONLY, access.get()), H5Fclose);
+  Hdf5Handle file(H5LTopen_file_image(bytes->data(), bytes->size(),
+                                      H5LT_FILE_IMAGE_DONT_COPY | H5LT_FILE_IMAGE_DONT_RELEASE),
+                  H5Fclose);
   if (!file.is_valid()) throw UserError("has no HDF5 content behind its header");
   return file;
 }
