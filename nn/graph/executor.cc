@@ -59,6 +59,7 @@ Executor::Workspace::Workspace(const Executor& executor) {
   }
   const auto views = [&](const std::vector<int>& values) {
     std::vector<TensorView> list;
+    list.reserve(values.size());
     for (const int value : values) list.push_back(views_[Index(value)]);
     return list;
   };

@@ -37,6 +37,7 @@ void ResampleBilinear(std::span<const float> from, PictureSize from_size, std::s
   ORB360_CHECK(from.size() == PixelsOf(from_size) && to.size() == PixelsOf(to_size), from.size(),
                to.size());
   std::vector<Between> columns;
+  columns.reserve(static_cast<std::size_t>(to_size.width));
   for (int u = 0; u < to_size.width; ++u) {
     columns.push_back(Locate(u, to_size.width, from_size.width, /*wraps=*/true));
   }
