@@ -35,6 +35,7 @@ struct Arguments {
   std::optional<double> camera_height;
   double shaking = 1;
   std::optional<int> cube;
+  bool full_sampling = false;
   std::optional<double> shutter;
   std::optional<int> jpeg_quality;
   bool auto_exposure = false;
@@ -61,6 +62,7 @@ Recording RecordingOf(const Arguments& arguments, int width, int cube_size) {
   Recording recording{EquirectangularCamera(chosen, chosen / 2), arguments.fps};
   recording.cube_size = arguments.cube.value_or(arguments.width ? 0 : cube_size);
   recording.sensor = SensorOf(arguments);
+  if (arguments.full_sampling) recording.sampling = Sampling::kFull;
   return recording;
 }
 
@@ -155,6 +157,13 @@ void AddRenderCommand(CLI::App* app) {
                    "Stitch the panorama from six faces, so many pixels wide; 0: render it directly "
                    "[768 for Town1 ... Town5 without --width, else 0]")
       ->check(CLI::Range(0, 0) | CLI::Range(16, 8192));
+  command
+      ->add_option_function<std::string>(
+          "--samples",
+          [arguments](const std::string& value) { arguments->full_sampling = value == "4"; },
+          "Rays for a pixel: adaptive (one, and four where surfaces or shadows meet) or 4 "
+          "everywhere, which takes longer [adaptive]")
+      ->check(CLI::IsMember({"adaptive", "4"}));
   command->add_option("--fps", arguments->fps, "Frames per second")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 1000.0));

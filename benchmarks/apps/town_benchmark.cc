@@ -7,6 +7,7 @@
 #include <benchmark/benchmark.h>
 
 #include "apps/town/drive/camera_motion.h"
+#include "apps/town/render/geometry_image.h"
 #include "apps/town/render/renderer.h"
 #include "apps/town/world/town.h"
 
@@ -32,18 +33,24 @@ const World& TheWorld() {
 
 const EquirectangularCamera kCamera(1024, 512);
 
-void BM_RenderColour(benchmark::State& state) {
+void RenderColours(benchmark::State& state, Sampling sampling) {
   const World& world = TheWorld();
   int frame = 0;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(RenderColour(world.frame, world.shader, kCamera, world.Pose(frame)));
+    benchmark::DoNotOptimize(
+        RenderColour(world.frame, world.shader, kCamera, world.Pose(frame), sampling));
     ++frame;
   }
   state.counters["samples/s"] = benchmark::Counter(
       4.0 * kCamera.width() * kCamera.height() * static_cast<double>(state.iterations()),
       benchmark::Counter::kIsRate);
 }
-BENCHMARK(BM_RenderColour)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(RenderColours, adaptive, Sampling::kAdaptive)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK_CAPTURE(RenderColours, full, Sampling::kFull)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 void BM_RenderGeometry(benchmark::State& state) {
   const World& world = TheWorld();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <functional>
@@ -48,9 +49,10 @@ class Texture {
     const int index =
         level <= 0 ? 0 : (level < static_cast<float>(count) ? static_cast<int>(level) : count - 1);
     const Level& l = levels_[static_cast<size_t>(index)];
-    // Coordinates with 8 fractional bits; texel centres are at halves.
-    const int x = FloorToInt(u * static_cast<float>(l.width * 256)) - 128;
-    const int y = FloorToInt(v * static_cast<float>(l.height * 256)) - 128;
+    // Coordinates with 8 fractional bits; texel centres are at halves. Rounding towards zero is
+    // wrong by at most 1/256 of a texel.
+    const int x = static_cast<int>(u * static_cast<float>(l.width * 256)) - 128;
+    const int y = static_cast<int>(v * static_cast<float>(l.height * 256)) - 128;
     const auto wx = static_cast<uint32_t>(x & 255);
     const auto wy = static_cast<uint32_t>(y & 255);
     const int x0 = (x >> 8) & (l.width - 1);
@@ -60,7 +62,9 @@ class Texture {
     const uint32_t* texels = texels_.data() + l.offset;
     const uint32_t* row0 = texels + static_cast<size_t>(y0) * static_cast<size_t>(l.width);
     const uint32_t* row1 = texels + static_cast<size_t>(y1) * static_cast<size_t>(l.width);
-    return Decode(Lerp(Lerp(row0[x0], row0[x1], wx), Lerp(row1[x0], row1[x1], wx), wy));
+    const uint32_t w11 = wx * wy >> 8;  // the four weights add up to 256
+    return Decode((256 - wx - wy + w11) * Spread(row0[x0]) + (wx - w11) * Spread(row0[x1]) +
+                  (wy - w11) * Spread(row1[x0]) + w11 * Spread(row1[x1]));
   }
 
   /// Whether the nearest texel of level 0 covers at least half.
@@ -84,18 +88,17 @@ class Texture {
     const int truncated = static_cast<int>(x);
     return truncated - (x < static_cast<float>(truncated) ? 1 : 0);
   }
-  /// All four 8-bit channels of a + (b - a) w / 256, two at a time.
-  static uint32_t Lerp(uint32_t a, uint32_t b, uint32_t w) {
-    constexpr uint32_t kMask = 0x00ff00ffU;
-    const uint32_t even = ((a & kMask) * (256 - w) + (b & kMask) * w) >> 8;
-    const uint32_t odd = ((a >> 8) & kMask) * (256 - w) + ((b >> 8) & kMask) * w;
-    return (even & kMask) | (odd & ~kMask);
+  /// The four channels of a texel, red, blue, green and coverage, in 16 bits each.
+  static uint64_t Spread(uint32_t texel) {
+    return (texel & 0x00ff00ffU) | static_cast<uint64_t>(texel & 0xff00ff00U) << 24;
   }
-  static Rgba Decode(uint32_t texel) {
-    const auto r = static_cast<float>(texel & 255U) * (1.0F / 255);
-    const auto g = static_cast<float>((texel >> 8) & 255U) * (1.0F / 255);
-    const auto b = static_cast<float>((texel >> 16) & 255U) * (1.0F / 255);
-    return {r * r, g * g, b * b, static_cast<float>(texel >> 24) * (1.0F / 255)};
+  /// From a sum of spread texels with weights that add up to 256.
+  static Rgba Decode(uint64_t sum) {
+    const auto channels = std::bit_cast<std::array<uint16_t, 4>>(sum);
+    std::array<float, 4> roots;
+    for (size_t i = 0; i < 4; ++i)
+      roots[i] = static_cast<float>(channels[i]) * (1.0F / (255 * 256));
+    return {roots[0] * roots[0], roots[2] * roots[2], roots[1] * roots[1], roots[3]};
   }
 
   std::vector<Level> levels_;

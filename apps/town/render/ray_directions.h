@@ -4,14 +4,14 @@
 #include <span>
 #include <vector>
 
-#include "apps/town/render/ray_scene.h"
+#include "apps/town/world/mesh.h"
 #include "slam/geometry/camera.h"
 #include "slam/geometry/rigid3.h"
 
 namespace orb360::town {
 
-/// The rays through the pixels of a picture, several to a pixel, by the packet. Directions are
-/// built from a table over the columns and one over the rows.
+/// The rays through the pixels of a picture, several to a pixel: their directions are built from a
+/// table over the columns and one over the rows.
 class RayDirections {
  public:
   /// Positions in a pixel, [0, 1) from its left and upper side.
@@ -25,26 +25,34 @@ class RayDirections {
                                   Pattern pattern);
 
   int width() const { return width_; }
-  int height() const { return static_cast<int>(row_weights_.size()); }
+  int height() const { return static_cast<int>(rows_.size()) - 2; }
 
-  /// Sets the unit directions of a packet: all samples of the first pixel, then of the next to the
-  /// right, and so on. Lanes beyond the end of the row get any direction.
-  void Fill(int column, int row, RTCRay16* rays) const;
+  /// The unit direction through a sample of a pixel, which may also lie in the column right of the
+  /// picture, in the row above or in the one below.
+  Vector3f At(int column, int row, size_t sample) const {
+    const Row& weights = rows_[static_cast<size_t>(row + 1)][sample];
+    const Vector3f direction =
+        weights.along * columns_[static_cast<size_t>(column) * samples_ + sample] +
+        weights.up * upward_;
+    return normalizes_ ? direction.normalized() : direction;
+  }
 
  private:
-  RayDirections(int width, int height, size_t samples, bool normalizes);
+  static constexpr size_t kMaximumSamples = 4;
 
-  /// direction = along * table over the columns + up * upward, for each lane.
-  struct RowWeights {
-    alignas(64) std::array<float, kPacket> along;
-    alignas(64) std::array<float, kPacket> up;
+  /// direction = along * table over the columns + up * upward.
+  struct Row {
+    float along;
+    float up;
   };
+
+  RayDirections(int width, int height, size_t samples, bool normalizes);
 
   int width_;
   size_t samples_;
   bool normalizes_;
-  std::array<std::vector<float>, 3> columns_;  // x, y, z by column and sample
-  std::vector<RowWeights> row_weights_;
+  std::vector<Vector3f> columns_;  // by column and sample
+  std::vector<std::array<Row, kMaximumSamples>> rows_;
   Vector3f upward_;
 };
 

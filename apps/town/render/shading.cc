@@ -18,6 +18,37 @@ float Level(const Texture& texture, float tiles) {
 
 }  // namespace
 
+Vector2f TextureCoordinates(const SurfaceHit& hit, float b, float c) {
+  const Vertex& va = hit.mesh->vertices[hit.triangle->vertices[0]];
+  const Vertex& vb = hit.mesh->vertices[hit.triangle->vertices[1]];
+  const Vertex& vc = hit.mesh->vertices[hit.triangle->vertices[2]];
+  const float a = 1 - b - c;
+  return {a * va.u + b * vb.u + c * vc.u, a * va.v + b * vb.v + c * vc.v};
+}
+
+TextureMapping MapTexture(const SurfaceHit& hit, float b, float c) {
+  const auto& [ia, ib, ic] = hit.triangle->vertices;
+  const Vertex& va = hit.mesh->vertices[ia];
+  const Vertex& vb = hit.mesh->vertices[ib];
+  const Vertex& vc = hit.mesh->vertices[ic];
+  const Vector3f ab = hit.mesh->positions[ib] - hit.mesh->positions[ia];
+  const Vector3f ac = hit.mesh->positions[ic] - hit.mesh->positions[ia];
+  // The barycentric weights grow along these, the dual basis of the triangle's sides.
+  const Vector3f normal = ab.cross(ac);
+  const Vector3f grows_b = ac.cross(normal);
+  const Vector3f grows_c = normal.cross(ab);
+  const float scale = 1 / normal.squaredNorm();
+  Vector3f u = scale * ((vb.u - va.u) * grows_b + (vc.u - va.u) * grows_c);
+  Vector3f v = scale * ((vb.v - va.v) * grows_b + (vc.v - va.v) * grows_c);
+  if (hit.instance != nullptr) {
+    u = hit.instance->world_from_model.linear() * u;
+    v = hit.instance->world_from_model.linear() * v;
+  }
+  TextureMapping mapping{TextureCoordinates(hit, b, c), {}};
+  mapping.by_way << u.transpose(), v.transpose();
+  return mapping;
+}
+
 Shader::Shader(const Palette& palette, const Light& light, const Sky& sky)
     : palette_(&palette), light_(&light), sky_(&sky), surroundings_(light, sky, kSkyline) {}
 
@@ -33,7 +64,7 @@ Surface Shader::Describe(const SurfaceHit& hit, float b, float c, const Vector3f
   Vector3f normal =
       a * va.normal.cast<float>() + b * vb.normal.cast<float>() + c * vc.normal.cast<float>();
   if (hit.instance != nullptr) normal = hit.instance->world_from_model.linear() * normal;
-  normal.normalize();
+  normal *= 1 / normal.norm();  // normalize() divides three times
   float facing = normal.dot(direction);
   if (facing > 0) {
     normal = -normal;
@@ -75,14 +106,8 @@ Surface Shader::Describe(const SurfaceHit& hit, float b, float c, const Vector3f
   return surface;
 }
 
-Vector3f Shader::Colour(const Surface& surface, const SurfaceHit& hit, float b, float c,
-                        float level_offset) const {
-  const float a = 1 - b - c;
-  const Vertex& va = hit.mesh->vertices[hit.triangle->vertices[0]];
-  const Vertex& vb = hit.mesh->vertices[hit.triangle->vertices[1]];
-  const Vertex& vc = hit.mesh->vertices[hit.triangle->vertices[2]];
-  const Rgba colour = surface.texture->Sample(
-      a * va.u + b * vb.u + c * vc.u, a * va.v + b * vb.v + c * vc.v, surface.level + level_offset);
+Vector3f Shader::Colour(const Surface& surface, const Vector2f& uv, float level_offset) {
+  const Rgba colour = surface.texture->Sample(uv.x(), uv.y(), surface.level + level_offset);
   return {colour.r, colour.g, colour.b};
 }
 

@@ -18,6 +18,18 @@ struct Surface {
   Finish finish;
 };
 
+/// A hit's place in its texture, in tiles.
+Vector2f TextureCoordinates(const SurfaceHit& hit, float b, float c);
+
+/// The places in a texture of the points around a hit that lie in its triangle's plane.
+struct TextureMapping {
+  Vector2f here;                      ///< tiles
+  Eigen::Matrix<float, 2, 3> by_way;  ///< tiles per metre
+
+  Vector2f At(const Vector3f& way) const { return here + by_way * way; }
+};
+TextureMapping MapTexture(const SurfaceHit& hit, float b, float c);
+
 /// Turns hits into light.
 class Shader {
  public:
@@ -31,10 +43,9 @@ class Shader {
   Surface Describe(const SurfaceHit& hit, float b, float c, const Vector3f& direction,
                    float footprint) const;
 
-  /// The texture's colour at a hit on a surface. Offsets in [0, 1) that are spread evenly over a
+  /// The texture's colour at a place on a surface. Offsets in [0, 1) that are spread evenly over a
   /// pixel's samples blend two mip levels.
-  Vector3f Colour(const Surface& surface, const SurfaceHit& hit, float b, float c,
-                  float level_offset) const;
+  static Vector3f Colour(const Surface& surface, const Vector2f& uv, float level_offset);
 
   /// Light that leaves the surface against `direction`, `range` metres from the eye; `albedo` is
   /// the mean colour of its texture, `sunlit` the share of it that the sun reaches.

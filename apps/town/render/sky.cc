@@ -78,7 +78,7 @@ Sky::Sky(const Light& light, uint64_t seed) : texels_(static_cast<size_t>(kSize)
       const Vector3f direction = DirectionOf((static_cast<float>(x) + 0.5F) * 2 / kSize - 1,
                                              (static_cast<float>(y) + 0.5F) * 2 / kSize - 1);
       texels_[static_cast<size_t>(y) * kSize + static_cast<size_t>(x)] =
-          Compute(direction, light, noise_seed);
+          Compute(direction, light, noise_seed).homogeneous();
     }
   }
   constexpr int kRings = 16;
@@ -143,9 +143,11 @@ Vector3f Sky::Radiance(const Vector3f& direction) const {
   const auto y0 = static_cast<size_t>(y);
   const float wx = x - static_cast<float>(x0);
   const float wy = y - static_cast<float>(y0);
-  const Vector3f* row0 = texels_.data() + y0 * kSize + x0;
-  const Vector3f* row1 = row0 + kSize;
-  return (1 - wy) * ((1 - wx) * row0[0] + wx * row0[1]) + wy * ((1 - wx) * row1[0] + wx * row1[1]);
+  const Eigen::Vector4f* row0 = texels_.data() + y0 * kSize + x0;
+  const Eigen::Vector4f* row1 = row0 + kSize;
+  const Eigen::Vector4f mean =
+      (1 - wy) * ((1 - wx) * row0[0] + wx * row0[1]) + wy * ((1 - wx) * row1[0] + wx * row1[1]);
+  return mean.head<3>();
 }
 
 }  // namespace orb360::town

@@ -38,7 +38,7 @@ class Sky {
  private:
   Vector3f Compute(const Vector3f& direction, const Light& light, uint32_t seed) const;
 
-  std::vector<Vector3f> texels_;  // octahedral map of the hemisphere
+  std::vector<Eigen::Vector4f> texels_;  // octahedral map of the hemisphere; the fourth is unused
   Vector3f mean_ = Vector3f::Zero();
 };
 

@@ -12,9 +12,10 @@ cv::Mat3b Drive::Colour(const FrameScene& scene, int frame) const {
   }
   if (cube_size() > 0) {
     return StitchColour(
-        RenderCubeColour(scene, stage().shader(), cube_size(), WorldFromCamera(frame)), camera());
+        RenderCubeColour(scene, stage().shader(), cube_size(), WorldFromCamera(frame), sampling()),
+        camera());
   }
-  return RenderColour(scene, stage().shader(), camera(), WorldFromCamera(frame));
+  return RenderColour(scene, stage().shader(), camera(), WorldFromCamera(frame), sampling());
 }
 
 GeometryImage Drive::Geometry(const FrameScene& scene, int frame) const {
@@ -25,8 +26,9 @@ cv::Mat3f Drive::RadianceAt(double seconds) const {
   const FrameScene scene = stage().With(MovingAt(seconds));
   const Rigid3 pose = PoseAt(seconds);
   if (cube_size() > 0)
-    return StitchRadiance(RenderCubeRadiance(scene, stage().shader(), cube_size(), pose), camera());
-  return RenderRadiance(scene, stage().shader(), camera(), pose);
+    return StitchRadiance(
+        RenderCubeRadiance(scene, stage().shader(), cube_size(), pose, sampling()), camera());
+  return RenderRadiance(scene, stage().shader(), camera(), pose, sampling());
 }
 
 cv::Mat3f Drive::MeteredAt(double seconds) const {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/town/render/geometry_image.h"
 #include "apps/town/render/renderer.h"
 #include "apps/town/render/stage.h"
 #include "apps/town/sensor/sensor_options.h"
@@ -19,6 +20,7 @@ struct Recording {
   int frames = 600;
   int cube_size = 0;  ///< stitch pictures from six faces of that width; 0: render them directly
   SensorOptions sensor = {};
+  Sampling sampling = Sampling::kAdaptive;
 };
 
 /// A camera's way through a scenery that can be rendered at any frame, in any order.
@@ -33,7 +35,7 @@ class Drive {
   double fps() const { return recording_.fps; }
   int frames() const { return recording_.frames; }
   int cube_size() const { return recording_.cube_size; }
-
+  Sampling sampling() const { return recording_.sampling; }
   const SensorOptions& sensor() const { return recording_.sensor; }
 
   Rigid3 WorldFromCamera(int frame) const { return PoseAt(frame / fps()); }

@@ -1,8 +1,10 @@
 #include "apps/town/sequence/render_folder.h"
 
 #include <algorithm>
+#include <future>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/town/sequence/sequence_writer.h"
@@ -30,6 +32,8 @@ std::string Description(const Drive& drive) {
        << "\n  height: " << drive.camera().height() << "\n";
   if (drive.cube_size() > 0)
     text << "stitched_from: " << drive.cube_size() << "  # pixels, width of six cube faces\n";
+  text << "samples: " << (drive.sampling() == Sampling::kFull ? "4" : "adaptive")
+       << "  # a pixel\n";
   if (drive.camera_height())
     text << "camera_height: " << *drive.camera_height() << "  # metres above the road\n";
   text << "fps: " << drive.fps() << "\nframes: " << frames << "\n"
@@ -38,6 +42,47 @@ std::string Description(const Drive& drive) {
        << (frames > 1 ? distance * drive.fps() / (frames - 1) : 0.0) << "\n  maximum: " << fastest
        << "\n";
   return text.str();
+}
+
+/// What a folder holds of a frame; empty where there is nothing to write.
+struct Pictures {
+  cv::Mat3b colour;
+  cv::Mat1f range;
+  cv::Mat1w objects;
+  cv::Mat1b moving;
+
+  bool IsEmpty() const { return colour.empty() && range.empty() && objects.empty(); }
+};
+
+/// Renders what is not there yet.
+Pictures RenderMissing(const Drive& drive, const SequenceWriter& writer,
+                       const FolderOptions& options, int frame) {
+  const bool has_geometry = frame % options.depth_every == 0;
+  const bool needs_masks =
+      has_geometry && options.masks && !(writer.Has(kObjects, frame) && writer.Has(kMoving, frame));
+  const bool needs_range = has_geometry && !writer.Has(SequenceWriter::kRange, frame);
+  const bool needs_colour = !writer.Has(SequenceWriter::kColour, frame);
+  Pictures pictures;
+  if (!needs_colour && !needs_range && !needs_masks) return pictures;
+  const FrameScene scene = drive.SceneAt(frame);
+  if (needs_colour) pictures.colour = drive.Colour(scene, frame);
+  if (!needs_range && !needs_masks) return pictures;
+  GeometryImage geometry = drive.Geometry(scene, frame);
+  if (needs_range) pictures.range = geometry.range;
+  if (needs_masks) {
+    pictures.objects = geometry.object;
+    pictures.moving = geometry.object >= scene.first_moving_id();
+  }
+  return pictures;
+}
+
+void Write(const SequenceWriter& writer, int frame, const Pictures& pictures) {
+  if (!pictures.colour.empty()) writer.WriteColour(frame, pictures.colour);
+  if (!pictures.range.empty()) writer.WriteRange(frame, pictures.range);
+  if (!pictures.objects.empty()) {
+    writer.WriteMask(kObjects, frame, pictures.objects);
+    writer.WriteMask(kMoving, frame, pictures.moving);
+  }
 }
 
 }  // namespace
@@ -52,28 +97,21 @@ void RenderIntoFolder(const Drive& drive, const std::filesystem::path& folder,
     poses.push_back({frame / drive.fps(), drive.WorldFromCamera(frame)});
   WriteTrajectory(folder / "groundtruth.txt", poses);
 
+  // A frame is compressed and written while the next one is rendered.
+  std::future<void> writing;
   int rendered = 0;
   for (int frame = 0; frame < drive.frames(); ++frame) {
-    const bool has_geometry = frame % options.depth_every == 0;
-    const bool needs_masks = has_geometry && options.masks &&
-                             !(writer.Has(kObjects, frame) && writer.Has(kMoving, frame));
-    const bool needs_range = has_geometry && !writer.Has(SequenceWriter::kRange, frame);
-    const bool needs_colour = !writer.Has(SequenceWriter::kColour, frame);
-    if (needs_colour || needs_range || needs_masks) {
-      const FrameScene scene = drive.SceneAt(frame);
-      if (needs_colour) writer.WriteColour(frame, drive.Colour(scene, frame));
-      if (needs_range || needs_masks) {
-        const GeometryImage geometry = drive.Geometry(scene, frame);
-        if (needs_range) writer.WriteRange(frame, geometry.range);
-        if (needs_masks) {
-          writer.WriteMask(kObjects, frame, geometry.object);
-          writer.WriteMask(kMoving, frame, geometry.object >= scene.first_moving_id());
-        }
-      }
-      ++rendered;
-    }
-    progress(frame + 1, rendered);
+    Pictures pictures = RenderMissing(drive, writer, options, frame);
+    if (writing.valid()) writing.get();
+    if (frame > 0) progress(frame, rendered);
+    if (pictures.IsEmpty()) continue;
+    ++rendered;
+    writing = std::async(std::launch::async, [&writer, frame, pictures = std::move(pictures)] {
+      Write(writer, frame, pictures);
+    });
   }
+  if (writing.valid()) writing.get();
+  progress(drive.frames(), rendered);
   writer.WriteContactSheet(drive.frames());
 }
 

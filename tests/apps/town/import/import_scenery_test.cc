@@ -9,7 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <unistd.h>
 
-#include "apps/town/render/renderer.h"
+#include "apps/town/render/geometry_image.h"
 #include "apps/town/render/stage.h"
 #include "nn/base/check.h"
 

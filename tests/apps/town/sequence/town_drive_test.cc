@@ -73,6 +73,14 @@ TEST_F(DriveSlow, GivesTheSameBytesForAnyNumberOfThreadsAndFromASecondBuild) {
   omp_set_num_threads(threads);
 }
 
+TEST_F(DriveSlow, AdaptiveSamplesAreAsGoodAsAllSamples) {
+  Recording recording{EquirectangularCamera(512, 256), 20, 4};
+  recording.sampling = Sampling::kFull;
+  const TownDrive full(SmallTown(), recording);
+  const FrameScene scene = SmallDrive().SceneAt(30);
+  EXPECT_GT(cv::PSNR(SmallDrive().Colour(scene, 30), full.Colour(scene, 30)), 42);
+}
+
 TEST_F(DriveSlow, SensorEffectsOfAFrameDependOnNothingRenderedBefore) {
   Recording recording{EquirectangularCamera(256, 128), 20, 4};
   recording.sensor.auto_exposure = AutoExposure();
