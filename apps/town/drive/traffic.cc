@@ -95,9 +95,10 @@ class Dispatcher {
           random_.Int(static_cast<int>(town_->cyclists.size())))];
       return mover;
     }
-    const bool is_van = pace == Pace::kStanding || pace == Pace::kSlow ||
-                        (pace == Pace::kNormal && random_.Chance(0.15));
-    const auto kind = is_van ? VehicleKind::kVan : static_cast<VehicleKind>(random_.Int(3));
+    const VehicleKind drawn = DrawVehicleKind(random_);
+    const bool is_van = pace == Pace::kStanding || pace == Pace::kSlow;
+    const bool is_car = pace == Pace::kFast && drawn == VehicleKind::kVan;
+    const VehicleKind kind = is_van ? VehicleKind::kVan : is_car ? VehicleKind::kEstate : drawn;
     mover.footprint = {VehicleLength(kind), VehicleWidth(kind)};
     mover.model = town_->vehicles[static_cast<size_t>(kind)];
     if (pace == Pace::kStanding) mover.ride.from_kerb = 0.5 * mover.footprint.width + 0.1;

@@ -26,11 +26,11 @@ struct Named {
 };
 /// The tours are a little shorter than the sequences, so that each path closes its loop.
 constexpr std::array<Named, 6> kTowns = {
-    {{"Town1", 1, "noon", 0.3, 1000, 3, 3, 32, 2, 2048, 768},
+    {{"Town1", 1, "noon", 0.3, 1000, 4, 4, 37, 2, 2048, 768},
      {"Town2", 2, "sunset", 0.5, 2000, 4, 3, 54, 3, 2048, 768},
      {"Town3", 3, "morning", 0.2, 2850, 4, 4, 56, 4, 2048, 768},
      {"Town4", 4, "noon", 0.8, 3000, 5, 3, 50, 5, 2048, 768},
-     {"Town5", 5, "sunset", 0.1, 1000, 3, 3, 34, 2, 2048, 768},
+     {"Town5", 5, "sunset", 0.1, 1000, 4, 4, 39, 2, 2048, 768},
      {"Loop", 6, "noon", 0.0, 600, 3, 2, 36, 1, 1024, 0}}};
 
 }  // namespace

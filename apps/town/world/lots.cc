@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "apps/town/world/ground.h"
 
@@ -56,8 +57,6 @@ bool ClearOfRoads(const StreetPlan& plan, const Rectangle& r, double margin) {
   return true;
 }
 
-}  // namespace
-
 /// The lot on a rectangle: its base at the highest point of the terrain below.
 Lot OnTerrain(const StreetPlan& plan, const Rectangle& r) {
   double highest = -1e30;
@@ -84,6 +83,29 @@ Rectangle AcrossTheEnd(const Street& street, bool at_start, Random& random) {
       end.position + (end.half_width + street.pavement + 0.5) * r.back - 0.5 * r.width * r.right;
   return r;
 }
+
+/// The rectangle behind the pavement on one side of a street (1: left of increasing station, -1:
+/// right), its front a chord between two stations.
+Rectangle AlongKerb(const Street& street, double side, double from, double to, double setback,
+                    double depth) {
+  const auto kerb_side = [&](double station) -> Vector2d {
+    const StreetPoint p = street.At(station);
+    const Vector2d left(-p.tangent.y(), p.tangent.x());
+    return p.position + side * (p.half_width + street.pavement + setback) * left;
+  };
+  const Vector2d a = kerb_side(from);
+  const Vector2d b = kerb_side(to);
+  // Seen from the street, a building on the left of it has its left end at the lower station.
+  Rectangle r;
+  r.corner = side > 0 ? a : b;
+  r.right = (side > 0 ? Vector2d(b - a) : Vector2d(a - b)).normalized();
+  r.back = {-r.right.y(), r.right.x()};
+  r.width = (b - a).norm();
+  r.depth = depth;
+  return r;
+}
+
+}  // namespace
 
 std::vector<Lot> LayOutLots(const StreetPlan& plan, Random& random) {
   std::vector<Rectangle> taken;
@@ -112,30 +134,25 @@ std::vector<Lot> LayOutLots(const StreetPlan& plan, Random& random) {
         const double width = random.Uniform(7, 19);
         const double depth = random.Uniform(9, 14);
         const double setback = random.Chance(0.15) ? random.Uniform(0.5, 3) : 0.0;
-        const double end = std::min(s + width, street.Length());
-        // The front is a chord parallel to the street between s and s + width.
-        const auto kerb_side = [&](double station) -> Vector2d {
-          const StreetPoint p = street.At(station);
-          const Vector2d left(-p.tangent.y(), p.tangent.x());
-          return p.position + side * (p.half_width + street.pavement + setback) * left;
-        };
-        const Vector2d a = kerb_side(s);
-        const Vector2d b = kerb_side(end);
-        // Seen from the street, a building on the left of it has its left end at the lower station.
-        Rectangle lot;
-        lot.corner = side > 0 ? a : b;
-        lot.right = (side > 0 ? Vector2d(b - a) : Vector2d(a - b)).normalized();
-        lot.back = {-lot.right.y(), lot.right.x()};
-        lot.width = (b - a).norm();
-        lot.depth = depth;
-        const bool fits =
-            lot.width > 5 && ClearOfRoads(plan, lot, street.pavement - 0.6) && is_free(lot);
-        if (!fits) {
+        // A smaller house where there is no room for the one that was drawn: at corners, and where
+        // streets lie near together.
+        std::optional<Rectangle> lot;
+        double end = s;
+        for (const double share : {1.0, 0.8, 0.62}) {
+          end = std::min(s + share * width, street.Length());
+          const Rectangle tried = AlongKerb(street, side, s, end, setback, share * depth);
+          if (tried.width <= 5 || !ClearOfRoads(plan, tried, street.pavement - 0.6) ||
+              !is_free(tried))
+            continue;
+          lot = tried;
+          break;
+        }
+        if (!lot) {
           s += 1.5;
           continue;
         }
-        taken.push_back(lot);
-        lots.push_back(OnTerrain(plan, lot));
+        taken.push_back(*lot);
+        lots.push_back(OnTerrain(plan, *lot));
         s = end + (random.Chance(0.12) ? random.Uniform(2, 6) : 0.02);
       }
     }

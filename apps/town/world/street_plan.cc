@@ -16,6 +16,16 @@ constexpr double kAvenueSpacing = 45;     // metres between streets from which o
 constexpr double kAvenueHalfWidth = 8.4;  // metres: median, lane and parked cars
 constexpr double kMedian = 1.6;           // metres, half of the avenue's median
 
+/// Metres between which widths of streets are drawn.
+struct Widths {
+  double least_half_width, most_half_width;  // of the carriageway
+  double least_pavement, most_pavement;
+};
+constexpr Widths kUsualWidths = {3.3, 6.9, 2.2, 4.2};
+/// Of an old town, whose streets lie nearer together than kAvenueSpacing: there wide ones would
+/// leave no blocks to build on.
+constexpr Widths kNarrowWidths = {3.2, 4.1, 1.6, 2.3};
+
 /// Centripetal-free uniform Catmull-Rom: passes through p1 at t = 0 and p2 at t = 1.
 Vector2d CatmullRom(const Vector2d& p0, const Vector2d& p1, const Vector2d& p2, const Vector2d& p3,
                     double t) {
@@ -203,6 +213,7 @@ StreetPlan PlanStreets(const PlanOptions& options) {
   const size_t avenue = options.spacing >= kAvenueSpacing
                             ? static_cast<size_t>(random.Fork(3).Int(rows + columns))
                             : static_cast<size_t>(rows + columns);
+  const Widths& widths = options.spacing >= kAvenueSpacing ? kUsualWidths : kNarrowWidths;
   const auto add_street = [&](const std::vector<size_t>& nodes) {
     // Streets run on beyond the outer junctions, and bend between junctions.
     std::vector<Vector2d> knots;
@@ -223,11 +234,11 @@ StreetPlan PlanStreets(const PlanOptions& options) {
                     extent * (at(nodes.size() - 1) - at(nodes.size() - 2)).normalized());
     std::vector<double> stations;
     const bool is_avenue = plan.streets.size() == avenue;
-    const double half_width = random.Uniform(3.3, 6.9);
+    const double half_width = random.Uniform(widths.least_half_width, widths.most_half_width);
     const double width_change = random.Uniform(0.0, 0.3);
     Street street = MakeStreet(knots, is_avenue ? kAvenueHalfWidth : half_width, width_change,
                                random.Uniform(0, 6.28), &stations);
-    street.pavement = random.Uniform(2.2, 4.2);
+    street.pavement = random.Uniform(widths.least_pavement, widths.most_pavement);
     street.parking = street.points.front().half_width > 5.2;
     street.has_centre_line = random.Chance(0.8) && !is_avenue;
     if (is_avenue) {
