@@ -11,6 +11,7 @@
 
 #include <Eigen/Geometry>
 
+#include "apps/town/import/triangulate.h"
 #include "nn/base/check.h"
 
 namespace orb360::town {
@@ -239,13 +240,15 @@ class Reader {
       mesh.normals.push_back(normal.stableNormalized());
     }
     const auto at = [&](size_t i) { return indices.at(key(corners[i])); };
-    for (size_t i = 2; i < corners.size(); ++i) {
-      if (kind == kPolygon) {
-        mesh.triangles.push_back({at(0), at(i - 1), at(i)});
-      } else if (i % 2 == 0) {
-        mesh.triangles.push_back({at(i - 2), at(i - 1), at(i)});
-      } else {
-        mesh.triangles.push_back({at(i - 1), at(i - 2), at(i)});  // turns the other way round
+    if (kind == kPolygon) {
+      std::vector<Eigen::Vector3f> outline;
+      for (size_t i = 0; i < corners.size(); ++i) outline.push_back(mesh.positions[at(i)]);
+      for (const auto& [i, j, k] : Triangulate(outline))
+        mesh.triangles.push_back({at(i), at(j), at(k)});
+    } else {
+      for (size_t i = 2; i < corners.size(); ++i) {  // every other one turns the other way round
+        mesh.triangles.push_back(i % 2 == 0 ? std::array{at(i - 2), at(i - 1), at(i)}
+                                            : std::array{at(i - 1), at(i - 2), at(i)});
       }
     }
     scene_.meshes.push_back(std::move(mesh));

@@ -135,6 +135,8 @@ void AddMesh(const SourceMesh& source, const Eigen::Vector3f& colour, const Impo
 
 SourceScene ReadMeshFile(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) throw UserError(path.string() + ": no such file");
+  if (std::filesystem::is_directory(path))
+    throw UserError(path.string() + ": is a folder: name the file of meshes in it");
   const std::string extension = LowerExtension(path);
   SourceScene scene =
       extension == ".ac" || extension == ".acc" ? ReadAc3d(path) : ReadWithAssimp(path);
