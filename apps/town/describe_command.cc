@@ -19,9 +19,10 @@ struct Arguments {
 };
 
 void Describe(const Arguments& arguments) {
+  std::vector<TownSpec> specs;  // all of them before the first is built
+  for (const std::string& name : arguments.towns) specs.push_back(FindTown(name));
   std::vector<DriveStatistics> statistics;
-  for (const std::string& name : arguments.towns) {
-    const TownSpec spec = FindTown(name);
+  for (const TownSpec& spec : specs) {
     const TownDrive drive(spec, {EquirectangularCamera(1024, 512), 20, spec.frames});
     statistics.push_back(MeasureDrive(drive, arguments.every, kSought));
   }

@@ -9,10 +9,12 @@
 #include <omp.h>
 
 #include "apps/town/commands.h"
+#include "apps/town/option_checks.h"
 #include "apps/town/progress_bar.h"
 #include "apps/town/sequence/imported_drive.h"
 #include "apps/town/sequence/named_town.h"
 #include "apps/town/sequence/render_folder.h"
+#include "apps/town/sequence/sequence_writer.h"
 #include "apps/town/sequence/town_drive.h"
 #include "nn/base/check.h"
 
@@ -29,13 +31,14 @@ struct Arguments {
   std::optional<std::string> light;
   std::optional<double> traffic;
   int depth_every = 1;
+  bool exr = false;
   bool masks = false;
   double pitch_degrees = 0;
   double roll_degrees = 0;
   std::optional<double> camera_height;
   double shaking = 1;
   std::optional<int> cube;
-  bool full_sampling = false;
+  Sampling sampling = Sampling::kAdaptive;
   std::optional<double> shutter;
   std::optional<int> jpeg_quality;
   bool auto_exposure = false;
@@ -62,7 +65,7 @@ Recording RecordingOf(const Arguments& arguments, int width, int cube_size) {
   Recording recording{EquirectangularCamera(chosen, chosen / 2), arguments.fps};
   recording.cube_size = arguments.cube.value_or(arguments.width ? 0 : cube_size);
   recording.sensor = SensorOf(arguments);
-  if (arguments.full_sampling) recording.sampling = Sampling::kFull;
+  recording.sampling = arguments.sampling;
   return recording;
 }
 
@@ -84,6 +87,7 @@ std::unique_ptr<Drive> MakeImportedDrive(const Arguments& arguments) {
   ImportedSpec spec = arguments.imported;
   if (spec.path.empty()) throw UserError("--scene needs a --path through it");
   if (arguments.light) spec.light = *arguments.light;
+  if (arguments.traffic) throw UserError("--traffic is for a --town: nothing moves in a --scene");
   const CameraPath path = ReadCameraPath(spec.path);
   // A thousandth of a frame more: times in files are rounded.
   const int whole = static_cast<int>((path.end() - path.begin()) * recording.fps + 1e-3) + 1;
@@ -108,20 +112,19 @@ std::unique_ptr<Drive> MakeImportedDrive(const Arguments& arguments) {
 void Render(const Arguments& arguments) {
   if (arguments.town.empty() == arguments.imported.scene.empty())
     throw UserError("render takes either --town or --scene (see town render --help)");
+  if (!arguments.town.empty() && !arguments.imported.path.empty())
+    throw UserError("--path is for a --scene: a town has a path of its own");
+  RequireWritable(arguments.out);
   if (arguments.threads > 0) omp_set_num_threads(arguments.threads);
   const std::unique_ptr<Drive> drive =
       arguments.town.empty() ? MakeImportedDrive(arguments) : MakeTownDrive(arguments);
   ProgressBar bar;
-  const FolderOptions options{arguments.depth_every, arguments.masks};
+  const FolderOptions options{arguments.depth_every, arguments.exr, arguments.masks};
   RenderIntoFolder(*drive, arguments.out, options,
                    [&](int done, int rendered) { bar.Show(done, rendered, drive->frames()); });
 }
 
-}  // namespace
-
-void AddRenderCommand(CLI::App* app) {
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = app->add_subcommand("render", "Render a sequence into a folder");
+void AddSceneOptions(CLI::App* command, Arguments* arguments) {
   ImportedSpec& imported = arguments->imported;
   command->add_option("--town", arguments->town, "Town1 ... Town5, Loop, or a seed");
   command->add_option("--scene", imported.scene,
@@ -139,6 +142,15 @@ void AddRenderCommand(CLI::App* app) {
       ->default_str("y");
   command->add_option("--textures", imported.options.texture_folders,
                       "Folders with textures besides that of the scene");
+  command->add_option("--light", arguments->light,
+                      "noon, morning, sunset or overcast [the town's own; noon for a seed]");
+  command
+      ->add_option("--traffic", arguments->traffic,
+                   "Density of what moves, 0 to 1 [the town's own; 0 for a seed]")
+      ->check(CLI::Range(0.0, 1.0));
+}
+
+void AddPictureOptions(CLI::App* command, Arguments* arguments) {
   command
       ->add_option("--out", arguments->out,
                    "Folder to write; an interrupted rendering there is resumed")
@@ -151,34 +163,34 @@ void AddRenderCommand(CLI::App* app) {
       ->add_option("--width", arguments->width,
                    "Width of the panorama in pixels; its height is half of it [2048 for Town1 ... "
                    "Town5, 1024 for others]")
-      ->check(CLI::Range(32, 16384));
+      ->check(CLI::Range(32, 16384) & EvenNumber());
   command
       ->add_option("--cube", arguments->cube,
                    "Stitch the panorama from six faces, so many pixels wide; 0: render it directly "
                    "[768 for Town1 ... Town5 without --width, else 0]")
       ->check(CLI::Range(0, 0) | CLI::Range(16, 8192));
   command
-      ->add_option_function<std::string>(
-          "--samples",
-          [arguments](const std::string& value) { arguments->full_sampling = value == "4"; },
-          "Rays for a pixel: adaptive (one, and four where surfaces or shadows meet) or 4 "
-          "everywhere, which takes longer [adaptive]")
-      ->check(CLI::IsMember({"adaptive", "4"}));
+      ->add_option(
+          "--samples", arguments->sampling,
+          "Rays for a pixel: adaptive (one, and four where surfaces or shadows meet), or 4 "
+          "everywhere, which takes longer")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Sampling>{
+          {"adaptive", Sampling::kAdaptive}, {"4", Sampling::kFull}}))
+      ->default_str("adaptive");
   command->add_option("--fps", arguments->fps, "Frames per second")
       ->capture_default_str()
       ->check(CLI::Range(1.0, 1000.0));
-  command->add_option("--light", arguments->light,
-                      "noon, morning, sunset or overcast [the town's own; noon for a seed]");
-  command
-      ->add_option("--traffic", arguments->traffic,
-                   "Density of what moves, 0 to 1 [the town's own; 0 for a seed]")
-      ->check(CLI::Range(0.0, 1.0));
   command
       ->add_option("--depth-every", arguments->depth_every, "Write the depth of every n-th frame")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000000));
+  command->add_flag("--exr", arguments->exr,
+                    "With the depth, write range/ (the same as 32-bit floats, OpenEXR)");
   command->add_flag("--masks", arguments->masks,
                     "With the depth, write objects/ (16-bit ids) and moving/ (255 where it moves)");
+}
+
+void AddCameraOptions(CLI::App* command, Arguments* arguments) {
   command
       ->add_option("--camera-height", arguments->camera_height,
                    "Metres above the road [drawn from the seed, 1.8 to 2.2]")
@@ -211,6 +223,16 @@ void AddRenderCommand(CLI::App* app) {
       ->add_option("--jpeg-quality", arguments->jpeg_quality,
                    "Compress pictures as a camera does, before they are stored at 95")
       ->check(CLI::Range(1, 100));
+}
+
+}  // namespace
+
+void AddRenderCommand(CLI::App* app) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app->add_subcommand("render", "Render a sequence into a folder");
+  AddSceneOptions(command, arguments.get());
+  AddPictureOptions(command, arguments.get());
+  AddCameraOptions(command, arguments.get());
   command->add_option("--threads", arguments->threads, "Threads to use; 0: all cores")
       ->capture_default_str()
       ->check(CLI::Range(0, 256));

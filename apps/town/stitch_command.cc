@@ -2,7 +2,9 @@
 #include <memory>
 
 #include "apps/town/commands.h"
+#include "apps/town/option_checks.h"
 #include "apps/town/progress_bar.h"
+#include "apps/town/sequence/sequence_writer.h"
 #include "apps/town/sequence/stitch_folder.h"
 
 namespace orb360::town {
@@ -27,7 +29,7 @@ void AddStitchCommand(CLI::App* app) {
       ->required();
   command->add_option("--width", options.width, "Width of the panorama; its height is half of it")
       ->capture_default_str()
-      ->check(CLI::Range(32, 16384));
+      ->check(CLI::Range(32, 16384) & EvenNumber());
   command->add_option("--fps", options.fps, "Frames per second of the recording")
       ->capture_default_str()
       ->check(CLI::Range(1e-3, 1e6));
@@ -41,6 +43,7 @@ void AddStitchCommand(CLI::App* app) {
       ->capture_default_str()
       ->check(CLI::Range(1.0, 1e6));
   command->callback([arguments] {
+    RequireWritable(arguments->out);
     ProgressBar bar;
     StitchFolder(arguments->recording, arguments->out, arguments->options,
                  [&bar](int done, int all) { bar.Show(done, done, all); });

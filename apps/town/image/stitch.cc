@@ -201,6 +201,20 @@ cv::Mat1f StitchRange(const CubeImages<float>& depth, const EquirectangularCamer
   return range;
 }
 
+cv::Mat1w StitchObjects(const CubeImages<uint16_t>& objects, const EquirectangularCamera& camera) {
+  const int size = SizeOf(objects);
+  const CubeGrid grid(camera, 1);
+  cv::Mat1w panorama(camera.height(), camera.width());
+#pragma omp parallel for schedule(dynamic, 4)
+  for (int row = 0; row < panorama.rows; ++row) {
+    for (int column = 0; column < panorama.cols; ++column) {
+      const CubePoint point = grid.At(column, row);
+      panorama(row, column) = objects[static_cast<size_t>(point.face)](NearestPixel(point, size));
+    }
+  }
+  return panorama;
+}
+
 cv::Mat1f DecodeDepth24(const cv::Mat& image, double farthest) {
   ORB360_CHECK(image.depth() == CV_8U && image.channels() >= 3, image.type());
   constexpr double kLargest = (1 << 24) - 1;

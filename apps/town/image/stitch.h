@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include <opencv2/core.hpp>
 
@@ -23,6 +24,9 @@ cv::Mat3f StitchRadiance(const CubeImages<cv::Vec3f>& faces, const Equirectangul
 /// moved along the sample's own surface: the inverse of z is linear over a plane, and its slope is
 /// taken from the side on which it changes less. So planes are exact, and surfaces never blend.
 cv::Mat1f StitchRange(const CubeImages<float>& depth, const EquirectangularCamera& camera);
+
+/// The numbers of what the panorama's rays meet: those of the nearest pixels.
+cv::Mat1w StitchObjects(const CubeImages<uint16_t>& objects, const EquirectangularCamera& camera);
 
 /// Depth along the optical axis in metres from the 24-bit encoding of driving simulators: red is
 /// the lowest byte, blue the highest, and the largest number stands for `farthest` metres, which

@@ -65,7 +65,8 @@ Texture Texture::Paint(int size, const std::function<Rgba(float, float)>& paint)
   return Texture(size, size, std::move(texels));
 }
 
-Texture::Texture(int width, int height, std::vector<Rgba> texels) {
+Texture::Texture(int width, int height, std::vector<Rgba> texels)
+    : mean_side_(std::sqrt(static_cast<float>(width) * static_cast<float>(height))) {
   ORB360_CHECK(std::has_single_bit(static_cast<unsigned>(width)) &&
                    std::has_single_bit(static_cast<unsigned>(height)) &&
                    texels.size() == static_cast<size_t>(width) * static_cast<size_t>(height),

@@ -39,6 +39,8 @@ class Texture {
 
   int width() const { return levels_.front().width; }
   int height() const { return levels_.front().height; }
+  /// Texels along the side of a square of as many.
+  float mean_side() const { return mean_side_; }
   size_t bytes() const { return texels_.size() * sizeof(uint32_t); }
 
   /// Bilinear sample of one mip level; (u, v) in tiles, wrapping. `level` is the base-2 logarithm
@@ -49,10 +51,9 @@ class Texture {
     const int index =
         level <= 0 ? 0 : (level < static_cast<float>(count) ? static_cast<int>(level) : count - 1);
     const Level& l = levels_[static_cast<size_t>(index)];
-    // Coordinates with 8 fractional bits; texel centres are at halves. Rounding towards zero is
-    // wrong by at most 1/256 of a texel.
-    const int x = static_cast<int>(u * static_cast<float>(l.width * 256)) - 128;
-    const int y = static_cast<int>(v * static_cast<float>(l.height * 256)) - 128;
+    // Coordinates with 8 fractional bits; texel centres are at halves.
+    const int x = FloorToInt(u * static_cast<float>(l.width * 256)) - 128;
+    const int y = FloorToInt(v * static_cast<float>(l.height * 256)) - 128;
     const auto wx = static_cast<uint32_t>(x & 255);
     const auto wy = static_cast<uint32_t>(y & 255);
     const int x0 = (x >> 8) & (l.width - 1);
@@ -101,6 +102,7 @@ class Texture {
     return {roots[0] * roots[0], roots[2] * roots[2], roots[1] * roots[1], roots[3]};
   }
 
+  float mean_side_ = 1;
   std::vector<Level> levels_;
   std::vector<uint32_t> texels_;
   std::vector<uint64_t> covered_;  ///< one bit a texel of level 0

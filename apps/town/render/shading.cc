@@ -11,9 +11,9 @@ constexpr float kBlotchTile = 31.0F;  // metres across which the blotches repeat
 
 float Pow5(float x) { return x * x * x * x * x; }
 
-/// Mip level at which `tiles` of a texture are one texel.
+/// Mip level at which `tiles` of a texture, the geometric mean of both directions, are one texel.
 float Level(const Texture& texture, float tiles) {
-  return FastLog2(std::max(tiles * static_cast<float>(texture.width()), 1e-6F));
+  return FastLog2(std::max(tiles * texture.mean_side(), 1e-6F));
 }
 
 }  // namespace

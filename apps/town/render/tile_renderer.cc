@@ -81,42 +81,8 @@ void TileRenderer::Render(const cv::Rect& tile) {
   RenderEdges();
 }
 
-TileRenderer::Sighting TileRenderer::See(int lane) const {
-  Sighting seen;
-  seen.direction = eye_rays_.Direction(lane);
-  if (!eye_rays_.Hits(lane)) return seen;
-  seen.hit = scene_->Resolve(eye_rays_.hit(), lane);
-  seen.b = eye_rays_.hit().u[lane];
-  seen.c = eye_rays_.hit().v[lane];
-  seen.range = eye_rays_.range(lane);
-  seen.normal = scene_->GeometricNormal(eye_rays_.hit(), lane);
-  seen.normal *= 1 / seen.normal.norm();
-  return seen;
-}
-
 Surface TileRenderer::Describe(const Sighting& seen) const {
   return shader_->Describe(seen.hit, seen.b, seen.c, seen.direction, seen.range * sample_angle_);
-}
-
-Vector3f TileRenderer::Lifted(const Sighting& seen, const Vector3f& way) const {
-  // Metres; well above the rounding of coordinates.
-  const float lift = 2e-3F + 1e-5F * seen.range;
-  const float side = seen.normal.dot(seen.direction) > 0 ? -lift : lift;
-  return eye_ + way + side * seen.normal;
-}
-
-bool TileRenderer::SharePlane(const Sighting& a, const Sighting& b) {
-  constexpr float kCosine = 0.99F;  // of 8 degrees
-  return a.hit.mesh == b.hit.mesh && a.hit.instance == b.hit.instance &&
-         a.hit.triangle->material == b.hit.triangle->material && a.normal.dot(b.normal) > kCosine;
-}
-
-bool TileRenderer::Join(const Sighting& a, const Sighting& b) const {
-  if (a.IsSky() || b.IsSky()) return a.IsSky() && b.IsSky();
-  if (!SharePlane(a, b)) return false;
-  // A step of a quarter of a pixel, or 5 mm, is the curvature that SharePlane allows.
-  const float off_plane = std::abs(a.normal.dot(b.Way() - a.Way()));
-  return off_plane < 5e-3F + 0.5F * sample_angle_ * a.range;
 }
 
 Vector3f TileRenderer::SkySample(const Vector3f& direction) const {
@@ -147,11 +113,12 @@ void TileRenderer::TraceCorners() {
       shadows_.Clear();
       for (size_t i = 0; i < count; ++i) {
         Spot& spot = spots_[IndexOf(places[i].column, places[i].row)];
-        spot.seen = See(static_cast<int>(i));
+        spot.seen = See(*scene_, eye_rays_, static_cast<int>(i));
         if (spot.seen.IsSky()) continue;
         spot.surface = Describe(spot.seen);
         if (FacesSun(spot.surface))
-          shadows_.Set(static_cast<int>(i), Lifted(spot.seen, spot.seen.Way()), ToSun(places[i]));
+          shadows_.Set(static_cast<int>(i), eye_ + LiftedWay(spot.seen, spot.seen.Way()),
+                       ToSun(places[i]));
       }
       shadows_.Trace(*scene_);
       for (size_t i = 0; i < count; ++i)
@@ -164,8 +131,10 @@ void TileRenderer::TraceCorners() {
     for (int column = tile_.x; column <= right; ++column) {
       const size_t index = IndexOf(column, row);
       const Sighting& seen = spots_[index].seen;
-      corners_[index].joins_right = column < right && Join(seen, spots_[index + 1].seen);
-      corners_[index].joins_below = row < bottom && Join(seen, spots_[index + kStride].seen);
+      corners_[index].joins_right =
+          column < right && Join(seen, spots_[index + 1].seen, 2 * sample_angle_);
+      corners_[index].joins_below =
+          row < bottom && Join(seen, spots_[index + kStride].seen, 2 * sample_angle_);
     }
   }
 }
@@ -227,8 +196,8 @@ void TileRenderer::RenderPenumbras() {
       const Spot& spot = spots_[IndexOf(place.x, place.y)];
       flats[k] = PlaceOnPlane(place.x, place.y);
       for (size_t i = 1; i < kSamples && FacesSun(spot.surface); ++i) {
-        shadows_.Set(static_cast<int>(k * kFurther + i - 1), Lifted(spot.seen, flats[k].ways[i]),
-                     ToSun({place.x, place.y, i}));
+        shadows_.Set(static_cast<int>(k * kFurther + i - 1),
+                     eye_ + LiftedWay(spot.seen, flats[k].ways[i]), ToSun({place.x, place.y, i}));
       }
     }
     shadows_.Trace(*scene_);
@@ -258,7 +227,7 @@ void TileRenderer::RenderEdges() {
       const Spot& spot = spots_[IndexOf(edges_[first + k].x, edges_[first + k].y)];
       for (size_t i = 0; i < kSamples; ++i) {
         const int lane = static_cast<int>(k * kFurther + i) - 1;  // of the further samples
-        const Sighting seen = i == 0 ? spot.seen : See(lane);
+        const Sighting seen = i == 0 ? spot.seen : See(*scene_, eye_rays_, lane);
         if (seen.IsSky()) {
           pixel.sky += SkySample(seen.direction);
           continue;
@@ -275,7 +244,7 @@ void TileRenderer::RenderEdges() {
         patch.colours += Shader::Colour(
             patch.spot.surface, TextureCoordinates(seen.hit, seen.b, seen.c), kLevelOffset[i]);
         if (i > 0 && FacesSun(patch.spot.surface))
-          shadows_.Set(lane, Lifted(patch.spot.seen, seen.Way()),
+          shadows_.Set(lane, eye_ + LiftedWay(patch.spot.seen, seen.Way()),
                        ToSun(places[static_cast<size_t>(lane)]));
       }
     }

@@ -10,6 +10,7 @@
 #include "apps/town/render/ray_packet.h"
 #include "apps/town/render/ray_scene.h"
 #include "apps/town/render/shading.h"
+#include "apps/town/render/sighting.h"
 
 namespace orb360::town {
 
@@ -47,18 +48,6 @@ class TileRenderer {
   const Vector3f& At(int column, int row) const { return pixels_[IndexOf(column, row)]; }
 
  private:
-  /// What one ray meets.
-  struct Sighting {
-    SurfaceHit hit = {nullptr, nullptr, nullptr};  ///< mesh: null for nothing
-    float b = 0;                                   ///< barycentric weights
-    float c = 0;
-    float range = 0;
-    Vector3f direction;
-    Vector3f normal;  ///< geometric, unit
-
-    bool IsSky() const { return hit.mesh == nullptr; }
-    Vector3f Way() const { return range * direction; }  ///< from the eye to the surface
-  };
   struct Spot {
     Sighting seen;
     Surface surface;
@@ -75,14 +64,8 @@ class TileRenderer {
   size_t IndexOf(int column, int row) const {
     return static_cast<size_t>(row - tile_.y + 1) * kStride + static_cast<size_t>(column - tile_.x);
   }
-  Sighting See(int lane) const;
-  /// Whether two rays meet the same flat piece of one mesh.
-  static bool SharePlane(const Sighting& a, const Sighting& b);
-  bool Join(const Sighting& a, const Sighting& b) const;
   Surface Describe(const Sighting& seen) const;
   bool FacesSun(const Surface& surface) const { return has_sun_ && surface.sun_cosine > 0; }
-  /// Where a ray to the sun starts.
-  Vector3f Lifted(const Sighting& seen, const Vector3f& way) const;
   /// The point of the sun's disc that a sample looks at: each pixel's samples take turns, so that
   /// the first samples of neighbours together see whether a part of the disc is hidden.
   const Vector3f& ToSun(const SamplePlace& place) const {

@@ -9,10 +9,11 @@ ImportedDrive::ImportedDrive(const ImportedSpec& spec, const CameraPath& path,
                              const Recording& recording)
     : Drive(recording),
       spec_(spec),
+      light_(MakeLight(spec.light, 0)),
       path_(path),
       scenery_(
           MakeScenery(ReadMeshFile(spec.scene), spec.scene.parent_path(), spec.options, &missing_)),
-      stage_(&scenery_, MakeLight(spec.light, 0), 0) {
+      stage_(&scenery_, light_, 0) {
   std::vector<Rigid3> poses;
   for (int frame = 0; frame < frames(); ++frame) poses.push_back(WorldFromCamera(frame));
   RequireFreePath(stage_.scene(), path_, path_.begin() + (frames() - 1) / fps());

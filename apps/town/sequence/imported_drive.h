@@ -37,6 +37,7 @@ class ImportedDrive : public Drive {
 
  private:
   ImportedSpec spec_;
+  Light light_;  // an unknown one is refused before the mesh is read
   CameraPath path_;
   std::vector<std::string> missing_;
   Scenery scenery_;

@@ -13,7 +13,6 @@
 namespace orb360::town {
 namespace {
 
-constexpr const char* kObjects = "objects";
 constexpr const char* kMoving = "moving";
 
 std::string Description(const Drive& drive) {
@@ -48,10 +47,13 @@ std::string Description(const Drive& drive) {
 struct Pictures {
   cv::Mat3b colour;
   cv::Mat1f range;
+  cv::Mat1f exact_range;
   cv::Mat1w objects;
   cv::Mat1b moving;
 
-  bool IsEmpty() const { return colour.empty() && range.empty() && objects.empty(); }
+  bool IsEmpty() const {
+    return colour.empty() && range.empty() && exact_range.empty() && objects.empty();
+  }
 };
 
 /// Renders what is not there yet.
@@ -59,16 +61,20 @@ Pictures RenderMissing(const Drive& drive, const SequenceWriter& writer,
                        const FolderOptions& options, int frame) {
   const bool has_geometry = frame % options.depth_every == 0;
   const bool needs_masks =
-      has_geometry && options.masks && !(writer.Has(kObjects, frame) && writer.Has(kMoving, frame));
+      has_geometry && options.masks &&
+      !(writer.Has(SequenceWriter::kObjects, frame) && writer.Has(kMoving, frame));
   const bool needs_range = has_geometry && !writer.Has(SequenceWriter::kRange, frame);
+  const bool needs_exr =
+      has_geometry && options.exr && !writer.Has(SequenceWriter::kExactRange, frame);
   const bool needs_colour = !writer.Has(SequenceWriter::kColour, frame);
   Pictures pictures;
-  if (!needs_colour && !needs_range && !needs_masks) return pictures;
+  if (!needs_colour && !needs_range && !needs_exr && !needs_masks) return pictures;
   const FrameScene scene = drive.SceneAt(frame);
   if (needs_colour) pictures.colour = drive.Colour(scene, frame);
-  if (!needs_range && !needs_masks) return pictures;
+  if (!needs_range && !needs_exr && !needs_masks) return pictures;
   GeometryImage geometry = drive.Geometry(scene, frame);
   if (needs_range) pictures.range = geometry.range;
+  if (needs_exr) pictures.exact_range = geometry.range;
   if (needs_masks) {
     pictures.objects = geometry.object;
     pictures.moving = geometry.object >= scene.first_moving_id();
@@ -79,8 +85,9 @@ Pictures RenderMissing(const Drive& drive, const SequenceWriter& writer,
 void Write(const SequenceWriter& writer, int frame, const Pictures& pictures) {
   if (!pictures.colour.empty()) writer.WriteColour(frame, pictures.colour);
   if (!pictures.range.empty()) writer.WriteRange(frame, pictures.range);
+  if (!pictures.exact_range.empty()) writer.WriteExactRange(frame, pictures.exact_range);
   if (!pictures.objects.empty()) {
-    writer.WriteMask(kObjects, frame, pictures.objects);
+    writer.WriteMask(SequenceWriter::kObjects, frame, pictures.objects);
     writer.WriteMask(kMoving, frame, pictures.moving);
   }
 }
@@ -90,7 +97,8 @@ void Write(const SequenceWriter& writer, int frame, const Pictures& pictures) {
 void RenderIntoFolder(const Drive& drive, const std::filesystem::path& folder,
                       const FolderOptions& options, const std::function<void(int, int)>& progress) {
   std::vector<std::string> kinds = {SequenceWriter::kColour, SequenceWriter::kRange};
-  if (options.masks) kinds.insert(kinds.end(), {kObjects, kMoving});
+  if (options.exr) kinds.emplace_back(SequenceWriter::kExactRange);
+  if (options.masks) kinds.insert(kinds.end(), {SequenceWriter::kObjects, kMoving});
   const SequenceWriter writer(folder, Description(drive), kinds);
   std::vector<StampedPose> poses;
   for (int frame = 0; frame < drive.frames(); ++frame)

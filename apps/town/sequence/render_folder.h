@@ -9,6 +9,7 @@ namespace orb360::town {
 
 struct FolderOptions {
   int depth_every = 1;  ///< ranges of every n-th frame
+  bool exr = false;     ///< with the ranges: range/ (the same as 32-bit floats)
   bool masks = false;   ///< with the ranges: objects/ (16-bit ids) and moving/ (8-bit, 255 moving)
 };
 

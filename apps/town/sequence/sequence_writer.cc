@@ -1,13 +1,17 @@
 #include "apps/town/sequence/sequence_writer.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <unistd.h>
 
+#include "apps/town/sequence/exr_image.h"
 #include "nn/base/check.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/depth_image.h"
@@ -34,6 +38,21 @@ void MakeFolder(const std::filesystem::path& path) {
 
 }  // namespace
 
+void RequireWritable(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::path existing = std::filesystem::absolute(folder);
+  while (!std::filesystem::exists(existing, error) && existing.has_relative_path())
+    existing = existing.parent_path();
+  if (!std::filesystem::is_directory(existing, error)) {
+    throw UserError("cannot create the folder " + folder.string() + ": " + existing.string() +
+                    " is a file; choose another --out");
+  }
+  if (access(existing.c_str(), W_OK | X_OK) != 0) {
+    throw UserError("cannot write into " + existing.string() + ": " +
+                    std::generic_category().message(errno) + "; choose another --out");
+  }
+}
+
 SequenceWriter::SequenceWriter(const std::filesystem::path& folder, const std::string& description,
                                const std::vector<std::string>& kinds)
     : folder_(folder) {
@@ -55,7 +74,8 @@ SequenceWriter::SequenceWriter(const std::filesystem::path& folder, const std::s
 
 std::filesystem::path SequenceWriter::ImagePath(const std::string& kind, int frame) const {
   char name[32];
-  std::snprintf(name, sizeof name, "%06d.%s", frame, kind == kColour ? "jpg" : "png");
+  const char* extension = kind == kColour ? "jpg" : kind == kExactRange ? "exr" : "png";
+  std::snprintf(name, sizeof name, "%06d.%s", frame, extension);
   return folder_ / kind / name;
 }
 
@@ -69,6 +89,10 @@ void SequenceWriter::WriteColour(int frame, const cv::Mat3b& image) const {
 
 void SequenceWriter::WriteRange(int frame, const cv::Mat1f& range) const {
   WriteDepthImage(ImagePath(kRange, frame), range);
+}
+
+void SequenceWriter::WriteExactRange(int frame, const cv::Mat1f& range) const {
+  WriteExrImage(ImagePath(kExactRange, frame), range);
 }
 
 void SequenceWriter::WriteMask(const std::string& kind, int frame, const cv::Mat& mask) const {

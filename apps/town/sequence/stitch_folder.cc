@@ -28,6 +28,7 @@ namespace orb360::town {
 namespace {
 
 constexpr const char* kDepthPrefix = "depth_";
+constexpr const char* kObjectsPrefix = "objects_";
 
 struct NaturalOrder {
   bool operator()(const std::string& a, const std::string& b) const { return NaturalLess(a, b); }
@@ -162,11 +163,34 @@ cv::Mat1f StitchRangeFiles(const FaceFiles& files, double farthest,
   return StitchRange(faces, camera);
 }
 
-bool HasDepth(const std::filesystem::path& recording) {
+cv::Mat1w StitchObjectFiles(const FaceFiles& files, const EquirectangularCamera& camera) {
+  CubeImages<uint16_t> faces;
   for (size_t face = 0; face < kCubeFaces; ++face) {
-    if (std::filesystem::exists(FaceFolder(recording, kDepthPrefix, face))) return true;
+    const cv::Mat image = cv::imread(files[face].string(), cv::IMREAD_UNCHANGED);
+    if (image.empty() || (image.type() != CV_8UC1 && image.type() != CV_16UC1)) {
+      throw UserError(files[face].string() +
+                      ": does not number objects, which takes an image of one channel of 8 or 16 "
+                      "bits");
+    }
+    RequireFaceSize(files[face], image, faces[0].rows);
+    image.convertTo(faces[face], CV_16U);
   }
-  return false;
+  return StitchObjects(faces, camera);
+}
+
+/// The files in the folders with a prefix, where there is such a folder: of frames that have
+/// pictures.
+FrameFiles ListOptionalFrames(const std::filesystem::path& recording, const std::string& prefix,
+                              const FrameFiles& pictures) {
+  bool is_there = false;
+  for (size_t face = 0; face < kCubeFaces; ++face)
+    is_there |= std::filesystem::exists(FaceFolder(recording, prefix, face));
+  if (!is_there) return {};
+  FrameFiles frames = ListFrames(recording, prefix);
+  for (const auto& [name, files] : frames) {
+    if (!pictures.contains(name)) throw UserError(files[0].string() + ": has no picture");
+  }
+  return frames;
 }
 
 std::string Description(const StitchOptions& options, const EquirectangularCamera& camera,
@@ -190,14 +214,13 @@ void StitchFolder(const std::filesystem::path& recording, const std::filesystem:
                   const StitchOptions& options, const std::function<void(int, int)>& progress) {
   const FrameFiles frames = ListFrames(recording, "");
   RequireEvenNumbers(recording, frames);
-  const FrameFiles depth = HasDepth(recording) ? ListFrames(recording, kDepthPrefix) : FrameFiles();
-  for (const auto& [name, files] : depth) {
-    if (!frames.contains(name)) throw UserError(files[0].string() + ": has no picture");
-  }
+  const FrameFiles depth = ListOptionalFrames(recording, kDepthPrefix, frames);
+  const FrameFiles objects = ListOptionalFrames(recording, kObjectsPrefix, frames);
 
   const EquirectangularCamera camera(options.width, options.width / 2);
   std::vector<std::string> kinds = {SequenceWriter::kColour};
   if (!depth.empty()) kinds.emplace_back(SequenceWriter::kRange);
+  if (!objects.empty()) kinds.emplace_back(SequenceWriter::kObjects);
   const SequenceWriter writer(folder, Description(options, camera, frames.size(), !depth.empty()),
                               kinds);
   const std::filesystem::path truth = recording / Dataset::kGroundTruthName;
@@ -214,6 +237,11 @@ void StitchFolder(const std::filesystem::path& recording, const std::filesystem:
     if (with_depth != depth.end() && !writer.Has(SequenceWriter::kRange, frame)) {
       writer.WriteRange(frame,
                         StitchRangeFiles(with_depth->second, options.farthest_depth, camera));
+    }
+    const auto with_objects = objects.find(name);
+    if (with_objects != objects.end() && !writer.Has(SequenceWriter::kObjects, frame)) {
+      writer.WriteMask(SequenceWriter::kObjects, frame,
+                       StitchObjectFiles(with_objects->second, camera));
     }
     progress(++frame, all);
   }

@@ -17,7 +17,8 @@ struct StitchOptions {
 /// holds a folder of images for each face (front/, right/, back/, left/, up/, down/) with the same
 /// names in each; for all or some of the frames, depth along the optical axis under the same names
 /// in depth_front/ ... depth_down/: 16-bit PNG of metres * 256, or 8-bit colour PNG in the 24-bit
-/// encoding (see DecodeDepth24); and groundtruth.txt (TUM, time 0 at the first frame), which is
+/// encoding (see DecodeDepth24); likewise numbers of objects, 8 or 16-bit images of one channel in
+/// objects_front/ ... objects_down/; and groundtruth.txt (TUM, time 0 at the first frame), which is
 /// copied. Frames are in the order of the numbers in their names. Panoramas that are there already
 /// are kept. `progress` is called after each frame with the number done and the number in all.
 /// Throws UserError.

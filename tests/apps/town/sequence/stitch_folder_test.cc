@@ -140,6 +140,29 @@ TEST_F(StitchFolderTest, NeedsDepthForSomeFramesOnly) {
   EXPECT_EQ(OpenDataset(Out()).camera_height, 1.5);
 }
 
+TEST_F(StitchFolderTest, NumbersOfObjectsAreThoseOfTheNearestPixels) {
+  for (int face = 0; face < kCubeFaces; ++face) {
+    std::filesystem::create_directories(Face("objects_", face, "x").parent_path());
+    cv::imwrite(Face("objects_", face, "000018").string(),
+                cv::Mat1w(kSize, kSize, static_cast<uint16_t>(1000 * (face + 1))));
+  }
+  Stitch();
+  EXPECT_FALSE(std::filesystem::exists(Out() / "objects/000000.png"));
+  const cv::Mat1w objects =
+      cv::imread((Out() / "objects/000001.png").string(), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(objects.size(), cv::Size(128, 64));
+  const EquirectangularCamera camera(128, 64);
+  for (int row = 0; row < 64; ++row) {
+    for (int column = 0; column < 128; ++column) {
+      const CubePoint point = MeetCube(camera.Bearing({column + 0.5, row + 0.5}));
+      ASSERT_EQ(objects(row, column), 1000 * (point.face + 1)) << row << ' ' << column;
+    }
+  }
+  cv::imwrite(Face("objects_", kUp, "000018").string(), cv::Mat3b(kSize, kSize));
+  std::filesystem::remove(Out() / "objects/000001.png");
+  EXPECT_THAT(Problem(), HasSubstr("000018.png: does not number objects"));
+}
+
 TEST_F(StitchFolderTest, NamesWhatIsWrong) {
   std::filesystem::remove(Face("", kBack, "000018"));
   EXPECT_THAT(Problem(), HasSubstr("back: frame '000018' is missing"));

@@ -165,7 +165,7 @@ TEST_F(DriveSlow, TrafficMovesAndNothingElseDoes) {
 }
 
 TEST_F(DriveSlow, AnInterruptedRenderingResumesToTheSameFolder) {
-  const FolderOptions options{.depth_every = 2, .masks = true};
+  const FolderOptions options{.depth_every = 2, .exr = true, .masks = true};
   const auto silent = [](int, int) {};
   const std::filesystem::path whole = folder_ / "whole";
   const std::filesystem::path resumed = folder_ / "resumed";
@@ -183,6 +183,7 @@ TEST_F(DriveSlow, AnInterruptedRenderingResumesToTheSameFolder) {
   EXPECT_EQ(rendered_now, 2);
   EXPECT_EQ(Contents(whole), Contents(resumed));
   EXPECT_TRUE(std::filesystem::exists(whole / "depth/000002.png"));
+  EXPECT_TRUE(std::filesystem::exists(whole / "range/000002.exr"));
   EXPECT_FALSE(std::filesystem::exists(whole / "depth/000001.png"));
   const Dataset dataset = OpenDataset(whole);
   EXPECT_EQ(dataset.frame_rate, 20);
