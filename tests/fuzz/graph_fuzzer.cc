@@ -52,9 +52,11 @@ void Check(std::string_view text) {
     const Graph graph = ParseGraph(input->json, std::move(input->weights));
     const int side = graph.size_multiple;
     for (const bool fuses : {true, false}) {
-      const Lowered lowered =
-          Lower(graph, fuses ? FuseNodes(graph) : KeepNodes(graph), NoKernels(), side, 2 * side);
-      CheckPlan(PlaceValues(lowered, /*keeps_values=*/!fuses));
+      for (const DataType precision : {DataType::kFloat, DataType::kBFloat16}) {
+        const Lowered lowered = Lower(graph, fuses ? FuseNodes(graph) : KeepNodes(graph),
+                                      NoKernels(precision), side, 2 * side);
+        CheckPlan(PlaceValues(lowered, /*keeps_values=*/!fuses));
+      }
     }
   } catch (const UserError&) {
     // The refusal of what is not allowed.
