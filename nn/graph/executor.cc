@@ -73,6 +73,7 @@ Executor::Workspace::Workspace(const Executor& executor) {
 
 Executor::Executor(const Graph& graph, int height, int width, const ExecutorOptions& options) {
   ORB360_CHECK(options.threads >= 1, options.threads);
+  threads_ = options.threads;
   CheckPictureSize(graph, height, width);
   const CpuBackend backend(options.threads, options.precision);
   lowered_ = Lower(graph, options.keeps_tensors ? KeepNodes(graph) : FuseNodes(graph), backend,
@@ -96,12 +97,11 @@ void Executor::Run(std::span<const std::span<const float>> inputs,
   ORB360_CHECK(inputs.size() == inputs_.size(), inputs.size(), inputs_.size());
   ORB360_CHECK(outputs.size() == outputs_.size(), outputs.size(), outputs_.size());
   ORB360_CHECK(workspace->bound_.size() == lowered_.instructions.size());
-  constexpr int kOneThread = 1;  // copying is as fast as memory with one
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const Shape& shape = inputs_[i].shape;
     ORB360_CHECK(inputs[i].size() == SizeOf(shape), inputs_[i].name, inputs[i].size());
     CopyChannels(DenseView(inputs[i].data(), shape), 0,
-                 workspace->views_[Index(lowered_.inputs[i])], 0, shape.channels, kOneThread);
+                 workspace->views_[Index(lowered_.inputs[i])], 0, shape.channels, threads_);
   }
   for (std::size_t i = 0; i < lowered_.instructions.size(); ++i) {
     const auto& [in, out, scratch] = workspace->bound_[i];
@@ -111,7 +111,7 @@ void Executor::Run(std::span<const std::span<const float>> inputs,
     const Shape& shape = outputs_[i].shape;
     ORB360_CHECK(outputs[i].size() == SizeOf(shape), outputs_[i].name, outputs[i].size());
     CopyChannels(workspace->views_[Index(lowered_.outputs[i])], 0,
-                 DenseView(outputs[i].data(), shape), 0, shape.channels, kOneThread);
+                 DenseView(outputs[i].data(), shape), 0, shape.channels, threads_);
   }
 }
 

@@ -72,6 +72,7 @@ class Executor {
   std::size_t naive_bytes() const { return placement_.separate_bytes; }
 
  private:
+  int threads_;
   Lowered lowered_;
   Placement placement_;
   std::vector<Port> inputs_;

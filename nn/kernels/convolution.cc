@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 
 #include <omp.h>
 
@@ -36,6 +37,8 @@ AlignedVector<float> PackDirect(const ConvolutionSpec& spec, std::span<const flo
                                 const std::vector<int>& groups) {
   const int taps = spec.kernel * spec.kernel;
   AlignedVector<float> packed;
+  const int blocks_in_all = std::accumulate(groups.begin(), groups.end(), 0);
+  packed.reserve(static_cast<std::size_t>(blocks_in_all) * kBlock * taps * spec.in_channels);
   int first_out = 0;
   for (const int blocks : groups) {
     for (int first_in = 0; first_in < spec.in_channels; first_in += kBlock) {

@@ -314,8 +314,8 @@ AlignedVector<float> PackWinograd(std::span<const float> weight, int out_channel
   float* group = packed.data();
   for (const int blocks : groups) {
     const int width = blocks * kBlock;
-    for (int o = 0; o < width && blocks_before * kBlock + o < out_channels; ++o) {
-      for (int i = 0; i < in_channels; ++i) {
+    for (int i = 0; i < in_channels; ++i) {
+      for (int o = 0; o < width && blocks_before * kBlock + o < out_channels; ++o) {
         const float* filter =
             weight.data() +
             (static_cast<std::size_t>(blocks_before * kBlock + o) * in_channels + i) * 9;

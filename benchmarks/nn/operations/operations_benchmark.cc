@@ -1,5 +1,5 @@
 // Every operation but convolution, at the sizes of the network for 512 x 1024, and the two networks
-// of normalized convolutions. benchmarks/nn/unguided_pytorch.py times the published one in PyTorch.
+// of normalized convolutions; benchmarks/nn/networks times those beside PyTorch.
 #include <algorithm>
 #include <functional>
 #include <vector>
