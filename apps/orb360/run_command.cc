@@ -34,7 +34,8 @@ struct RunOptions {
   std::string out;
   std::string config;
   std::string mask = "auto";
-  int threads = 0;  // 0: one for each core
+  int threads = 0;           // 0: one for each core
+  double camera_height = 0;  // metres; 0: as the configuration or the input says
   std::string resize;
   SequenceOptions sequence;
   bool saves_sparse = false;
@@ -106,8 +107,17 @@ RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, b
   return record;
 }
 
+/// Where metres come from. Of several maps the first counts: the others continue it.
+nlohmann::json DescribeScale(const Reconstruction& reconstruction, const ScaleOptions& options) {
+  const bool is_metric = !reconstruction.maps.empty() && reconstruction.maps.front().is_metric;
+  if (!is_metric) return {{"source", "none"}, {"value", nullptr}};
+  return {{"source", options.camera_height > 0 ? "camera height" : "assumed camera height"},
+          {"value", options.height()}};
+}
+
 nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& record,
-                         const RunOptions& options, double masked_share, int threads) {
+                         const RunOptions& options, const ScaleOptions& scale, double masked_share,
+                         int threads) {
   nlohmann::json summary = {
       {"version", Version()},
       {"input", options.input},
@@ -119,7 +129,7 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
       {"keyframes", reconstruction.keyframes.size()},
       {"landmarks", reconstruction.landmarks.size()},
       {"features_per_keyframe", reconstruction.features_per_keyframe},
-      {"scale", {{"source", "none"}, {"value", 1.0}}},
+      {"scale", DescribeScale(reconstruction, scale)},
       {"timing_ms", record.times.Summary()},
       {"seconds", record.seconds},
       {"frames_per_second", record.frames / std::max(record.seconds, 1e-9)},
@@ -152,6 +162,9 @@ int Run(const RunOptions& options) {
   SequenceOptions sequence_options = options.sequence;
   sequence_options.resize = ParseSize(options.resize);
   const std::unique_ptr<Sequence> sequence = OpenInput(options.input, sequence_options);
+  double& camera_height = system_options.scale.camera_height;
+  if (options.camera_height > 0) camera_height = options.camera_height;
+  if (camera_height == 0) camera_height = sequence->camera_height().value_or(0);
   RunOutput output(options.out);
   const int threads = SetThreads(options.threads);
   const cv::Mat mask = ChooseMask(options.mask, options.input, sequence_options, *sequence);
@@ -165,7 +178,8 @@ int Run(const RunOptions& options) {
   System system(EquirectangularCamera(size.width, size.height), system_options, mask);
   const RunRecord record = ProcessFrames(sequence.get(), &system, &output, options.is_quiet);
   const Reconstruction reconstruction = system.Finish();
-  const nlohmann::json summary = Summarize(reconstruction, record, options, masked_share, threads);
+  const nlohmann::json summary =
+      Summarize(reconstruction, record, options, system_options.scale, masked_share, threads);
   output.Finish(reconstruction, summary);
   if (options.saves_sparse) {
     WriteSparseKeyframes(output.folder() / "sparse", system.maps(),
@@ -229,6 +243,12 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
   command->add_option("--start", sequence.start, "First frame to use, counted from 0")
       ->check(CLI::Range(0, 1 << 30))
       ->type_name("N");
+  command
+      ->add_option("--camera-height", options->camera_height,
+                   "Height of the camera over the ground, metres (default: as the configuration or "
+                   "the input says, or 1.6)")
+      ->check(CLI::Range(0.01, 100.0))
+      ->type_name("M");
   command->add_option("--resize", options->resize, "Scale every image first")->type_name("WxH");
   command->add_flag("--save-sparse", options->saves_sparse,
                     "Also write each keyframe with its sparse depth to DIR/sparse (HDF5)");

@@ -34,7 +34,7 @@ void AdjustTwentyKeyframes(benchmark::State& state) {
     state.PauseTiming();
     Map copy = map;
     state.ResumeTiming();
-    AdjustLocally(21, options, &copy);
+    AdjustLocally(21, options, {}, &copy);
   }
 }
 BENCHMARK(AdjustTwentyKeyframes)->Unit(benchmark::kMillisecond);

@@ -1,26 +1,8 @@
 #include "slam/optimization/bearing_cost.h"
 
-#include <Eigen/Geometry>
-
-#include "slam/geometry/so3.h"
+#include "slam/optimization/rotation_jacobian.h"
 
 namespace orb360 {
-namespace {
-
-// d (q * x) / d q for q * x = x + 2 w (v x x) + 2 v x (v x x), q = (v, w), columns x y z w.
-Eigen::Matrix<double, 3, 4> RotatedPointJacobian(const Eigen::Quaterniond& q,
-                                                 const Eigen::Vector3d& x) {
-  const Eigen::Vector3d v = q.vec();
-  Eigen::Matrix<double, 3, 4> jacobian;
-  // v x (v x x) = v (v.x) - x (v.v).
-  jacobian.leftCols<3>() = -2.0 * q.w() * Skew(x) + 2.0 * v.dot(x) * Eigen::Matrix3d::Identity() +
-                           2.0 * v * x.transpose() - 4.0 * x * v.transpose();
-  jacobian.col(3) = 2.0 * v.cross(x);
-  return jacobian;
-}
-
-}  // namespace
-
 bool BearingCost::Evaluate(const double* const* parameters, double* residuals,
                            double** jacobians) const {
   const Eigen::Map<const Eigen::Quaterniond> rotation(parameters[0]);

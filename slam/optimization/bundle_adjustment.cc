@@ -10,6 +10,7 @@
 #include "nn/base/check.h"
 #include "slam/optimization/bearing_cost.h"
 #include "slam/optimization/bearing_residual.h"
+#include "slam/optimization/height_cost.h"
 
 namespace orb360 {
 namespace {
@@ -39,6 +40,7 @@ BundleReport SolveBundle(const BundleOptions& options, BundleProblem* bundle) {
   problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   problem_options.disable_all_safety_checks = true;
   std::deque<BearingCost> costs;  // cost functions cannot move
+  std::deque<HeightCost> height_costs;
   ceres::Problem problem(problem_options);
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   for (size_t i = 0; i < poses.size(); ++i) {
@@ -54,6 +56,11 @@ BundleReport SolveBundle(const BundleOptions& options, BundleProblem* bundle) {
     costs.emplace_back(o.bearing, o.sigma);
     problem.AddResidualBlock(&costs.back(), options.robust ? &loss : nullptr, poses[o.pose].data(),
                              points[o.point].data());
+  }
+  for (const BundleProblem::Height& h : bundle->heights) {
+    height_costs.emplace_back(h.normal, h.height, h.sigma);
+    problem.AddResidualBlock(&height_costs.back(), nullptr, poses[h.pose].data(),
+                             points[h.point].data());
   }
 
   ceres::Solver::Options solver_options;

@@ -17,10 +17,19 @@ struct BundleProblem {
     Eigen::Vector3d bearing;  // unit, camera frame
     double sigma;             // angular noise, rad
   };
+  /// A point of the ground: it lies `height` below the camera. See HeightCost.
+  struct Height {
+    int pose;
+    int point;
+    Eigen::Vector3d normal;  // of the ground, unit, towards the camera, camera frame
+    double height;
+    double sigma;  // share of the height
+  };
   std::vector<Rigid3> world_from_camera;
   std::vector<uint8_t> pose_fixed;  // by pose; at least one, or the gauge is free
   std::vector<Eigen::Vector3d> points;
   std::vector<Observation> observations;
+  std::vector<Height> heights;
 };
 
 struct BundleOptions {

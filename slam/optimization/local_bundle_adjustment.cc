@@ -1,16 +1,39 @@
 #include "slam/optimization/local_bundle_adjustment.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "slam/geometry/ground_plane.h"
 #include "slam/optimization/bearing_residual.h"
 
 namespace orb360 {
 namespace {
 
+// Where the plane below is at another height than this share allows, it is not the ground: a
+// kerb's, a roof's.
+constexpr double kMaxHeightError = 0.1;
+
+// Adds what the ground says of the keyframe with index `pose` and of the points around it.
+void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem* problem) {
+  const Rigid3 camera_from_world = problem->world_from_camera[pose].Inverse();
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(problem->points.size());
+  for (const Eigen::Vector3d& point : problem->points) points.push_back(camera_from_world * point);
+  const std::optional<GroundPlane> plane =
+      FitGroundPlane(points, camera_from_world.rotation * ground.up, {});
+  if (!plane || !(std::abs(plane->height / ground.camera_height - 1) < kMaxHeightError)) return;
+  // Together as certain as one measurement of the height: their errors have the same causes.
+  const double shared = sigma * std::sqrt(static_cast<double>(plane->points.size()));
+  for (const int point : plane->points) {
+    problem->heights.push_back({pose, point, plane->normal, ground.camera_height, shared});
+  }
+}
+
 // Builds, solves and writes back. `fixed` keyframes are held; of the landmarks' observations only
 // those from `moving` and `fixed` take part.
 void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixed,
-            std::span<const LandmarkId> landmarks, const BundleOptions& options, Map* map) {
+            std::span<const LandmarkId> landmarks, const BundleOptions& options,
+            const std::optional<KnownGround>& ground, double height_sigma, Map* map) {
   BundleProblem problem;
   std::vector<int> pose_of(map->keyframe_end(), -1);
   const auto add_pose = [&](KeyframeId id, bool is_fixed) {
@@ -38,6 +61,9 @@ void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixe
       sources.push_back({id, o.keyframe});
     }
   }
+  for (size_t i = 0; ground && i < moving.size(); ++i) {
+    AddHeights(static_cast<int>(i), *ground, height_sigma, &problem);
+  }
   if (!SolveBundle(options, &problem).usable) return;
 
   for (size_t i = 0; i < moving.size(); ++i) {
@@ -58,7 +84,8 @@ void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixe
 
 }  // namespace
 
-void AdjustLocally(KeyframeId center, const LocalBundleOptions& options, Map* map) {
+void AdjustLocally(KeyframeId center, const LocalBundleOptions& options,
+                   const std::optional<KnownGround>& ground, Map* map) {
   std::vector<KeyframeId> moving = {center};
   for (const Map::Covisible& neighbour :
        map->FindCovisible(map->keyframe(center).landmarks, options.min_shared, center)) {
@@ -87,7 +114,8 @@ void AdjustLocally(KeyframeId center, const LocalBundleOptions& options, Map* ma
     fixed.push_back(*oldest);
     moving.erase(oldest);
   }
-  Adjust(moving, fixed, landmarks, {.max_iterations = options.max_iterations}, map);
+  Adjust(moving, fixed, landmarks, {.max_iterations = options.max_iterations}, ground,
+         options.height_sigma, map);
 }
 
 void AdjustGlobally(const BundleOptions& options, Map* map) {
@@ -98,7 +126,7 @@ void AdjustGlobally(const BundleOptions& options, Map* map) {
   }
   if (keyframes.size() < 2) return;
   const std::span<const KeyframeId> all(keyframes);
-  Adjust(all.subspan(1), all.first(1), landmarks, options, map);
+  Adjust(all.subspan(1), all.first(1), landmarks, options, std::nullopt, 0, map);
 }
 
 }  // namespace orb360

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "slam/map/map.h"
@@ -16,12 +17,23 @@ struct LocalBundleOptions {
   /// Landmarks that a keyframe must share with the newest to move.
   int min_shared = 15;
   int max_iterations = 4;
+  /// Standard deviation of the camera's height over the plane through the ground around it, as a
+  /// share: roads are not flat, and cameras sway.
+  double height_sigma = 0.01;
+};
+
+/// The ground that a camera moves over.
+struct KnownGround {
+  Eigen::Vector3d up;    // unit, world
+  double camera_height;  // in the map's unit
 };
 
 /// Bundle adjustment of the neighbourhood of a keyframe (paper Eq. 11): poses of the keyframes
 /// around it and all landmarks they see. Afterwards observations beyond the 95 % bound are removed,
-/// and landmarks with fewer than two left.
-void AdjustLocally(KeyframeId center, const LocalBundleOptions& options, Map* map);
+/// and landmarks with fewer than two left. Where the ground is known, the landmarks that lie on it
+/// hold the scale: each keyframe is to be the camera's height above the plane through them.
+void AdjustLocally(KeyframeId center, const LocalBundleOptions& options,
+                   const std::optional<KnownGround>& ground, Map* map);
 
 /// The same for the whole map; its first keyframe is held.
 void AdjustGlobally(const BundleOptions& options, Map* map);

@@ -61,7 +61,8 @@ void CullRedundantKeyframes(KeyframeId newest, const MapperOptions& options, Map
 
 }  // namespace
 
-KeyframeId IntegrateKeyframe(const TrackedFrame& frame, const MapperOptions& options, Map* map) {
+KeyframeId IntegrateKeyframe(const TrackedFrame& frame, const MapperOptions& options,
+                             const std::optional<KnownGround>& ground, Map* map) {
   const KeyframeId id =
       map->AddKeyframe(frame.index, frame.timestamp, frame.world_from_camera, frame.features);
   for (size_t f = 0; f < frame.landmarks.size(); ++f) {
@@ -76,7 +77,7 @@ KeyframeId IntegrateKeyframe(const TrackedFrame& frame, const MapperOptions& opt
   CullRecentLandmarks(id, options, map);
   TriangulateNewLandmarks(id, options.triangulation, map);
   FuseWithNeighbours(id, options.max_fusion_neighbours, map);
-  AdjustLocally(id, options.bundle, map);
+  AdjustLocally(id, options.bundle, ground, map);
   CullRedundantKeyframes(id, options, map);
   return id;
 }

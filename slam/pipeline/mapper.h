@@ -23,6 +23,7 @@ struct MapperOptions {
 /// Takes a tracked frame into the map as a keyframe: its observations, culling of doubtful
 /// landmarks, new ones by panoramic triangulation, fusion of duplicates with its neighbours, local
 /// bundle adjustment, culling of redundant keyframes. Returns the keyframe's id.
-KeyframeId IntegrateKeyframe(const TrackedFrame& frame, const MapperOptions& options, Map* map);
+KeyframeId IntegrateKeyframe(const TrackedFrame& frame, const MapperOptions& options,
+                             const std::optional<KnownGround>& ground, Map* map);
 
 }  // namespace orb360

@@ -102,6 +102,18 @@ ConfigSchema MakeConfigSchema(Options* options) {
              "keyframes in which a lost frame is sought", 1, 1000);
   schema.Add("recovery.max_pending_frames", &recovery.max_pending_frames,
              "frames without a pose that are remembered to be tracked later", 1, 100000);
+
+  ScaleOptions& scale = options->scale;
+  schema.Add(
+      "camera.height_m", &scale.camera_height,
+      "height of the camera over the ground, metres: what makes the result metric; 0: as the "
+      "input says, or 1.6",
+      0.0, 100.0);
+  schema.Add("scale.from_ground", &scale.from_ground,
+             "find the ground below the camera and keep the scale by it");
+  schema.Add("scale.height_sigma", &mapper.bundle.height_sigma,
+             "standard deviation of the camera's height over the ground, a share of it", 0.001,
+             1.0);
   return schema;
 }
 

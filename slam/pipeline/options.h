@@ -35,6 +35,17 @@ struct RecoveryOptions {
   int max_pending_frames = 600;
 };
 
+/// Where metres come from: a camera moves at a known height over the ground that it sees.
+struct ScaleOptions {
+  /// Off: the scale of a map is arbitrary, and drifts.
+  bool from_ground = true;
+  /// Of the camera over the ground, metres; 0: unknown, kAssumedHeight is taken.
+  double camera_height = 0;
+  static constexpr double kAssumedHeight = 1.6;
+
+  double height() const { return camera_height > 0 ? camera_height : kAssumedHeight; }
+};
+
 /// Every setting of the system, by part.
 struct Options {
   OrbOptions orb;
@@ -43,6 +54,7 @@ struct Options {
   KeyframeOptions keyframe;
   MapperOptions mapper;
   RecoveryOptions recovery;
+  ScaleOptions scale;
 };
 
 /// Registers every option under its key in a configuration file. `options` must outlive the schema.

@@ -50,7 +50,12 @@ Reconstruction MakeReconstruction(const std::vector<Map>& maps,
   if (!result.keyframes.empty()) {
     result.features_per_keyframe = matched / static_cast<double>(result.keyframes.size());
   }
-  if (!maps.empty()) result.up = EstimateUp(maps.front());
+  if (!maps.empty()) {
+    constexpr size_t kStart = 20;  // keyframes: the place where the world is levelled
+    std::vector<KeyframeId> first = maps.front().KeyframeIds();
+    first.resize(std::min(first.size(), kStart));
+    if (const auto ground = EstimateGround(maps.front(), first)) result.up = ground->up;
+  }
   return result;
 }
 

@@ -46,6 +46,7 @@ struct MapSummary {
   int tracked = 0;
   int keyframes = 0;
   int landmarks = 0;
+  bool is_metric = false;  // else in a scale of its own
 };
 
 /// Landmarks in common that link two keyframes in the covisibility graph.
@@ -65,7 +66,8 @@ struct Reconstruction {
   std::optional<Eigen::Vector3d> up;
 };
 
-/// Everything but `initialized_at` and `lost`. Placements are by frame index.
+/// Everything but `initialized_at`, `lost` and which maps are metric. Placements are by frame
+/// index.
 Reconstruction MakeReconstruction(const std::vector<Map>& maps,
                                   const std::map<int, Placement>& placements);
 

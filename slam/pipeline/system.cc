@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "nn/base/check.h"
+#include "slam/pipeline/ground.h"
 #include "slam/pipeline/initializer.h"
 #include "slam/pipeline/mapper.h"
 
@@ -28,6 +29,24 @@ void SampleColors(const cv::Mat& bgr, Features* features) {
                           std::clamp(static_cast<int>(pixel.x()), 0, bgr.cols - 1));
     features->colors[i] = {c[2], c[1], c[0]};
   }
+}
+
+// The ground as the newest keyframes see it: to be found at first, then to be followed uphill and
+// downhill.
+std::optional<KnownGround> LookForGround(const Map& map, const std::optional<KnownGround>& known,
+                                         const ScaleOptions& options) {
+  if (!options.from_ground) return std::nullopt;
+  const std::vector<KeyframeId> keyframes = map.KeyframeIds();
+  if (!known) {
+    constexpr size_t kEnough = 5;  // keyframes
+    if (keyframes.size() < kEnough) return std::nullopt;
+    return EstimateGround(map, std::span(keyframes).last(kEnough));
+  }
+  constexpr double kShare = 0.2;  // of a new normal: roads bend slowly
+  const std::optional<Eigen::Vector3d> normal = GroundNormal(map, keyframes.back(), known->up);
+  if (!normal) return known;
+  return KnownGround{((1 - kShare) * known->up + kShare * *normal).normalized(),
+                     known->camera_height};
 }
 
 }  // namespace
@@ -95,7 +114,7 @@ FrameReport System::Process(const Frame& frame) {
 // Threads waiting for one that has no core cost more than they bring: one core is left to mapping.
 int System::FreeThreads() const {
   const bool is_mapping =
-      job_ && job_->map.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+      job_ && job_->result.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
   return is_mapping ? std::max(1, num_threads_ - 1) : num_threads_;
 }
 
@@ -273,7 +292,7 @@ void System::CreateMap(const PendingFrame& first, const PendingFrame& second,
     gauge.scale *= local_.median_range;
     gauge.rotation = last_.world_from_camera.rotation;
     gauge.translation = last_.world_from_camera.translation;
-    finished_maps_.push_back(std::move(map_));
+    FinishMap();
   } else {
     initialized_at_ = second.index;
   }
@@ -322,10 +341,12 @@ void System::StartMapping() {
   TrackedFrame keyframe = last_;
   for (LandmarkId& id : keyframe.landmarks) id = map_.Resolve(id);
   // The map moves into the job and comes back with its result.
-  auto integrate = [map = std::move(map_), keyframe, options = options_.mapper]() mutable {
+  auto integrate = [map = std::move(map_), keyframe, ground = ground_,
+                    options = options_]() mutable {
     omp_set_num_threads(1);  // the other core goes on tracking
-    IntegrateKeyframe(keyframe, options, &map);
-    return std::move(map);
+    IntegrateKeyframe(keyframe, options.mapper, ground, &map);
+    std::optional<KnownGround> seen = LookForGround(map, ground, options.scale);
+    return Mapped{std::move(map), seen};
   };
   map_ = Map();
   job_ = MappingJob{std::async(std::launch::async, std::move(integrate)), std::move(keyframe),
@@ -341,7 +362,8 @@ bool System::MustAdopt() const {
 }
 
 void System::AdoptMapping() {
-  map_ = job_->map.get();
+  Mapped mapped = job_->result.get();
+  map_ = std::move(mapped.map);
   CountMap();
   const KeyframeId id = map_.keyframe_end() - 1;
   // What was tracked meanwhile moves along with the keyframe.
@@ -352,7 +374,36 @@ void System::AdoptMapping() {
   if (before_last_) before_last_->world_from_camera = correction * before_last_->world_from_camera;
   for (LandmarkId& landmark : last_.landmarks) landmark = map_.Resolve(landmark);
   CountSightings(&map_);
+  if (mapped.ground) FollowGround(*mapped.ground);
   local_ = MakeLocalMap(map_, id, options_.keyframe.local_keyframes);
+}
+
+void System::FollowGround(const KnownGround& ground) {
+  if (!ground_) Rescale(options_.scale.height() / ground.camera_height);
+  ground_ = {ground.up, options_.scale.height()};
+}
+
+// A change of gauge of the present map and of all that is relative to it; the place where the map
+// began stays.
+void System::Rescale(double factor) {
+  const Eigen::Vector3d center = map_.PoseOf(0).translation;
+  const Similarity3 gauge{factor, Eigen::Quaterniond::Identity(), (1 - factor) * center};
+  map_.Transform(gauge);
+  last_.world_from_camera = TransformPose(gauge, last_.world_from_camera);
+  if (before_last_) {
+    before_last_->world_from_camera = TransformPose(gauge, before_last_->world_from_camera);
+  }
+  for (auto& [index, placement] : placements_) {
+    const bool is_here = placement.map == static_cast<int>(finished_maps_.size());
+    if (is_here) placement.reference_from_camera.translation *= factor;
+  }
+}
+
+void System::FinishMap() {
+  finished_maps_.push_back(std::move(map_));
+  are_metric_.push_back(ground_.has_value());
+  map_ = Map();
+  ground_.reset();
 }
 
 void System::CountMap() {
@@ -384,10 +435,10 @@ void System::UpdateLocalMap() {
 
 Reconstruction System::Finish() {
   if (job_) AdoptMapping();
-  if (initialized_at_) finished_maps_.push_back(std::move(map_));
-  map_ = Map();
+  if (initialized_at_) FinishMap();
 
   Reconstruction result = MakeReconstruction(finished_maps_, placements_);
+  for (size_t i = 0; i < result.maps.size(); ++i) result.maps[i].is_metric = are_metric_[i];
   result.initialized_at = initialized_at_;
   result.lost = num_lost_;
   return result;

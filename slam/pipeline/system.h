@@ -64,8 +64,12 @@ class System {
     double timestamp;
     std::shared_ptr<const Features> features;
   };
+  struct Mapped {
+    Map map;
+    std::optional<KnownGround> ground;  // as the newest keyframe sees it
+  };
   struct MappingJob {
-    std::future<Map> map;
+    std::future<Mapped> result;
     TrackedFrame frame;  // the keyframe as it was tracked
     int adopt_at;        // value of num_processed_ at which it is due
   };
@@ -82,6 +86,9 @@ class System {
   void StartMapping();
   bool MustAdopt() const;
   void AdoptMapping();
+  void FollowGround(const KnownGround& ground);
+  void Rescale(double factor);
+  void FinishMap();
   void CountMap();
   void CountSightings(Map* map);
   void UpdateLocalMap();
@@ -106,6 +113,9 @@ class System {
   Map map_;  // empty while a job has it
   std::optional<MappingJob> job_;
   std::vector<Map> finished_maps_;
+  std::vector<bool> are_metric_;  // by finished map
+  /// Once it is found, the map is in metres.
+  std::optional<KnownGround> ground_;
   LocalMap local_;
   TrackedFrame last_;
   std::optional<TrackedFrame> before_last_;

@@ -80,7 +80,7 @@ TEST(LocalBundleAdjustment, MovesTheNeighbourhoodAndNothingElse) {
   options.max_keyframes = 3;
   map.keyframe(7).world_from_camera.translation += Eigen::Vector3d(0.05, -0.05, 0.03);
   const Map before = map;
-  AdjustLocally(7, options, &map);
+  AdjustLocally(7, options, {}, &map);
   map.CheckConsistency();
   EXPECT_LT((map.keyframe(7).world_from_camera.translation - poses[7].translation).norm(), 0.01);
   int moved = 0;
@@ -98,7 +98,7 @@ TEST(LocalBundleAdjustment, RemovesObservationsThatAreWrong) {
   // Keyframe 2 takes feature 190 for landmark 20.
   map.RemoveObservation(20, 2);
   map.AddObservation(20, 2, 190);
-  AdjustLocally(4, {}, &map);
+  AdjustLocally(4, {}, {}, &map);
   map.CheckConsistency();
   EXPECT_EQ(map.keyframe(2).landmarks[190], kNoId);
   ASSERT_TRUE(map.HasLandmark(20));

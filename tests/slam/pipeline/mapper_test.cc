@@ -27,7 +27,7 @@ TEST(Mapper, TakesAFrameInAndCorrectsItsPose) {
   Rigid3 disturbed = truth;
   disturbed.translation += Eigen::Vector3d(0.03, -0.03, 0.02);
   const KeyframeId id =
-      IntegrateKeyframe(FrameSeeing(scene, scene.See(truth), disturbed, 250), {}, &map);
+      IntegrateKeyframe(FrameSeeing(scene, scene.See(truth), disturbed, 250), {}, {}, &map);
   map.CheckConsistency();
   EXPECT_EQ(id, 3);
   EXPECT_EQ(map.keyframe(id).frame_index, 40);
@@ -44,7 +44,7 @@ TEST(Mapper, DropsLandmarksThatAreRarelyFound) {
   const Rigid3 pose = Walk(4, {-0.4, 0.1, 0.0})[3];
   TrackedFrame frame = FrameSeeing(scene, scene.See(pose), pose, 300);
   frame.landmarks[doubtful] = kNoId;
-  IntegrateKeyframe(frame, {}, &map);
+  IntegrateKeyframe(frame, {}, {}, &map);
   EXPECT_FALSE(map.HasLandmark(doubtful));
 }
 
@@ -54,7 +54,7 @@ TEST(Mapper, RemovesKeyframesThatOthersMakeRedundantAndKeepsTheirPoses) {
   const std::vector<Rigid3> poses = Walk(5, {-0.05, 0.0, 0.0});
   Map map = scene.MakeMap(poses, 300);
   const Rigid3 pose = Walk(6, {-0.05, 0.0, 0.0})[5];
-  IntegrateKeyframe(FrameSeeing(scene, scene.See(pose), pose, 300), {}, &map);
+  IntegrateKeyframe(FrameSeeing(scene, scene.See(pose), pose, 300), {}, {}, &map);
   map.CheckConsistency();
   EXPECT_LT(map.num_keyframes(), 6);
   EXPECT_TRUE(map.HasKeyframe(0));  // the gauge

@@ -28,6 +28,7 @@ BoxRoom Hall(uint64_t seed = 1) { return BoxRoom({8.0, 4.0, 2.0}, seed); }
 Options SmallOptions() {
   Options options;
   options.orb.num_features = 1000;
+  options.scale.camera_height = 2.0;  // of TruePose over the floor of Hall
   return options;
 }
 
@@ -53,6 +54,7 @@ struct PathError {
   double rmse = 0;
   double length = 0;
   double worst_rotation = 0;  // rad
+  double scale = 1;           // from the result to the truth
 };
 PathError Compare(const std::vector<FramePose>& frames, const std::vector<double>& truth) {
   std::vector<Eigen::Vector3d> found;
@@ -66,6 +68,7 @@ PathError Compare(const std::vector<FramePose>& frames, const std::vector<double
     }
   }
   const Similarity3 fit = AlignSimilarity(found, expected).value();
+  error.scale = fit.scale;
   double sum = 0;
   for (size_t i = 0; i < found.size(); ++i) {
     sum += (fit * found[i] - expected[i]).squaredNorm();
@@ -112,6 +115,8 @@ TEST(SystemSlow, TracksAWholeWalkWithinHalfAPercent) {
   const PathError error = Compare(result.frames, frames);
   EXPECT_LT(error.rmse, 0.005 * error.length);
   EXPECT_LT(error.worst_rotation, 0.02);
+  EXPECT_TRUE(result.maps.front().is_metric);
+  EXPECT_NEAR(error.scale, 1.0, 0.02);
 }
 
 TEST(SystemSlow, GivesTheSameBytesForAnyNumberOfThreadsAndEveryTime) {

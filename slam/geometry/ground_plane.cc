@@ -1,0 +1,109 @@
+#include "slam/geometry/ground_plane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <Eigen/Eigenvalues>
+
+namespace orb360 {
+namespace {
+
+constexpr int kSamples = 300;    // of three points
+constexpr int kRefinements = 5;  // of the plane by the points on it
+
+struct Plane {
+  Eigen::Vector3d normal;  // unit, towards the origin
+  double height;
+};
+
+// Tukey's biweight of a point: 1 on the plane, 0 from the tolerance on.
+double Weight(const Plane& plane, const Eigen::Vector3d& point, double tolerance) {
+  const double error = (plane.normal.dot(point) + plane.height) / (tolerance * plane.height);
+  const double rest = std::max(0.0, 1.0 - error * error);
+  return rest * rest;
+}
+
+double Support(const Plane& plane, std::span<const Eigen::Vector3d> points, double tolerance) {
+  double sum = 0;
+  for (const Eigen::Vector3d& p : points) sum += Weight(plane, p, tolerance);
+  return sum;
+}
+
+std::optional<Plane> Through(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                             const Eigen::Vector3d& c, const Eigen::Vector3d& up,
+                             double min_cosine) {
+  Eigen::Vector3d normal = (b - a).cross(c - a).normalized();
+  if (normal.dot(up) < 0) normal = -normal;
+  const double height = -normal.dot(a);
+  // Also false for NaN, from three points in a line.
+  if (!(normal.dot(up) > min_cosine && height > 0)) return std::nullopt;
+  return Plane{normal, height};
+}
+
+Plane Refined(const Plane& plane, std::span<const Eigen::Vector3d> points, double tolerance) {
+  double sum = 0;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : points) {
+    const double weight = Weight(plane, p, tolerance);
+    sum += weight;
+    mean += weight * p;
+  }
+  mean /= sum;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& p : points) {
+    covariance += Weight(plane, p, tolerance) * (p - mean) * (p - mean).transpose();
+  }
+  Eigen::Vector3d normal =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(0);
+  if (normal.dot(plane.normal) < 0) normal = -normal;
+  return {normal, -normal.dot(mean)};
+}
+
+}  // namespace
+
+std::optional<GroundPlane> FitGroundPlane(std::span<const Eigen::Vector3d> points,
+                                          const Eigen::Vector3d& up,
+                                          const GroundPlaneOptions& options) {
+  std::vector<int> indices;
+  std::vector<Eigen::Vector3d> below;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (!(up.dot(points[i]) < -std::sin(options.min_below) * points[i].norm())) continue;
+    indices.push_back(static_cast<int>(i));
+    below.push_back(points[i]);
+  }
+  if (static_cast<int>(below.size()) < std::max(options.min_points, 3)) return std::nullopt;
+
+  std::mt19937 random(1);
+  const double min_cosine = std::cos(options.max_tilt);
+  std::optional<Plane> best;
+  double best_support = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    const Eigen::Vector3d& a = below[random() % below.size()];
+    const Eigen::Vector3d& b = below[random() % below.size()];
+    const Eigen::Vector3d& c = below[random() % below.size()];
+    const std::optional<Plane> plane = Through(a, b, c, up, min_cosine);
+    if (!plane) continue;
+    const double support = Support(*plane, below, options.tolerance);
+    if (support > best_support) {
+      best_support = support;
+      best = plane;
+    }
+  }
+  if (!best) return std::nullopt;
+  for (int i = 0; i < kRefinements; ++i) {
+    best = Refined(*best, below, options.tolerance);
+    if (!(best->height > 0 && best->normal.dot(up) > min_cosine)) return std::nullopt;
+  }
+  GroundPlane ground{best->normal, best->height, {}};
+  for (size_t i = 0; i < below.size(); ++i) {
+    if (Weight(*best, below[i], options.tolerance) > 0) ground.points.push_back(indices[i]);
+  }
+  const auto on_it = static_cast<int>(ground.points.size());
+  if (on_it < options.min_points || on_it < options.min_share * static_cast<double>(below.size())) {
+    return std::nullopt;
+  }
+  return ground;
+}
+
+}  // namespace orb360
