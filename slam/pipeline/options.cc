@@ -114,6 +114,12 @@ ConfigSchema MakeConfigSchema(Options* options) {
   schema.Add("scale.height_sigma", &mapper.bundle.height_sigma,
              "standard deviation of the camera's height over the ground, a share of it", 0.001,
              1.0);
+
+  DepthOptions& depth = options->depth;
+  schema.Add("depth.every_keyframes", &depth.every_keyframes,
+             "every so many keyframes get dense depth", 1, 1000);
+  schema.Add("depth.min_points", &depth.min_points,
+             "landmarks that a keyframe must show to be completed", 1, 100000);
   return schema;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "slam/depth/sparse_depth.h"
 #include "slam/features/orb_extractor.h"
 #include "slam/io/config.h"
 #include "slam/pipeline/initializer.h"
@@ -46,6 +47,14 @@ struct ScaleOptions {
   double height() const { return camera_height > 0 ? camera_height : kAssumedHeight; }
 };
 
+struct DepthOptions {
+  SparseDepthOptions sparse;
+  /// Every so many keyframes are completed.
+  int every_keyframes = 1;
+  /// With fewer points there is nothing to complete.
+  int min_points = 50;
+};
+
 /// Every setting of the system, by part.
 struct Options {
   OrbOptions orb;
@@ -55,6 +64,7 @@ struct Options {
   MapperOptions mapper;
   RecoveryOptions recovery;
   ScaleOptions scale;
+  DepthOptions depth;
 };
 
 /// Registers every option under its key in a configuration file. `options` must outlive the schema.

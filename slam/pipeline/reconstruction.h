@@ -62,12 +62,15 @@ struct Reconstruction {
   std::optional<int> initialized_at;  // frame at which the first map was made
   int lost = 0;                       // times tracking was lost after that
   double features_per_keyframe = 0;   // mean number matched to landmarks
+  /// Of the keyframes that were given dense depth, by frame index: units of the result in one unit
+  /// of that depth.
+  std::map<int, double> depth_scales;
   /// Normal of the ground in the world, unit, towards the sky; where one was found.
   std::optional<Eigen::Vector3d> up;
 };
 
-/// Everything but `initialized_at`, `lost` and which maps are metric. Placements are by frame
-/// index.
+/// Everything but `initialized_at`, `lost`, `depth_scales` and which maps are metric. Placements
+/// are by frame index.
 Reconstruction MakeReconstruction(const std::vector<Map>& maps,
                                   const std::map<int, Placement>& placements);
 

@@ -61,6 +61,11 @@ System::System(const EquirectangularCamera& camera, const Options& options, cons
 
 System::~System() = default;
 
+void System::CompleteKeyframes(DepthCompleter* completer, DepthSink sink) {
+  completer_ = completer;
+  depth_sink_ = std::move(sink);
+}
+
 FrameReport System::Process(const Frame& frame) {
   ORB360_CHECK(frame.image.type() == CV_8UC3 && frame.image.cols == camera_.width() &&
                    frame.image.rows == camera_.height(),
@@ -72,6 +77,7 @@ FrameReport System::Process(const Frame& frame) {
   cv::cvtColor(frame.image, gray, cv::COLOR_BGR2GRAY);
   auto features = std::make_shared<Features>(extractor_.Extract(gray, mask_));
   SampleColors(frame.image, features.get());
+  image_ = frame.image;
   report.timing_ms["extraction"] = MillisecondsSince(start);
 
   ++num_processed_;
@@ -111,11 +117,14 @@ FrameReport System::Process(const Frame& frame) {
   return report;
 }
 
-// Threads waiting for one that has no core cost more than they bring: one core is left to mapping.
+// Threads waiting for one that has no core cost more than they bring: one core is left to mapping
+// and depth completion.
 int System::FreeThreads() const {
-  const bool is_mapping =
-      job_ && job_->result.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
-  return is_mapping ? std::max(1, num_threads_ - 1) : num_threads_;
+  const auto is_running = [](const auto& job) {
+    return job.valid() && job.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+  };
+  const bool is_busy = (job_ && is_running(job_->result)) || is_running(completion_);
+  return is_busy ? std::max(1, num_threads_ - 1) : num_threads_;
 }
 
 // --- tracking ---------------------------------------------------------------------------------
@@ -340,17 +349,26 @@ bool System::NeedsKeyframe() const {
 void System::StartMapping() {
   TrackedFrame keyframe = last_;
   for (LandmarkId& id : keyframe.landmarks) id = map_.Resolve(id);
+  std::optional<EquirectangularCamera> completed;  // the picture to be completed
+  cv::Mat color;
+  if (completer_ != nullptr && map_.keyframe_end() % options_.depth.every_keyframes == 0) {
+    completed = completer_->camera();
+    cv::resize(image_, color, {completed->width(), completed->height()}, 0, 0, cv::INTER_AREA);
+  }
   // The map moves into the job and comes back with its result.
-  auto integrate = [map = std::move(map_), keyframe, ground = ground_,
+  auto integrate = [map = std::move(map_), keyframe, ground = ground_, completed,
                     options = options_]() mutable {
     omp_set_num_threads(1);  // the other core goes on tracking
-    IntegrateKeyframe(keyframe, options.mapper, ground, &map);
-    std::optional<KnownGround> seen = LookForGround(map, ground, options.scale);
-    return Mapped{std::move(map), seen};
+    const KeyframeId id = IntegrateKeyframe(keyframe, options.mapper, ground, &map);
+    Mapped mapped;
+    mapped.ground = LookForGround(map, ground, options.scale);
+    if (completed) mapped.sparse = ProjectLandmarks(map, id, *completed, options.depth.sparse);
+    mapped.map = std::move(map);
+    return mapped;
   };
   map_ = Map();
   job_ = MappingJob{std::async(std::launch::async, std::move(integrate)), std::move(keyframe),
-                    num_processed_ + options_.keyframe.mapping_frames};
+                    std::move(color), num_processed_ + options_.keyframe.mapping_frames};
 }
 
 // Depends on frames and matches only, never on whether the job is done: that would make results
@@ -369,6 +387,9 @@ void System::AdoptMapping() {
   // What was tracked meanwhile moves along with the keyframe.
   const Rigid3 correction =
       map_.keyframe(id).world_from_camera * job_->frame.world_from_camera.Inverse();
+  if (!job_->color.empty()) {
+    StartCompletion(job_->frame.index, job_->color, std::move(mapped.sparse));
+  }
   job_.reset();
   last_.world_from_camera = correction * last_.world_from_camera;
   if (before_last_) before_last_->world_from_camera = correction * before_last_->world_from_camera;
@@ -376,6 +397,17 @@ void System::AdoptMapping() {
   CountSightings(&map_);
   if (mapped.ground) FollowGround(*mapped.ground);
   local_ = MakeLocalMap(map_, id, options_.keyframe.local_keyframes);
+}
+
+void System::StartCompletion(int frame_index, const cv::Mat& color,
+                             std::vector<SparsePoint> points) {
+  if (completion_.valid()) completion_.get();
+  if (static_cast<int>(points.size()) < options_.depth.min_points) return;
+  depth_scales_[frame_index] = 1;
+  completion_ = std::async(std::launch::async, [this, frame_index, color, p = std::move(points)] {
+    depth_sink_(frame_index,
+                completer_->Complete(color, RenderSparseDepth(p, completer_->camera())));
+  });
 }
 
 void System::FollowGround(const KnownGround& ground) {
@@ -395,7 +427,10 @@ void System::Rescale(double factor) {
   }
   for (auto& [index, placement] : placements_) {
     const bool is_here = placement.map == static_cast<int>(finished_maps_.size());
-    if (is_here) placement.reference_from_camera.translation *= factor;
+    if (!is_here) continue;
+    placement.reference_from_camera.translation *= factor;
+    const auto depth = depth_scales_.find(index);
+    if (depth != depth_scales_.end()) depth->second *= factor;
   }
 }
 
@@ -435,11 +470,13 @@ void System::UpdateLocalMap() {
 
 Reconstruction System::Finish() {
   if (job_) AdoptMapping();
+  if (completion_.valid()) completion_.get();
   if (initialized_at_) FinishMap();
 
   Reconstruction result = MakeReconstruction(finished_maps_, placements_);
   for (size_t i = 0; i < result.maps.size(); ++i) result.maps[i].is_metric = are_metric_[i];
   result.initialized_at = initialized_at_;
+  result.depth_scales = depth_scales_;
   result.lost = num_lost_;
   return result;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <future>
 #include <map>
 #include <memory>
@@ -10,6 +11,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "slam/depth/depth_completer.h"
 #include "slam/features/orb_extractor.h"
 #include "slam/io/frame_source.h"
 #include "slam/map/map.h"
@@ -52,6 +54,12 @@ class System {
   /// type than 8-bit BGR.
   FrameReport Process(const Frame& frame);
 
+  /// Has keyframes completed, from now on, beside tracking. `sink` gets each one's frame index and
+  /// depth, in the order of the keyframes, one at a time, on other threads; `completer` must
+  /// outlive the system.
+  using DepthSink = std::function<void(int frame_index, DenseDepth depth)>;
+  void CompleteKeyframes(DepthCompleter* completer, DepthSink sink);
+
   /// Waits for mapping and returns everything computed. The system takes no further frames.
   Reconstruction Finish();
 
@@ -66,11 +74,13 @@ class System {
   };
   struct Mapped {
     Map map;
+    std::vector<SparsePoint> sparse;    // of the newest keyframe, where it is to be completed
     std::optional<KnownGround> ground;  // as the newest keyframe sees it
   };
   struct MappingJob {
     std::future<Mapped> result;
     TrackedFrame frame;  // the keyframe as it was tracked
+    cv::Mat color;       // its picture, where it is to be completed
     int adopt_at;        // value of num_processed_ at which it is due
   };
   void TrackFrame(const PendingFrame& frame);
@@ -86,6 +96,7 @@ class System {
   void StartMapping();
   bool MustAdopt() const;
   void AdoptMapping();
+  void StartCompletion(int frame_index, const cv::Mat& color, std::vector<SparsePoint> points);
   void FollowGround(const KnownGround& ground);
   void Rescale(double factor);
   void FinishMap();
@@ -109,6 +120,12 @@ class System {
   int num_lost_ = 0;
   int lost_since_ = 0;
   std::optional<int> initialized_at_;  // frame index
+
+  DepthCompleter* completer_ = nullptr;  // null: no dense depth
+  DepthSink depth_sink_;
+  std::future<void> completion_;        // of at most one keyframe at a time
+  std::map<int, double> depth_scales_;  // see Reconstruction
+  cv::Mat image_;                       // of the frame in Process
 
   Map map_;  // empty while a job has it
   std::optional<MappingJob> job_;

@@ -1,0 +1,57 @@
+#include "slam/depth/depth_completer.h"
+
+#include <span>
+
+#include <opencv2/imgproc.hpp>
+
+#include "nn/base/check.h"
+#include "nn/graph/network_file.h"
+#include "nn/models/depth_completion.h"
+
+namespace orb360 {
+namespace {
+
+nn::ExecutorOptions HowToRun(const DepthCompleterOptions& options) {
+  return {.threads = options.threads,
+          .precision = options.bfloat16 ? nn::DataType::kBFloat16 : nn::DataType::kFloat};
+}
+
+template <typename T>
+std::span<const T> PixelsOf(const cv::Mat& image) {
+  return {image.ptr<T>(), image.total() * static_cast<size_t>(image.channels())};
+}
+
+}  // namespace
+
+struct DepthCompleter::Network {
+  Network(const std::filesystem::path& weights, const DepthCompleterOptions& options)
+      : model(nn::ReadNetwork(weights), {.height = options.width / 2, .width = options.width},
+              HowToRun(options)),
+        workspace(model) {}
+
+  nn::DepthCompletion model;
+  nn::DepthCompletion::Workspace workspace;
+};
+
+DepthCompleter::DepthCompleter(const std::filesystem::path& weights,
+                               const DepthCompleterOptions& options)
+    : camera_(options.width, options.width / 2),
+      network_(std::make_unique<Network>(weights, options)) {}
+
+DepthCompleter::~DepthCompleter() = default;
+
+DenseDepth DepthCompleter::Complete(const cv::Mat& color, const SparseDepth& sparse) {
+  const cv::Size size(camera_.width(), camera_.height());
+  ORB360_CHECK(color.type() == CV_8UC3 && color.size() == size, color.cols, color.rows);
+  ORB360_CHECK(sparse.range.size() == size && sparse.confidence.size() == size);
+  cv::Mat rgb;
+  cv::cvtColor(color, rgb, cv::COLOR_BGR2RGB);
+  nn::DensePicture dense =
+      network_->model.Complete({PixelsOf<unsigned char>(rgb), PixelsOf<float>(sparse.range),
+                                PixelsOf<float>(sparse.confidence)},
+                               &network_->workspace);
+  return {cv::Mat(size, CV_32F, dense.depth.data()).clone(),
+          cv::Mat(size, CV_32F, dense.confidence.data()).clone(), color};
+}
+
+}  // namespace orb360
