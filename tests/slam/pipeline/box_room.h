@@ -31,16 +31,7 @@ class BoxRoom {
     for (int v = 0; v < image.rows; ++v) {
       for (int u = 0; u < image.cols; ++u) {
         const Eigen::Vector3d ray = rotation * camera.Bearing({u + 0.5, v + 0.5});
-        int axis = 0;
-        double range = 1e9;
-        for (int i = 0; i < 3; ++i) {
-          const double wall = ray[i] > 0 ? half_size_[i] : -half_size_[i];
-          const double distance = (wall - center[i]) / ray[i];
-          if (std::abs(ray[i]) > 1e-12 && distance < range) {
-            range = distance;
-            axis = i;
-          }
-        }
+        const auto [range, axis] = Hit(center, ray);
         const Eigen::Vector3d hit = center + range * ray;
         const double footprint = range * pixel / std::abs(ray[axis]);
         const float value = Sample(walls_[2 * axis + (ray[axis] > 0)], hit[(axis + 1) % 3],
@@ -51,7 +42,26 @@ class BoxRoom {
     return image;
   }
 
+  /// Metres from a point inside along a unit vector.
+  double Range(const Eigen::Vector3d& from, const Eigen::Vector3d& ray) const {
+    return Hit(from, ray).range;
+  }
+
  private:
+  struct WallHit {
+    double range;
+    int axis;  // across the wall
+  };
+  WallHit Hit(const Eigen::Vector3d& from, const Eigen::Vector3d& ray) const {
+    WallHit nearest{1e9, 0};
+    for (int i = 0; i < 3; ++i) {
+      const double wall = ray[i] > 0 ? half_size_[i] : -half_size_[i];
+      const double distance = (wall - from[i]) / ray[i];
+      if (std::abs(ray[i]) > 1e-12 && distance < nearest.range) nearest = {distance, i};
+    }
+    return nearest;
+  }
+
   static constexpr double kTexelsPerMetre = 64.0;
   static constexpr int kTextureSize = 1024;  // repeats after 16 m
 

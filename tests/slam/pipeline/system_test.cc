@@ -1,6 +1,9 @@
 #include "slam/pipeline/system.h"
 
+#include <algorithm>
 #include <cstring>
+#include <filesystem>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -8,6 +11,8 @@
 
 #include "nn/base/check.h"
 #include "slam/geometry/alignment.h"
+#include "tests/nn/graph/network_builder.h"
+#include "tests/slam/io/temp_folder.h"
 #include "tests/slam/pipeline/box_room.h"
 
 namespace orb360 {
@@ -133,6 +138,87 @@ TEST(SystemSlow, GivesTheSameBytesForAnyNumberOfThreadsAndEveryTime) {
   ExpectSame(two, one);
   ExpectSame(two, three);
   ExpectSame(two, Track(room, frames));
+}
+
+// Spreads depth to the pixels around each point, and the median everywhere else.
+std::filesystem::path WritePropagation(const TempFolder& folder) {
+  nn::NetworkBuilder net(8);
+  net.Input("depth", 1);
+  net.Input("confidence", 1);
+  net.Node("points", "median_log", {"depth", "confidence"}, nlohmann::json::object(), 3);
+  net.NormalizedConvolution("mean", "points", "points.1", 1, 1, 3);
+  net.weights[1].values = {0};
+  net.Output("log_depth", "mean");
+  net.Output("confidence", "mean.1");
+  net.Output("scale", "points.2");
+  const std::filesystem::path path = folder / "propagation.h5";
+  net.Write(path);
+  return path;
+}
+
+struct Completed {
+  Reconstruction result;
+  std::vector<std::pair<int, DenseDepth>> depths;  // by frame index, in the order they came
+};
+
+Completed TrackAndComplete(const BoxRoom& room, const std::vector<double>& frames) {
+  const TempFolder folder;
+  DepthCompleter completer(WritePropagation(folder), {.width = 256});
+  System system(kCamera, SmallOptions(), {});
+  Completed completed;
+  system.CompleteKeyframes(&completer, [&](int frame_index, DenseDepth depth) {
+    completed.depths.emplace_back(frame_index, std::move(depth));
+  });
+  for (size_t i = 0; i < frames.size(); ++i) {
+    system.Process(MakeFrame(static_cast<int>(i), room.Render(kCamera, TruePose(frames[i]))));
+  }
+  completed.result = system.Finish();
+  return completed;
+}
+
+TEST(SystemSlow, CompletesKeyframesInMetresBesideTracking) {
+  const BoxRoom room = Hall();
+  const std::vector<double> frames = Count(60);
+  const auto [result, depths] = TrackAndComplete(room, frames);
+  ExpectSame(result, Track(room, frames));  // nothing is taken from completion yet
+  ASSERT_GE(depths.size(), 5u);
+  const EquirectangularCamera camera(256, 128);
+  for (size_t i = 0; i < depths.size(); ++i) {
+    const auto& [frame_index, depth] = depths[i];
+    if (i > 0) {
+      EXPECT_GT(frame_index, depths[i - 1].first);
+    }
+    ASSERT_TRUE(result.depth_scales.contains(frame_index));
+    const double scale = result.depth_scales.at(frame_index);
+    const Rigid3 pose = TruePose(frame_index);
+    std::vector<double> errors;
+    for (int y = 0; y < depth.range.rows; ++y) {
+      for (int x = 0; x < depth.range.cols; ++x) {
+        if (!(depth.confidence.at<float>(y, x) > 0)) continue;  // no point near
+        const double truth =
+            room.Range(pose.translation, pose.rotation * camera.Bearing({x + 0.5, y + 0.5}));
+        errors.push_back(std::abs(std::log(scale * depth.range.at<float>(y, x) / truth)));
+      }
+    }
+    ASSERT_GT(errors.size(), 500u);
+    std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
+    EXPECT_LT(errors[errors.size() / 2], 0.05) << frame_index;
+  }
+}
+
+TEST(SystemSlow, CompletesTheSameForAnyNumberOfThreads) {
+  const BoxRoom room = Hall();
+  const std::vector<double> frames = Count(40);
+  const Completed two = TrackAndComplete(room, frames);
+  omp_set_num_threads(1);
+  const Completed one = TrackAndComplete(room, frames);
+  omp_set_num_threads(2);
+  ASSERT_EQ(two.depths.size(), one.depths.size());
+  for (size_t i = 0; i < two.depths.size(); ++i) {
+    EXPECT_EQ(two.depths[i].first, one.depths[i].first);
+    EXPECT_EQ(cv::norm(two.depths[i].second.range, one.depths[i].second.range, cv::NORM_INF), 0);
+    EXPECT_EQ(cv::norm(two.depths[i].second.color, one.depths[i].second.color, cv::NORM_INF), 0);
+  }
 }
 
 TEST(SystemSlow, TracksAtSixFramesASecond) {
