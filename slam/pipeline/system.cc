@@ -436,7 +436,7 @@ void System::Rescale(double factor) {
 
 void System::FinishMap() {
   finished_maps_.push_back(std::move(map_));
-  are_metric_.push_back(ground_.has_value());
+  grounds_.push_back(ground_);
   map_ = Map();
   ground_.reset();
 }
@@ -474,7 +474,11 @@ Reconstruction System::Finish() {
   if (initialized_at_) FinishMap();
 
   Reconstruction result = MakeReconstruction(finished_maps_, placements_);
-  for (size_t i = 0; i < result.maps.size(); ++i) result.maps[i].is_metric = are_metric_[i];
+  for (size_t i = 0; i < result.maps.size(); ++i) {
+    result.maps[i].is_metric = grounds_[i].has_value();
+  }
+  // Better the ground of another place than none.
+  if (!result.up && !grounds_.empty() && grounds_.front()) result.up = grounds_.front()->up;
   result.initialized_at = initialized_at_;
   result.depth_scales = depth_scales_;
   result.lost = num_lost_;

@@ -130,7 +130,7 @@ class System {
   Map map_;  // empty while a job has it
   std::optional<MappingJob> job_;
   std::vector<Map> finished_maps_;
-  std::vector<bool> are_metric_;  // by finished map
+  std::vector<std::optional<KnownGround>> grounds_;  // of the finished maps
   /// Once it is found, the map is in metres.
   std::optional<KnownGround> ground_;
   LocalMap local_;
