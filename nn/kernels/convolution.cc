@@ -23,14 +23,15 @@ constexpr int kFewestWinogradChannels = kBlock;
 
 // Output rows that are computed in one go, group of channels after group: the input they read
 // stays in half of a second-level cache of 1 MiB meanwhile (the other half is for the weights), and
-// every thread gets several goes, to even out what disturbs them.
+// every thread gets several goes, to even out what disturbs them. In bfloat16 fewer: a go reads all
+// weights, which takes as long there as multiplying a row or two.
 int RowsInBand(const ConvolutionSpec& spec, const TensorView& input, int rows, int threads) {
   const std::size_t row_bytes = static_cast<std::size_t>(input.row_stride) * input.planes() *
                                 SizeOf(input.type) * spec.stride;
   constexpr std::size_t kInputBytes = std::size_t{512} << 10;
-  constexpr int kBandsPerThread = 8;
+  const int bands_per_thread = spec.type == DataType::kFloat ? 8 : 2;
   const int fitting = static_cast<int>(std::min<std::size_t>(rows, kInputBytes / row_bytes));
-  return std::max(1, std::min(fitting, rows / (threads * kBandsPerThread)));
+  return std::max(1, std::min(fitting, rows / (threads * bands_per_thread)));
 }
 
 AlignedVector<float> PackDirect(const ConvolutionSpec& spec, std::span<const float> weight,
