@@ -123,8 +123,10 @@ class Builder:
         self.node("convolution", [x], [linear], layer, stride=stride, padding=self.padding)
         return self.activation(name, linear, slope)
 
-    def dense(self, name: str, x: Symbol, outputs: int, slope: float = 1.0) -> Symbol:
-        layer = self.layer(Layer(name, (outputs, x.channels), False, slope))
+    def dense(
+        self, name: str, x: Symbol, outputs: int, slope: float = 1.0, gain: float = 1.0
+    ) -> Symbol:
+        layer = self.layer(Layer(name, (outputs, x.channels), False, slope, gain))
         linear = Symbol(_before_activation(name, slope), outputs, None)
         self.node("dense", [x], [linear], layer)
         return self.activation(name, linear, slope)
@@ -208,7 +210,7 @@ class Builder:
         self.node("latitude_sine", [x], [result])
         return result
 
-    def build(self, outputs: dict[str, Symbol], normalisation: dict[str, str]) -> "Description":
+    def build(self, outputs: dict[str, Symbol], normalisation: dict[str, Any]) -> "Description":
         graph = Graph(
             name=self.name,
             size_multiple=self.size_multiple,

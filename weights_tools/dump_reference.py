@@ -2,6 +2,7 @@
 
     python3 -m weights_tools.dump_reference                   # into tests/nn/data
     python3 -m weights_tools.dump_reference --full --out DIR  # networks too large to be kept
+    python3 -m weights_tools.dump_reference --networks weights/*.h5 --out DIR  # from files
 
 Each file is a network file whose group /tensors holds inputs and results, of large tensors the
 first channels. They are computed in double precision and without oneDNN from the weights as they
@@ -15,7 +16,7 @@ import numpy as np
 import torch
 
 from weights_tools import network_file
-from weights_tools.reference_cases import Arrays, Reference, full_networks, references
+from weights_tools.reference_cases import Arrays, Reference, full_networks, references, stored
 
 DATA = Path(__file__).resolve().parent.parent / "tests/nn/data"
 
@@ -63,11 +64,19 @@ def main() -> None:
     parser.add_argument(
         "--full", action="store_true", help="the networks with all their channels, outputs only"
     )
+    parser.add_argument("--networks", type=Path, nargs="+", help="these files, outputs only")
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
     torch.set_num_threads(1)  # sums in one order
-    for reference in full_networks() if arguments.full else references():
-        path = dump(reference, arguments.out, outputs_only=arguments.full)
+    outputs_only = True
+    if arguments.networks:
+        chosen = [stored(path) for path in arguments.networks]
+    elif arguments.full:
+        chosen = full_networks()
+    else:
+        chosen, outputs_only = references(), False
+    for reference in chosen:
+        path = dump(reference, arguments.out, outputs_only)
         print(f"{path}: {path.stat().st_size} bytes")
 
 

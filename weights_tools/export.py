@@ -12,6 +12,7 @@ import torch
 from weights_tools import network_file
 from weights_tools.network import Network
 from weights_tools.networks import NETWORKS
+from weights_tools.training.train import checkpoint_network
 
 
 def export(
@@ -19,19 +20,24 @@ def export(
     network: Network,
     provenance: Mapping[str, Any],
     dtype: type[np.floating] = np.float32,
+    width: int | None = None,
 ) -> None:
-    """Writes a network and its weights; `provenance` says where they come from."""
+    """Writes a network and its weights; `provenance` says where they come from, `width` which
+    pictures it expects: `nn` resamples others."""
     graph = dataclasses.replace(network.description.graph, provenance=dict(provenance))
+    if width:
+        graph.normalisation["width"] = width
     weights = {name: value.detach().cpu().numpy() for name, value in network.weights().items()}
     network_file.write(path, graph, weights, dtype)
 
 
-def trained(checkpoint: Path) -> tuple[Network, dict[str, Any]]:
-    """The network of a checkpoint of weights_tools.training.train, and its provenance."""
+def trained(checkpoint: Path) -> tuple[Network, dict[str, Any], int]:
+    """The network of a checkpoint of weights_tools.training.train, its provenance, and the width of
+    the pictures that it was trained on."""
     state = torch.load(checkpoint, map_location="cpu")
-    network = Network(NETWORKS[state["settings"]["network"]]())
-    network.load_state_dict(state["network"])
-    return network, {"steps": state["step"], **state["settings"], "shards": state["shards"]}
+    network = checkpoint_network(state)
+    own = {"steps_done": state["step"], **state["settings"], "shards": state["shards"]}
+    return network, {**own, "earlier": state["stages"]}, state["width"]
 
 
 def untrained(name: str, seed: int) -> tuple[Network, dict[str, Any]]:
@@ -47,11 +53,13 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0, help="of untrained weights (default: 0)")
     parser.add_argument("--half", action="store_true", help="store weights as 16-bit floats")
     arguments = parser.parse_args()
+    width = None
     if arguments.checkpoint:
-        network, provenance = trained(arguments.checkpoint)
+        network, provenance, width = trained(arguments.checkpoint)
     else:
         network, provenance = untrained(arguments.untrained, arguments.seed)
-    export(arguments.out, network, provenance, np.float16 if arguments.half else np.float32)
+    dtype = np.float16 if arguments.half else np.float32
+    export(arguments.out, network, provenance, dtype, width)
 
 
 if __name__ == "__main__":

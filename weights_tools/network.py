@@ -16,11 +16,23 @@ SOFTPLUS_BETA = 10.0
 
 
 class Network(nn.Module):
-    """Parameters are named layers.LAYER.weight and layers.LAYER.bias."""
+    """Parameters are named layers.LAYER.weight and layers.LAYER.bias.
 
-    def __init__(self, description: Description, seed: int = 0) -> None:
+    With `normalizes`, batches are normalized behind 3 x 3 convolutions while it is trained
+    (Ioffe and Szegedy, "Batch Normalization"); otherwise, and in files, that is part of the weights.
+    """
+
+    def __init__(self, description: Description, seed: int = 0, normalizes: bool = False) -> None:
         super().__init__()
         self.description = description
+        self.normalizations = nn.ModuleDict(
+            {
+                layer.name: nn.BatchNorm2d(layer.outputs, momentum=0.05)
+                for layer in description.layers
+                if normalizes and layer.shape[2:] == (3, 3) and layer.outputs > 1
+                and not layer.is_normalized
+            }
+        )
         self.layers = nn.ModuleDict(
             {layer.name: nn.ParameterDict() for layer in description.layers}
         )
@@ -41,20 +53,36 @@ class Network(nn.Module):
             self.layers[layer.name]["weight"] = nn.Parameter(weight.clone())
             self.layers[layer.name]["bias"] = nn.Parameter(bias.clone())
 
+    @property
+    def knows_any_unit(self) -> bool:
+        """Whether the unit of its input does not matter; otherwise it must be metres."""
+        return any(port["name"] == "log_depth" for port in self.description.graph.outputs)
+
+    def fix_propagation(self) -> None:
+        """Leaves normalized convolutions as they are in training."""
+        for layer in self.description.layers:
+            self.layers[layer.name].requires_grad_(not layer.is_normalized)
+
     def weights(self) -> dict[str, Tensor]:
         """Weights as operations take them and files hold them."""
         result = {}
         for layer in self.description.layers:
-            weight = self.layers[layer.name]["weight"]
+            weight, bias = (self.layers[layer.name][role] for role in ("weight", "bias"))
             if layer.is_normalized:
                 weight = F.softplus(weight, beta=SOFTPLUS_BETA)
+            if layer.name in self.normalizations and not self.training:
+                norm = self.normalizations[layer.name]
+                factor = norm.weight * (norm.running_var + norm.eps).rsqrt()
+                weight = weight * factor[:, None, None, None]
+                bias = (bias - norm.running_mean) * factor + norm.bias
             result[f"{layer.name}.weight"] = weight
-            result[f"{layer.name}.bias"] = self.layers[layer.name]["bias"]
+            result[f"{layer.name}.bias"] = bias
         return result
 
-    def tensors(self, inputs: Mapping[str, Tensor]) -> dict[str, Tensor]:
+    def tensors(self, inputs: Mapping[str, Tensor], bfloat16: bool = False) -> dict[str, Tensor]:
         """What every node writes, by name."""
-        return run(self.description.graph, self.weights(), inputs)
+        behind = self.normalizations if self.training else {}
+        return run(self.description.graph, self.weights(), inputs, bfloat16, behind)
 
     def forward(self, inputs: Mapping[str, Tensor]) -> dict[str, Tensor]:
         tensors = self.tensors(inputs)

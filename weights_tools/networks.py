@@ -17,6 +17,7 @@ LOG_DEPTH = {
     "scale": "median of the given depths",
     "error": "1 / confidence - 1 is the mean error of log_depth that is to be expected",
     "log_metric_scale": "ln of scale in heights of the camera",
+    "ground": "probability of the road's plane under the camera",
 }
 
 
@@ -115,27 +116,45 @@ def depth_completion(
     x = _decode(b, encoded)
 
     x = b.convolution("head1", x, x.channels, slope=_LEAK)
-    # Small at first: the propagated depth is a good start.
-    heads = b.convolution("head2", x, 2 + 36, size=1, gain=0.1)
-    bounded = b.pointwise("tanh", "residual.tanh", b.slice("residual.raw", heads, 0, 1))
-    residual = b.pointwise("affine", "residual", bounded, scale=2.0, offset=0.0)
-    coarse = b.pointwise("add", "coarse", b.average_pool("propagated.half", propagated.x), residual)
-    log_depth = b.convex_upsample("log_depth", coarse, b.slice("shares", heads, 2, 36))
-    odds = b.upsample_bilinear("confidence.log_odds", b.slice("confidence.half", heads, 1, 1))
-    confidence = b.pointwise("sigmoid", "completed.c", odds)
+    heads = b.convolution("head2", x, 4 + 36, size=1, gain=_SMALL)
+    # A depth of its own and how far to trust the propagated one instead: a sum of both would have
+    # to undo, number by number, what propagation gets wrong.
+    own, trust = b.slice("own", heads, 0, 1), b.slice("trust.odds", heads, 1, 1)
+    against = b.pointwise("affine", "own.negative", own, scale=-1.0, offset=0.0)
+    other = b.average_pool("propagated.half", propagated.x)
+    other = b.pointwise("add", "propagated.more", other, against)
+    other = b.pointwise("multiply", "trusted", other, b.pointwise("sigmoid", "trust", trust))
+    coarse = b.pointwise("add", "coarse", own, other)
+    log_depth = b.convex_upsample("log_depth", coarse, b.slice("shares", heads, 4, 36))
+    odds = b.upsample_bilinear("log_odds", b.slice("log_odds.half", heads, 2, 2))
+    likely = b.pointwise("sigmoid", "likely", odds)
+    confidence, ground = b.slice("completed.c", likely, 0, 1), b.slice("ground", likely, 1, 1)
 
     x = b.global_average_pool("global.mean", encoded[-1])
-    log_metric_scale = b.dense("global2", b.dense("global1", x, hidden, slope=_LEAK), 1)
+    x = b.dense("global1", x, hidden, slope=_LEAK)
+    log_metric_scale = b.dense("global2", x, 1, gain=_SMALL)
     outputs = {
         "log_depth": log_depth,
         "confidence": confidence,
         "scale": scale,
         "log_metric_scale": log_metric_scale,
+        "ground": ground,
     }
     return b.build(outputs, LOG_DEPTH)
 
 
+def propagation(padding: str = "wrap_replicate") -> Description:
+    """The part of depth_completion that sees no picture."""
+    b = Builder("panoramic confidence propagation", 64, padding)
+    points, scale = b.median_log("points", b.input("depth", 1), b.input("confidence", 1))
+    pair = _propagate(b, points)
+    return b.build({"log_depth": pair.x, "confidence": pair.c, "scale": scale}, LOG_DEPTH)
+
+
 _LEAK = 0.1  # slope of the activations below zero
+# Gain of what is added to something else, before training: sums then keep the size of their parts,
+# and with it the gradient. With 1 its norm was 90 at first, and training hardly got anywhere.
+_SMALL = 0.1
 _LEVELS = 7  # fewer leave pixels of a panorama that see none of SLAM's points
 
 
@@ -164,14 +183,21 @@ def _propagate(b: Builder, points: Pair) -> Pair:
 
 
 def _features(b: Builder, propagated: Pair, image: Symbol) -> Symbol:
-    """[z, 1 + log10(c) / 8 within 0 and 1, R, G, B, sin(latitude)]."""
+    """[z, 1 + log10(c) / 8 within 0 and 1, R, G, B, sin(latitude), ln(-sin(latitude))].
+
+    Level ground at latitude l lies at camera height / -sin(l): but for a number that is the same
+    everywhere, the last channel is the logarithm of its range. It ends one degree below the horizon.
+    """
     decades, ln_10 = 8, 2.302585092994046
     # Clamped before the logarithm, which then is finite and has a derivative.
     c = b.pointwise("clamp", "certainty.clamped", propagated.c, minimum=10.0**-decades, maximum=1.0)
     c = b.pointwise("log", "certainty.log", c)
     certainty = b.pointwise("affine", "certainty", c, scale=1 / (decades * ln_10), offset=1.0)
     latitude = b.latitude_sine("latitude", propagated.x)
-    return b.concatenate("features", propagated.x, certainty, image, latitude)
+    down = b.pointwise("affine", "down", latitude, scale=-1.0, offset=0.0)
+    down = b.pointwise("clamp", "down.clamped", down, minimum=0.0175, maximum=1.0)
+    level = b.pointwise("log", "level", down)
+    return b.concatenate("features", propagated.x, certainty, image, latitude, level)
 
 
 def _encode(b: Builder, x: Symbol, widths: Sequence[int]) -> list[Symbol]:
@@ -187,7 +213,7 @@ def _encode(b: Builder, x: Symbol, widths: Sequence[int]) -> list[Symbol]:
 
 def _residual_block(b: Builder, name: str, x: Symbol) -> Symbol:
     inner = b.convolution(f"{name}_first", x, x.channels, slope=_LEAK)
-    inner = b.convolution(f"{name}_second", inner, x.channels)
+    inner = b.convolution(f"{name}_second", inner, x.channels, gain=_SMALL)
     return b.activation(name, b.pointwise("add", f"{name}.sum", x, inner), _LEAK)
 
 
@@ -195,7 +221,7 @@ def _decode(b: Builder, encoded: Sequence[Symbol]) -> Symbol:
     """Up again, adding what was there on the way down, to half the picture's size."""
     x = encoded[-1]
     for i, skip in reversed(list(enumerate(encoded[:-1], 1))):
-        lateral = b.convolution(f"lateral{i}", x, skip.channels, size=1)
+        lateral = b.convolution(f"lateral{i}", x, skip.channels, size=1, gain=_SMALL)
         up = b.upsample_bilinear(f"lateral{i}.up", lateral)
         x = b.pointwise("add", f"decoder{i}.sum", skip, up)
         x = b.convolution(f"decoder{i}", x, x.channels, slope=_LEAK)
@@ -207,4 +233,5 @@ NETWORKS: dict[str, Callable[[], Description]] = {
     "encoder_decoder": encoder_decoder,
     "multi_stream": multi_stream,
     "depth_completion": depth_completion,
+    "propagation": propagation,
 }

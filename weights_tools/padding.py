@@ -1,5 +1,7 @@
 """What stands around a picture when an operation reaches over its edge (docs/networks.md)."""
 
+from typing import Any
+
 import torch
 import torch.nn.functional as F
 from torch import Tensor
@@ -7,13 +9,53 @@ from torch import Tensor
 
 def pad(x: Tensor, width: int, padding: str) -> Tensor:
     """Adds `width` pixels on each side of x, N x C x H x W."""
+    if width == 0:
+        return x
     if padding == "zero":
         return F.pad(x, (width, width, width, width))
     if padding == "wrap_replicate":
+        if width <= x.shape[-1]:
+            return _WrapReplicate.apply(x, width)
         return _wrap_columns(F.pad(x, (0, 0, width, width), mode="replicate"), width)
     if padding == "wrap_cross_pole":
         return _wrap_columns(_cross_poles(x, width), width)
     raise ValueError(f'padding "{padding}" is none of zero, wrap_replicate, wrap_cross_pole')
+
+
+class _WrapReplicate(torch.autograd.Function):
+    """The same in one pass, and in any data type: training spends much of its time here."""
+
+    @staticmethod
+    def forward(ctx: Any, x: Tensor, width: int) -> Tensor:
+        ctx.width = width
+        n, channels, height, columns = x.shape
+        size = (n, height + 2 * width, columns + 2 * width, channels)
+        if x.is_contiguous():
+            y = x.new_empty((n, channels, *size[1:3]))
+        else:
+            y = x.new_empty(size).permute(0, 3, 1, 2)
+        rows = y[:, :, width:-width]
+        rows[..., width:-width] = x
+        rows[..., :width] = x[..., columns - width :]
+        rows[..., -width:] = x[..., :width]
+        y[:, :, :width] = rows[:, :, :1]
+        y[:, :, -width:] = rows[:, :, -1:]
+        return y
+
+    @staticmethod
+    def backward(ctx: Any, gradient: Tensor) -> tuple[Tensor, None]:
+        width = ctx.width
+
+        def unwrap(rows: Tensor) -> Tensor:
+            inner = rows[..., width:-width].clone(memory_format=torch.preserve_format)
+            inner[..., :width] += rows[..., -width:]
+            inner[..., -width:] += rows[..., :width]
+            return inner
+
+        result = unwrap(gradient[:, :, width:-width])
+        result[:, :, :1] += unwrap(gradient[:, :, :width].sum(dim=2, keepdim=True))
+        result[:, :, -1:] += unwrap(gradient[:, :, -width:].sum(dim=2, keepdim=True))
+        return result, None
 
 
 def _wrap_columns(x: Tensor, width: int) -> Tensor:

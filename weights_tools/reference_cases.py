@@ -2,10 +2,11 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
-from weights_tools import networks
+from weights_tools import network_file, networks
 from weights_tools.builder import Builder, Description, Layer, Pair, Symbol
 from weights_tools.graph import Graph
 from weights_tools.network import initial_weights
@@ -60,15 +61,7 @@ _NARROW = (6, 9, 12, 17, 20)  # channels that fill no block of 16
 
 def network(name: str, description: Description, size: tuple[int, int]) -> Reference:
     """A network on a panorama with 5 % of its depths, and on one without any."""
-    random = np.random.RandomState(len(name))
-    known = random.uniform(size=(1, *size)) < 0.05
-    inputs = {
-        # As pictures have them, and cameras: whole numbers, which compress well.
-        "image": random.randint(0, 256, (3, *size)) / 255,
-        "depth": known * random.randint(256, 80 * 256, known.shape) / 256,
-        "confidence": known * random.randint(1, 256, known.shape) / 255,
-    }
-    inputs = {port["name"]: inputs[port["name"]] for port in description.graph.inputs}
+    inputs = _panorama_inputs(description.graph, size, 0.05, len(name))
     none = {**inputs, "depth": 0 * inputs["depth"], "confidence": 0 * inputs["confidence"]}
     label = f"{size[0]}x{size[1]}"
     return Reference(
@@ -78,6 +71,27 @@ def network(name: str, description: Description, size: tuple[int, int]) -> Refer
         {label: inputs, f"{label}_no_points": none},
         np.float16,
     )
+
+
+def stored(path: Path) -> Reference:
+    """A network file on a panorama with as many depths as SLAM has."""
+    graph, weights = network_file.read(path)
+    size = (256, 512)
+    inputs = _panorama_inputs(graph, size, 0.006, seed=0)
+    dtype = next(iter(weights.values())).dtype.type
+    return Reference(path.stem, graph, weights, {f"{size[0]}x{size[1]}": inputs}, dtype)
+
+
+def _panorama_inputs(graph: Graph, size: tuple[int, int], share: float, seed: int) -> Arrays:
+    random = np.random.RandomState(seed)
+    known = random.uniform(size=(1, *size)) < share
+    inputs = {
+        # As pictures have them, and cameras: whole numbers, which compress well.
+        "image": random.randint(0, 256, (3, *size)) / 255,
+        "depth": known * random.randint(256, 80 * 256, known.shape) / 256,
+        "confidence": known * random.randint(1, 256, known.shape) / 255,
+    }
+    return {port["name"]: inputs[port["name"]] for port in graph.inputs}
 
 
 @dataclass(frozen=True)

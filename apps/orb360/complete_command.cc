@@ -1,17 +1,21 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "apps/orb360/commands.h"
 #include "nn/base/check.h"
 #include "nn/graph/network_file.h"
+#include "nn/models/default_weights.h"
 #include "nn/models/depth_completion.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/depth_image.h"
@@ -28,6 +32,7 @@ struct CompleteOptions {
   std::string out;
   int threads = 0;  // 0: as many as the machine has
   bool uses_bfloat16 = false;
+  bool json = false;
 };
 
 /// Ranges with their confidence, CV_32F; the picture they belong to where the file has it.
@@ -59,17 +64,19 @@ std::string ToText(const cv::Size& size) {
   return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
-std::filesystem::path ConfidencePath(const std::filesystem::path& depth) {
+/// "DIR/NAME_WHAT.png" for "DIR/NAME.png".
+std::filesystem::path Beside(const std::filesystem::path& depth, const char* what) {
   std::filesystem::path name = depth.stem();
-  name += "_confidence.png";
+  name += what;
+  name += ".png";
   return depth.parent_path() / name;
 }
 
-/// 16-bit PNG of confidence * 65535.
-void WriteConfidenceImage(const std::filesystem::path& path, const cv::Mat& confidence) {
+/// 16-bit PNG of what lies between 0 and 1, times 65535.
+void WriteShareImage(const std::filesystem::path& path, const cv::Mat& share) {
   constexpr double kOne = 65535;
   cv::Mat units;
-  confidence.convertTo(units, CV_16U, kOne);  // rounds, and keeps what is outside 0..1 inside
+  share.convertTo(units, CV_16U, kOne);  // rounds, and keeps what is outside 0..1 inside
   std::vector<unsigned char> png;
   cv::imencode(".png", units, png);
   WriteFileAtomically(path, {reinterpret_cast<const char*>(png.data()), png.size()});
@@ -81,35 +88,114 @@ std::span<const T> PixelsOf(const cv::Mat& image) {
   return {image.ptr<T>(), image.total() * static_cast<std::size_t>(image.channels())};
 }
 
-int Complete(const CompleteOptions& options) {
-  const SparseInput sparse = ReadSparse(options.sparse);
+/// The network, made ready for pictures of one size after the other.
+class Completer {
+ public:
+  explicit Completer(const CompleteOptions& options)
+      : graph_(nn::ReadNetwork(options.weights)), options_(options) {}
+
+  nn::DensePicture Complete(const cv::Mat& image, const SparseDepth& sparse) {
+    const nn::PictureSize size{image.rows, image.cols};
+    if (!model_ || model_->size() != size) Prepare(size);
+    cv::Mat rgb;
+    cv::cvtColor(image, rgb, cv::COLOR_BGR2RGB);
+    return model_->Complete({PixelsOf<unsigned char>(rgb), PixelsOf<float>(sparse.range),
+                             PixelsOf<float>(sparse.confidence)},
+                            &*workspace_);
+  }
+
+ private:
+  void Prepare(nn::PictureSize size) {
+    const int threads = options_.threads > 0
+                            ? options_.threads
+                            : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    const auto precision = options_.uses_bfloat16 ? nn::DataType::kBFloat16 : nn::DataType::kFloat;
+    workspace_.reset();
+    model_.emplace(graph_, size, nn::ExecutorOptions{.threads = threads, .precision = precision});
+    workspace_.emplace(*model_);
+  }
+
+  nn::Graph graph_;
+  CompleteOptions options_;
+  std::optional<nn::DepthCompletion> model_;
+  std::optional<nn::DepthCompletion::Workspace> workspace_;
+};
+
+/// Completes one sparse input and writes the result to `out`; gives what is told about it.
+nlohmann::json CompleteOne(const CompleteOptions& options, const std::filesystem::path& sparse_path,
+                           const std::filesystem::path& out, Completer* completer) {
+  const SparseInput sparse = ReadSparse(sparse_path);
   if (options.image.empty() && sparse.image.empty()) {
-    throw UserError(options.sparse + ": has no picture; give one with --image");
+    throw UserError(sparse_path.string() + ": has no picture; give one with --image");
   }
   const cv::Mat image = options.image.empty() ? sparse.image : ReadPicture(options.image);
   const cv::Size size = image.size();
   if (sparse.depth.range.size() != size) {
-    throw UserError(options.sparse + ": is " + ToText(sparse.depth.range.size()) +
+    throw UserError(sparse_path.string() + ": is " + ToText(sparse.depth.range.size()) +
                     ", but the image is " + ToText(size) + "; both must have one size");
   }
-  const int threads = options.threads > 0
-                          ? options.threads
-                          : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  const nn::DepthCompletion model(
-      nn::ReadNetwork(options.weights), {size.height, size.width},
-      {.threads = threads,
-       .precision = options.uses_bfloat16 ? nn::DataType::kBFloat16 : nn::DataType::kFloat});
-  nn::DepthCompletion::Workspace workspace(model);
-  cv::Mat rgb;
-  cv::cvtColor(image, rgb, cv::COLOR_BGR2RGB);
-  nn::DensePicture dense =
-      model.Complete({PixelsOf<unsigned char>(rgb), PixelsOf<float>(sparse.depth.range),
-                      PixelsOf<float>(sparse.depth.confidence)},
-                     &workspace);
-  const std::filesystem::path confidence = ConfidencePath(options.out);
-  WriteDepthImage(options.out, cv::Mat(size, CV_32F, dense.depth.data()));
-  WriteConfidenceImage(confidence, cv::Mat(size, CV_32F, dense.confidence.data()));
-  std::cout << "wrote " << options.out << " and " << confidence.string() << '\n';
+  nn::DensePicture dense = completer->Complete(image, sparse.depth);
+  const auto write_share = [&](const char* what, std::vector<float>* share) {
+    const std::filesystem::path path = Beside(out, what);
+    WriteShareImage(path, cv::Mat(size, CV_32F, share->data()));
+    return path.string();
+  };
+  WriteDepthImage(out, cv::Mat(size, CV_32F, dense.depth.data()));
+  nlohmann::json result = {{"sparse", sparse_path.string()},
+                           {"depth", out.string()},
+                           {"confidence", write_share("_confidence", &dense.confidence)}};
+  if (!dense.ground.empty()) result["ground"] = write_share("_ground", &dense.ground);
+  if (dense.log_metric_scale) {
+    result["camera_heights_per_unit"] = std::exp(*dense.log_metric_scale) / dense.scale;
+  }
+  return result;
+}
+
+/// The files of `run --save-sparse` in a folder, by name.
+std::vector<std::filesystem::path> SparseFiles(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".h5") files.push_back(entry.path());
+  }
+  if (files.empty()) {
+    throw UserError(folder.string() + ": has no .h5 file as `orb360 run --save-sparse` writes it");
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+int Complete(const CompleteOptions& options) {
+  const bool is_folder = std::filesystem::is_directory(options.sparse);
+  if (is_folder && !options.image.empty()) {
+    throw UserError("--image is for one file: those of a folder have pictures of their own");
+  }
+  Completer completer(options);
+  nlohmann::json results = nlohmann::json::array();
+  if (is_folder) {
+    const std::filesystem::path out = options.out;
+    std::error_code error;
+    std::filesystem::create_directories(out, error);
+    if (error) throw UserError(options.out + ": cannot be created: " + error.message());
+    for (const std::filesystem::path& path : SparseFiles(options.sparse)) {
+      std::filesystem::path name = path.stem();
+      name += ".png";
+      results.push_back(CompleteOne(options, path, out / name, &completer));
+    }
+  } else {
+    results.push_back(CompleteOne(options, options.sparse, options.out, &completer));
+  }
+  if (options.json) {
+    std::cout << results.dump(2) << '\n';
+    return EXIT_SUCCESS;
+  }
+  for (const nlohmann::json& result : results) {
+    std::cout << "wrote " << result["depth"].get<std::string>() << " and "
+              << result["confidence"].get<std::string>();
+    if (result.contains("ground")) {
+      std::cout << " and " << result["ground"].get<std::string>();
+    }
+    std::cout << '\n';
+  }
   return EXIT_SUCCESS;
 }
 
@@ -123,20 +209,31 @@ void AddCompleteCommand(CLI::App* app, Command* chosen) {
                       "Panorama; may be left out where --sparse contains it");
   command
       ->add_option("--sparse", options->sparse,
-                   "16-bit PNG of metres * 256, 0 for none, or HDF5 of `run --save-sparse`")
+                   "16-bit PNG of metres * 256, 0 for none, or HDF5 of `run --save-sparse`; or a "
+                   "folder of such HDF5 files, which are all completed")
       ->required();
-  command->add_option("--weights", options->weights, "Network")->required();
+  command->add_option("--weights", options->weights,
+                      "Network [the one that comes with the program]");
   command
       ->add_option("--out", options->out,
-                   "Depth as PNG of metres * 256; the confidence goes beside it as "
-                   "NAME_confidence.png, times 65535")
+                   "Depth as PNG of metres * 256; beside it go the confidence as "
+                   "NAME_confidence.png and the probability of the ground as NAME_ground.png, both "
+                   "times 65535; for a folder, a folder")
       ->required();
+  command->add_flag("--json", options->json,
+                    "Print what was written, and the heights of the camera that the network takes "
+                    "a unit of the depth for");
   command->add_option("--threads", options->threads, "0: as many as the machine has")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   command->add_flag("--bfloat16", options->uses_bfloat16,
                     "Convolve in bfloat16: faster and less exact, on processors that have it");
-  command->callback([options, chosen] { *chosen = [options] { return Complete(*options); }; });
+  command->callback([options, chosen] {
+    *chosen = [options] {
+      if (options->weights.empty()) options->weights = nn::DefaultWeights().string();
+      return Complete(*options);
+    };
+  });
 }
 
 }  // namespace orb360

@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include <nlohmann/json.hpp>
+
 #include "nn/base/check.h"
 
 namespace orb360::nn {
@@ -20,6 +22,30 @@ PictureSize NearestMultiple(PictureSize size, int multiple) {
     return std::max((side + multiple / 2) / multiple, 1) * multiple;
   };
   return {nearest(size.height), nearest(size.width)};
+}
+
+/// Of the pictures that the network expects: `width` of its normalisation, which may be absent.
+std::optional<int> ExpectedWidth(const Graph& graph) {
+  const nlohmann::json normalisation = nlohmann::json::parse(graph.normalisation);
+  if (!normalisation.contains("width")) return {};
+  constexpr int kMost = 1 << 15;  // pixels
+  const nlohmann::json& width = normalisation["width"];
+  if (!width.is_number_integer() || width < 1 || width > kMost) {
+    throw UserError("network \"" + graph.name +
+                    "\": \"width\" of its normalisation should be an integer from 1 to " +
+                    std::to_string(kMost));
+  }
+  return width.get<int>();
+}
+
+/// What the network is to see of pictures of that size.
+PictureSize NetworkSize(const Graph& graph, PictureSize size) {
+  ORB360_CHECK(size.height > 0 && size.width > 0, size.height, size.width);
+  if (const std::optional<int> width = ExpectedWidth(graph)) {
+    const double factor = static_cast<double>(*width) / size.width;
+    size = {static_cast<int>(std::lround(size.height * factor)), *width};
+  }
+  return NearestMultiple(size, graph.size_multiple);
 }
 
 /// Finds inputs and outputs by name, and refuses what they should not be.
@@ -81,6 +107,7 @@ DepthCompletion::Ports DepthCompletion::FindPorts(const Graph& graph) {
   ports.depth = find.Required("output", "depth", depth ? depth : ports.log_depth);
   ports.confidence =
       find.Required("output", "confidence", find.Output("confidence", /*is_single=*/false));
+  ports.ground = find.Output("ground", /*is_single=*/false);
   if (ports.log_depth) {
     ports.scale = find.Required("output", "scale", find.Output("scale", /*is_single=*/true));
     ports.log_metric_scale = find.Output("log_metric_scale", /*is_single=*/true);
@@ -91,11 +118,9 @@ DepthCompletion::Ports DepthCompletion::FindPorts(const Graph& graph) {
 DepthCompletion::DepthCompletion(const Graph& graph, PictureSize size,
                                  const ExecutorOptions& options)
     : size_(size),
-      network_size_(NearestMultiple(size, graph.size_multiple)),
+      network_size_(NetworkSize(graph, size)),
       ports_(FindPorts(graph)),
-      executor_(graph, network_size_.height, network_size_.width, options) {
-  ORB360_CHECK(size.height > 0 && size.width > 0, size.height, size.width);
-}
+      executor_(graph, network_size_.height, network_size_.width, options) {}
 
 DepthCompletion::Workspace::Workspace(const DepthCompletion& model) : network_(model.executor_) {
   const auto allocate = [](const std::vector<Executor::Port>& ports) {
@@ -123,7 +148,7 @@ void DepthCompletion::FillImage(std::span<const std::uint8_t> rgb, std::span<flo
     if (size_ == network_size_) {
       std::ranges::copy(plane, to.begin());
     } else {
-      ResampleBilinear(plane, size_, to, network_size_);
+      ResampleImage(plane, size_, to, network_size_);
     }
   }
 }
@@ -166,6 +191,7 @@ DensePicture DepthCompletion::Complete(const SparsePicture& picture, Workspace* 
   const std::vector<std::vector<float>>& result = workspace->outputs_;
   DensePicture dense;
   dense.confidence = Resampled(result[ports_.confidence]);
+  if (ports_.ground) dense.ground = Resampled(result[*ports_.ground]);
   dense.depth = result[ports_.depth];
   if (ports_.log_depth) {
     dense.scale = result[*ports_.scale].front();

@@ -24,6 +24,9 @@ struct SparsePicture {
 struct DensePicture {
   std::vector<float> depth;  // in the unit of the points; 0 where the network gives none
   std::vector<float> confidence;
+  /// Probability of each pixel that it shows the plane of the road under the camera, where the
+  /// network tells it; otherwise empty.
+  std::vector<float> ground;
   /// ln of (`scale` in metres / height of the camera in metres), where the network tells it.
   std::optional<float> log_metric_scale;
   /// What that refers to: a range in the unit of the points.
@@ -47,8 +50,8 @@ class DepthCompletion {
     std::vector<std::vector<float>> outputs_;
   };
 
-  /// Throws UserError for a network that is for something else. A size that the network does not
-  /// take is resampled to the nearest that it does.
+  /// Throws UserError for a network that is for something else. Pictures are resampled to the width
+  /// that the network's normalisation asks for, if it does, and to the nearest size that it takes.
   DepthCompletion(const Graph& graph, PictureSize size, const ExecutorOptions& options = {});
 
   PictureSize size() const { return size_; }
@@ -59,7 +62,7 @@ class DepthCompletion {
 
  private:
   struct Ports {  // indices of the executor's inputs and outputs
-    std::optional<std::size_t> image, log_depth, scale, log_metric_scale;
+    std::optional<std::size_t> image, log_depth, scale, log_metric_scale, ground;
     std::size_t sparse_depth = 0, sparse_confidence = 0;
     std::size_t depth = 0, confidence = 0;  // depth: of `depth` or `log_depth`
   };

@@ -56,6 +56,29 @@ void ResampleBilinear(std::span<const float> from, PictureSize from_size, std::s
   }
 }
 
+void ResampleImage(std::vector<float> from, PictureSize from_size, std::span<float> to,
+                   PictureSize to_size) {
+  ORB360_CHECK(from.size() == PixelsOf(from_size), from.size());
+  while (from_size.height >= 2 * to_size.height && from_size.width >= 2 * to_size.width) {
+    const PictureSize half{from_size.height / 2, from_size.width / 2};
+    float* next = from.data();
+    for (int v = 0; v < half.height; ++v) {
+      const float* top = from.data() + 2 * std::ptrdiff_t{v} * from_size.width;
+      const float* bottom = top + from_size.width;
+      for (int u = 0; u < half.width; ++u, top += 2, bottom += 2) {
+        *next++ = ((top[0] + top[1]) + (bottom[0] + bottom[1])) / 4;
+      }
+    }
+    from.resize(PixelsOf(half));
+    from_size = half;
+  }
+  if (from_size == to_size) {
+    std::ranges::copy(from, to.begin());
+  } else {
+    ResampleBilinear(from, from_size, to, to_size);
+  }
+}
+
 void ResamplePoints(std::span<const float> depth, std::span<const float> confidence,
                     PictureSize from_size, std::span<float> to_depth,
                     std::span<float> to_confidence, PictureSize to_size) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 namespace orb360::nn {
 
@@ -15,6 +16,11 @@ struct PictureSize {
 /// the other side, rows repeat at the poles.
 void ResampleBilinear(std::span<const float> from, PictureSize from_size, std::span<float> to,
                       PictureSize to_size);
+
+/// The same for a picture that may become much smaller: halved by means of 2 x 2 while it has at
+/// least twice as many rows and columns, so that no pixel is passed over.
+void ResampleImage(std::vector<float> from, PictureSize from_size, std::span<float> to,
+                   PictureSize to_size);
 
 /// Moves the points of a sparse picture (depth > 0) to the pixels of `to` that their centres fall
 /// into; the rest becomes 0. Of several the nearest stays: it hides the others.

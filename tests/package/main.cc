@@ -1,5 +1,8 @@
 #include <cstdio>
+#include <filesystem>
+#include <string>
 
+#include "nn/models/default_weights.h"
 #include "slam/pipeline/system.h"
 
 // One black picture: nothing to track, and the report says so.
@@ -9,6 +12,11 @@ int main() {
       system.Process({0, 0.0, cv::Mat(320, 640, CV_8UC3, cv::Scalar(0, 0, 0))});
   if (report.world_from_camera || !system.Finish().frames.empty()) {
     std::puts("a pose was found in a black picture");
+    return 1;
+  }
+  // Installed beside the program.
+  if (orb360::nn::DefaultWeights().string().find("share/orb360/weights") == std::string::npos) {
+    std::puts("the installed weights were not found");
     return 1;
   }
   return 0;

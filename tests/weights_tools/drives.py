@@ -42,7 +42,13 @@ def frame(seed: int = 0) -> Frame:
     travel = np.array([-1.0, 0.0, 0.0], np.float32)
     still = np.zeros((HEIGHT, WIDTH), bool)
     none = np.zeros((0, 4), np.float32)
-    return Frame(rgb, street(), still, features, travel, CAMERA_HEIGHT, none)
+    return Frame(rgb, street(), still, road(), features, travel, CAMERA_HEIGHT, none)
+
+
+def road() -> np.ndarray:
+    u, v = np.meshgrid(np.arange(WIDTH) + 0.5, np.arange(HEIGHT) + 0.5)
+    height = street() * bearings(u, v, HEIGHT, WIDTH)[..., 2]
+    return (street() > 0) & (np.abs(height + CAMERA_HEIGHT) < 1e-3)
 
 
 def write_run(folder: Path, metre: float = 0.25) -> None:
@@ -59,7 +65,7 @@ def write_run(folder: Path, metre: float = 0.25) -> None:
 def write_drive(folder: Path, frames: int = 3, depth_every: int = 2) -> None:
     """The camera drives along world +x, one metre from frame to frame, looking to world +y."""
     for name in ("rgb", "depth", "moving"):
-        (folder / name).mkdir()
+        (folder / name).mkdir(parents=True)
     (folder / "sequence.yaml").write_text(f"camera_height: {CAMERA_HEIGHT}  # metres\n")
     # x right = world +x, y down = world -z, z forward = world +y: a quarter turn about x.
     half = np.sqrt(0.5)

@@ -21,6 +21,7 @@ from weights_tools.network import Network
 from weights_tools.training import batches, shards, train
 from weights_tools.training.loss import losses, pixel_weights, predicted_depth, total
 from weights_tools.training.sparse_points import NoiseModel
+from weights_tools.training.validate import error_cut, validate
 
 SOURCE = Path(__file__).resolve().parent.parent.parent
 CPU = torch.device("cpu")
@@ -34,7 +35,7 @@ class Fixed(torch.nn.Module):
         self.description = networks.depth_completion()
         self._tensors = tensors
 
-    def tensors(self, _: dict[str, torch.Tensor]) -> dict[str, torch.Tensor]:
+    def tensors(self, _: dict[str, torch.Tensor], bfloat16: bool) -> dict[str, torch.Tensor]:
         return self._tensors
 
 
@@ -52,7 +53,9 @@ class TrainTest(unittest.TestCase):
     def batch(self) -> batches.Batch:
         return batches.draw(batches.Frames([self.shard]), 0, 0, 2, NoiseModel())
 
-    def perfect(self, batch: batches.Batch, error: float, odds: float) -> Fixed:
+    def perfect(
+        self, batch: batches.Batch, error: float, odds: float, ground_odds: float = 0.0
+    ) -> Fixed:
         scale = torch.full_like(batch.scale, 3.0)
         truth = torch.where(batch.truth > 0, batch.truth, 1.0)
         exact = (truth * batch.scale / scale).log()
@@ -61,8 +64,11 @@ class TrainTest(unittest.TestCase):
                 "log_depth": exact + error,
                 "propagated": exact - 2 * error,
                 "points.median": scale,
-                "confidence.log_odds": torch.full_like(exact, odds),
+                "log_odds": torch.cat(
+                    [torch.full_like(exact, odds), ground_odds * (2 * batch.ground - 1)], dim=1
+                ),
                 "completed.c": torch.full_like(exact, odds).sigmoid(),
+                "ground": (ground_odds * (2 * batch.ground - 1)).sigmoid(),
                 "global2": (scale / batch.scale / drives.CAMERA_HEIGHT).log() + 3 * error,
             }
         )
@@ -74,8 +80,29 @@ class TrainTest(unittest.TestCase):
             for name, factor in (("depth", 1), ("propagated", 2), ("metric", 3)):
                 self.assertAlmostEqual(terms[name].item(), factor * error, places=5)
 
+    def test_the_ground_is_learned_from_its_odds(self) -> None:
+        batch = self.batch()
+        self.assertTrue(0.3 < batch.ground.mean() < 0.5)
+        unsure, sure, wrong = (
+            losses(self.perfect(batch, 0.1, 0.0, odds), batch)["ground"].item()
+            for odds in (0.0, 5.0, -5.0)
+        )
+        self.assertAlmostEqual(unsure, np.log(2), places=5)
+        self.assertAlmostEqual(sure, np.log1p(np.exp(-5)), places=5)
+        self.assertAlmostEqual(wrong, 5 + np.log1p(np.exp(-5)), places=5)
+
+    def test_confidence_in_the_sky_is_that_of_an_error_by_a_factor_of_e(self) -> None:
+        batch = self.batch()
+        batch.truth.zero_()
+        values = {
+            odds: losses(self.perfect(batch, 0.0, odds), batch)["confidence"].item()
+            for odds in (-0.5, 0.0, 0.5)
+        }
+        self.assertEqual(min(values, key=values.get), 0.0)
+
     def test_confidence_is_best_where_it_tells_the_error(self) -> None:
         batch = self.batch()
+        batch.truth[batch.truth == 0] = 10.0  # no sky, which has a confidence of its own
         error = 0.05
         values = {
             confidence: losses(
@@ -98,7 +125,7 @@ class TrainTest(unittest.TestCase):
         batch = self.batch()
         terms = losses(network, batch)
         self.assertEqual(list(terms), ["depth"])
-        depth = predicted_depth(network, batch.inputs)
+        depth = predicted_depth(network(batch.inputs))
         self.assertTrue((depth > 0).all())
 
     def test_training_makes_the_loss_smaller(self) -> None:
@@ -118,7 +145,7 @@ class TrainTest(unittest.TestCase):
         settings = train.Settings(steps=4, batch=1, warm_up=2, seed=3, checkpoint_every=2)
         paths = [self.shard]
         with contextlib.redirect_stdout(io.StringIO()):
-            return train.train(settings, self.folder / folder, paths, paths, CPU, until)
+            return train.train(settings, self.folder / folder, paths, paths, CPU, until=until)
 
     def test_an_interrupted_training_ends_as_one_in_one_piece(self) -> None:
         whole = self.run_training("whole")
@@ -129,15 +156,20 @@ class TrainTest(unittest.TestCase):
         with (self.folder / "whole/log.csv").open() as file:
             lines = list(csv.DictReader(file))
         self.assertEqual([line["step"] for line in lines], ["2", "4"])
-        for name in ("depth", "confidence", "propagated", "metric", "absrel", "delta1"):
+        terms = ("depth", "confidence", "propagated", "metric", "ground")
+        unseen = ("absrel", "delta1", "scale_error", "ground_overlap", "error_cut")
+        for name in (*terms, *(f"unseen_{name}" for name in unseen)):
             self.assertTrue(np.isfinite(float(lines[0][name])), name)
 
         # What was trained can be exported, and says where it comes from.
-        network, provenance = trained(self.folder / "pieces/checkpoint.pt")
-        self.assertEqual(provenance["steps"], 4)
+        network, provenance, width = trained(self.folder / "pieces/checkpoint.pt")
+        self.assertEqual(width, drives.WIDTH)
+        self.assertEqual(provenance["steps_done"], 4)
         self.assertEqual(provenance["shards"], ["street.npz"])
-        export(self.folder / "network.h5", network, provenance)
-        weights = network_file.read(self.folder / "network.h5").weights
+        self.assertEqual(provenance["earlier"], [])
+        export(self.folder / "network.h5", network, provenance, width=width)
+        graph, weights = network_file.read(self.folder / "network.h5")
+        self.assertEqual(graph.normalisation["width"], drives.WIDTH)
         for name, values in whole.weights().items():
             np.testing.assert_array_equal(weights[name], values.detach().numpy())
 
@@ -148,26 +180,87 @@ class TrainTest(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "checkpoint.pt: was made with other"):
                 train.train(settings, self.folder / "pieces", paths, [], CPU)
 
+    def test_a_stage_goes_on_with_the_mean_of_another(self) -> None:
+        settings = train.Settings("propagation", 3, batch=1, warm_up=1, rate=1e-2)
+        paths, folder = [self.shard], self.folder / "propagation"
+        with contextlib.redirect_stdout(io.StringIO()):
+            first = train.train(settings, folder, paths, [], CPU)
+            checkpoint = folder / "checkpoint.pt"
+            settings = train.Settings(steps=1, batch=1, bfloat16=True, fixed_propagation=True)
+            second = self.folder / "second"
+            network = train.train(settings, second, paths, [], CPU, [checkpoint])
+        weights = network.weights()
+        for name, values in first.weights().items():
+            np.testing.assert_allclose(weights[name], values, rtol=1e-5, err_msg=name)
+        untrained = Network(networks.propagation()).weights()
+        self.assertFalse(torch.equal(weights["n1.weight"], untrained["n1.weight"]))
+        _, provenance, _ = trained(second / "checkpoint.pt")
+        (stage,) = provenance["earlier"]
+        self.assertEqual((stage["network"], stage["steps_done"]), ("propagation", 3))
+
+    def test_the_mean_of_weights_follows_them(self) -> None:
+        folder = self.folder / "mean"
+        settings = train.Settings("propagation", 2, batch=1, warm_up=1, rate=1e-2)
+        training = train.Training(settings, [self.shard], folder, CPU)
+        name = "layers.n1.weight"
+        seen = [training.network.state_dict()[name].clone()]
+        for batch in training.batches(2):
+            training.advance(batch)
+            seen.append(training.network.state_dict()[name].clone())
+        expected = seen[0].lerp(seen[1], 10 / 11).lerp(seen[2], 10 / 12)
+        found = training.mean.state_dict()[name]
+        np.testing.assert_allclose(found, expected, rtol=1e-6)
+        self.assertFalse(torch.equal(found, seen[2]))
+
     def test_validation_measures_what_it_says(self) -> None:
         frames = batches.Frames([self.shard])
         factor = 1.3
 
         class Scaled(torch.nn.Module):
-            """Knows the truth, but for a factor on half of the picture."""
+            """Knows the truth, but for a factor on half of the picture, and finds no ground."""
 
-            def forward(self, inputs: dict[str, torch.Tensor]) -> dict[str, torch.Tensor]:
+            description = networks.depth_completion()
+            knows_any_unit = True
+
+            def tensors(self, inputs: dict[str, torch.Tensor], _: bool) -> dict[str, torch.Tensor]:
                 truth = torch.from_numpy(drives.street())[None, None]
                 known = inputs["depth"] > 0
                 # The scale of the map: exact for most of the points.
-                scale = (inputs["depth"] / truth)[known].median()
-                depth = torch.where(truth > 0, truth, 1.0) * scale
-                depth[..., : drives.WIDTH // 2] *= factor
-                return {"depth": depth}
+                ratio = torch.where(known, inputs["depth"] / truth, torch.nan)
+                scale = ratio.flatten(1).nanmedian(dim=1).values[:, None, None, None]
+                log_depth = torch.where(truth > 0, truth, 1.0).log().repeat(len(scale), 1, 1, 1)
+                log_depth[..., : drives.WIDTH // 2] += np.log(factor)
+                certain = torch.ones_like(log_depth)
+                certain[..., : drives.WIDTH // 4] = 0.5
+                metric = torch.full_like(scale, -np.log(drives.CAMERA_HEIGHT) + 0.5)
+                return {
+                    "log_depth": log_depth,
+                    "points.median": scale,
+                    "completed.c": certain,
+                    "global2": metric,
+                    "ground": torch.zeros_like(log_depth),
+                }
 
-        measured = train.validate(Scaled(), frames, CPU)
+        measured = validate(Scaled(), frames, CPU)
         # The median of the points' noise disturbs the scale that is found.
         self.assertAlmostEqual(measured["absrel"], 0.15, delta=0.03)
         self.assertAlmostEqual(measured["delta1"], 0.5, delta=0.1)
+        self.assertAlmostEqual(measured["scale_error"], 0.5, delta=0.05)
+        self.assertEqual(measured["ground_overlap"], 0)
+        # A fifth of the pixels, all of them among the wrong half: sqrt(0.3 / 0.8 / 0.5).
+        self.assertAlmostEqual(measured["error_cut"], 1 - np.sqrt(0.75), delta=0.03)
+
+    def test_error_falls_only_where_confidence_tells_it(self) -> None:
+        random = np.random.RandomState(0)
+        relative = torch.from_numpy(np.abs(random.standard_normal(20000)))
+        truth = torch.from_numpy(random.uniform(0.1, 80, 20000))
+        weight = torch.ones(20000)
+        unrelated = torch.from_numpy(random.uniform(size=20000))
+        self.assertAlmostEqual(error_cut(relative, unrelated, truth, weight), 0, delta=0.03)
+        # Without the upper fifth of a normal distribution its RMS is 0.66.
+        self.assertAlmostEqual(error_cut(relative, -relative, truth, weight), 0.34, delta=0.03)
+        # What only tells how far a pixel is says nothing within a bin of range.
+        self.assertAlmostEqual(error_cut(relative, -truth, truth, weight), 0, delta=0.03)
 
     def test_the_rate_rises_and_falls(self) -> None:
         settings = replace(train.Settings(), steps=100, warm_up=10, rate=1.0)

@@ -22,12 +22,13 @@ class Batch:
 
     inputs: dict[str, Tensor]  # image, depth, confidence: what networks read
     truth: Tensor  # metres; 0 where there is no surface
+    ground: Tensor  # 1 where it is the road's plane under the camera, else 0
     scale: Tensor  # units of the input's depth in a metre
     camera_height: Tensor  # metres
 
     def to(self, device: torch.device) -> "Batch":
         inputs = {name: values.to(device) for name, values in self.inputs.items()}
-        rest = (self.truth, self.scale, self.camera_height)
+        rest = (self.truth, self.ground, self.scale, self.camera_height)
         return Batch(inputs, *(values.to(device) for values in rest))
 
 
@@ -71,6 +72,7 @@ def draw(frames: Frames, seed: int, step: int, size: int, model: NoiseModel) -> 
 class Sample:
     image: np.ndarray  # height x width x 3, float32 in 0..1
     truth: np.ndarray
+    ground: np.ndarray
     points: SparsePoints
     camera_height: float
 
@@ -78,7 +80,7 @@ class Sample:
 def plain(frame: Frame, points: SparsePoints) -> Sample:
     """A sample as it was taken."""
     image = frame.rgb.astype(np.float32) / 255
-    return Sample(image, frame.range, points, frame.camera_height)
+    return Sample(image, frame.range, frame.ground, points, frame.camera_height)
 
 
 def augment(frame: Frame, points: SparsePoints, random: np.random.RandomState) -> Sample:
@@ -90,15 +92,19 @@ def augment(frame: Frame, points: SparsePoints, random: np.random.RandomState) -
         turned = np.roll(picture, columns, axis=1)
         return turned[:, ::-1] if mirror else turned
 
-    image = move(frame.rgb).astype(np.float32) / 255
-    if random.uniform() < 0.2:
-        image = _blur(image)
     # Gains of exposure and of each colour, and a curve: what cameras of several makers do.
     gain = np.exp(random.normal(0, 0.2) + random.normal(0, 0.05, 3))
-    image = np.clip(image * gain, 0, 1) ** np.exp(random.normal(0, 0.15))
-    image = np.clip(image + random.normal(0, random.uniform(0, 0.02), image.shape), 0, 1)
+    curve = np.exp(random.normal(0, 0.15))
+    levels = np.clip(np.linspace(0, 1, 256)[:, None] * gain, 0, 1) ** curve
+    image = levels.astype(np.float32)[move(frame.rgb), np.arange(3)]
+    if random.uniform() < 0.2:
+        image = _blur(image)
+    if random.uniform() < 0.5:
+        deviation = random.uniform(0, 0.03)
+        image = image + (deviation * random.standard_normal(image.shape)).astype(np.float32)
     moved = SparsePoints(move(points.depth), move(points.confidence), points.scale)
-    return Sample(image, move(frame.range), moved, frame.camera_height)
+    image = np.clip(image, 0, 1)
+    return Sample(image, move(frame.range), move(frame.ground), moved, frame.camera_height)
 
 
 def _blur(image: np.ndarray) -> np.ndarray:
@@ -122,6 +128,7 @@ def collate(samples: Sequence[Sample]) -> Batch:
             "confidence": pictures([sample.points.confidence[None] for sample in samples]),
         },
         truth=pictures([sample.truth[None] for sample in samples]),
+        ground=pictures([sample.ground[None] for sample in samples]),
         scale=numbers([sample.points.scale for sample in samples]),
         camera_height=numbers([sample.camera_height for sample in samples]),
     )

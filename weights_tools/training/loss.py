@@ -3,39 +3,50 @@
 from collections.abc import Mapping
 
 import torch
+import torch.nn.functional as F
 from torch import Tensor
 
 from weights_tools.network import Network
 from weights_tools.training.batches import Batch
 from weights_tools.training.sphere import row_weights
 
-# Shares of the terms. Depth is what matters; the others mostly train parts of their own.
-SHARES = {"depth": 1.0, "confidence": 0.1, "propagated": 0.2, "metric": 0.2}
+# Shares of the terms. Depth is what matters; the others mostly train parts of their own. The metric
+# scale is one number of a whole picture: with 0.2 half of the encoder's gradient came from it.
+SHARES = {"depth": 1.0, "confidence": 0.1, "propagated": 0.2, "metric": 0.05, "ground": 0.1}
 # The least depth that a network which predicts metres is understood to mean.
 _LEAST = 1e-2
+# The error that the confidence in any depth of the sky is to tell: a factor of e.
+_SKY_ERROR = 1.0
 
 
-def losses(network: Network, batch: Batch) -> dict[str, Tensor]:
+def losses(network: Network, batch: Batch, bfloat16: bool = False) -> dict[str, Tensor]:
     """The terms that the network has outputs for, by name; without their shares."""
-    tensors = network.tensors(batch.inputs)
+    tensors = network.tensors(batch.inputs, bfloat16)
     ports = {port["name"]: tensors[port["tensor"]] for port in network.description.graph.outputs}
     weight = pixel_weights(batch.truth)
     # Depth in the unit of the input; 1 where there is none, which has no weight.
     truth = torch.where(batch.truth > 0, batch.truth * batch.scale, 1.0)
     if "log_depth" not in ports:
         # In units of the input and perhaps negative: a relative error has a derivative everywhere.
-        relative = (ports["depth"] - truth).abs() / truth
+        relative = (ports["depth"].float() - truth).abs() / truth
         return {"depth": _mean(relative, weight)}
     target = (truth / ports["scale"]).log()
     error = (ports["log_depth"] - target).abs()
-    odds = tensors["confidence.log_odds"]
+    terms = {"depth": _mean(error, weight)}
+    if "ground" not in ports:
+        return terms
+    everywhere = pixel_weights(torch.ones_like(batch.truth))
+    known = torch.where(batch.truth > 0, error.detach(), _SKY_ERROR)
+    odds, ground_odds = tensors["log_odds"].float().split(1, dim=1)
     metric = (ports["scale"] / batch.scale / batch.camera_height).log()
+    unlikely = F.binary_cross_entropy_with_logits(ground_odds, batch.ground, reduction="none")
     return {
-        "depth": _mean(error, weight),
+        **terms,
         # Laplace's likelihood: least where exp(-odds) is the expected error.
-        "confidence": _mean(error.detach() * odds.exp() - odds, weight),
+        "confidence": _mean(known * odds.exp() - odds, everywhere),
         "propagated": _mean((tensors["propagated"] - target).abs(), weight),
         "metric": (ports["log_metric_scale"] - metric).abs().mean(),
+        "ground": _mean(unlikely, everywhere),
     }
 
 
@@ -49,12 +60,11 @@ def pixel_weights(truth: Tensor) -> Tensor:
     return rows[:, None] * (truth > 0)
 
 
-def predicted_depth(network: Network, inputs: Mapping[str, Tensor]) -> Tensor:
+def predicted_depth(outputs: Mapping[str, Tensor]) -> Tensor:
     """In the unit of the input."""
-    outputs = network(inputs)
     if "log_depth" in outputs:
         return outputs["scale"] * outputs["log_depth"].exp()
-    return outputs["depth"].clamp(min=_LEAST)
+    return outputs["depth"].float().clamp(min=_LEAST)
 
 
 def _mean(values: Tensor, weight: Tensor) -> Tensor:

@@ -5,6 +5,7 @@ DRIVE is a folder of `town render --masks`. Frames without depth (--depth-every)
 """
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -13,6 +14,7 @@ import numpy as np
 import yaml
 
 from weights_tools.training import shards
+from weights_tools.training.ground import ground_pixels
 
 # As many as a crowded picture has; training takes a part of them.
 FEATURES = 6000
@@ -26,32 +28,50 @@ MARGIN = 128
 def read_drive(folder: Path, halvings: int = 0, run: Path | None = None) -> list[shards.Frame]:
     """Frames of a drive, each side halved so often, with the sparse depth of a run of SLAM."""
     description = yaml.safe_load((folder / "sequence.yaml").read_text())
+    camera_height = float(description["camera_height"])
     poses = np.loadtxt(folder / "groundtruth.txt", ndmin=2)
     travels = travel_directions(poses[:, 1:4], poses[:, 4:8])
+    ups = into_camera(np.tile([0.0, 0.0, 1.0], (len(poses), 1)), poses[:, 4:8])
     sparse = sparse_files(run) if run else {}
     frames = []
     for path in sorted((folder / "depth").glob("*.png")):
         picture = _read(folder / "rgb" / f"{path.stem}.jpg", cv2.IMREAD_COLOR)
         moving = _read(folder / "moving" / path.name, cv2.IMREAD_UNCHANGED)
         metres = _read(path, cv2.IMREAD_UNCHANGED).astype(np.float32) / shards.RANGE_UNITS
-        factor = 2**halvings
-        height, width = metres.shape[0] // factor, metres.shape[1] // factor
-        features = detect(picture)
-        features[:, :2] /= factor
-        frames.append(
-            shards.Frame(
-                cv2.resize(picture, (width, height), interpolation=cv2.INTER_AREA)[:, :, ::-1],
-                shrink_range(metres, factor),
-                shrink_range(moving.astype(np.float32), factor) > 0,
-                features,
-                travels[int(path.stem)],
-                float(description["camera_height"]),
-                read_points(sparse.get(int(path.stem)), metres, factor),
-            )
+        frame = shards.Frame(
+            picture[:, :, ::-1],
+            metres,
+            moving > 0,
+            ground_pixels(metres, ups[int(path.stem)], camera_height),
+            detect(picture),
+            travels[int(path.stem)],
+            camera_height,
+            read_points(sparse.get(int(path.stem)), metres),
         )
+        for _ in range(halvings):
+            frame = halved(frame)
+        frames.append(frame)
     if not frames:
         raise ValueError(f"{folder}: has no depth; render it with `town render --masks`")
     return frames
+
+
+def halved(frame: shards.Frame) -> shards.Frame:
+    """With half as many rows and columns."""
+    height, width = frame.range.shape
+    small = cv2.resize(frame.rgb, (width // 2, height // 2), interpolation=cv2.INTER_AREA)
+    features, points = frame.features.copy(), frame.points.copy()
+    features[:, :2] /= 2
+    points[:, :2] //= 2
+    return replace(
+        frame,
+        rgb=small,
+        range=shrink_range(frame.range),
+        moving=shrink_mask(frame.moving),
+        ground=shrink_mask(frame.ground),
+        features=features,
+        points=points,
+    )
 
 
 def sparse_files(run: Path) -> dict[int, Path]:
@@ -65,7 +85,7 @@ def sparse_files(run: Path) -> dict[int, Path]:
     return files
 
 
-def read_points(path: Path | None, metres: np.ndarray, factor: int) -> np.ndarray:
+def read_points(path: Path | None, metres: np.ndarray) -> np.ndarray:
     """Row, column, metres and confidence of a keyframe's points on known surfaces. A map has a
     scale of its own: the points' median scale makes metres of it."""
     if path is None:
@@ -77,7 +97,7 @@ def read_points(path: Path | None, metres: np.ndarray, factor: int) -> np.ndarra
     rows, columns = np.nonzero((ranges > 0) & (metres > 0))
     ranges, truth = ranges[rows, columns], metres[rows, columns]
     metre = np.median(ranges / truth) if len(rows) else 1
-    points = [rows // factor, columns // factor, ranges / metre, confidence[rows, columns]]
+    points = [rows, columns, ranges / metre, confidence[rows, columns]]
     return np.stack(points, axis=1).astype(np.float32)
 
 
@@ -88,15 +108,20 @@ def _read(path: Path, how: int) -> np.ndarray:
     return picture
 
 
-def shrink_range(picture: np.ndarray, factor: int) -> np.ndarray:
-    """The lower median of each square: a number that is in the picture, never one between a near
-    and a far surface. 0 is taken to be infinitely far."""
-    height, width = picture.shape[0] // factor, picture.shape[1] // factor
-    squares = picture[: height * factor, : width * factor]
-    squares = squares.reshape(height, factor, width, factor).swapaxes(1, 2)
-    sorted_ = np.sort(np.where(squares == 0, np.inf, squares).reshape(height, width, -1), axis=-1)
-    median = sorted_[:, :, (factor * factor - 1) // 2]
+def shrink_range(picture: np.ndarray) -> np.ndarray:
+    """The lower median of each square of 2 x 2: a number that is in the picture, never one between
+    a near and a far surface. 0 is taken to be infinitely far."""
+    height, width = picture.shape[0] // 2, picture.shape[1] // 2
+    squares = picture[: 2 * height, : 2 * width].reshape(height, 2, width, 2).swapaxes(1, 2)
+    squares = np.where(squares == 0, np.inf, squares).reshape(height, width, 4)
+    median = np.sort(squares, axis=-1)[:, :, 1]
     return np.where(np.isinf(median), 0, median).astype(np.float32)
+
+
+def shrink_mask(mask: np.ndarray) -> np.ndarray:
+    """Where two of four pixels or more are set."""
+    height, width = mask.shape[0] // 2, mask.shape[1] // 2
+    return mask[: 2 * height, : 2 * width].reshape(height, 2, width, 2).sum(axis=(1, 3)) >= 2
 
 
 def detect(picture: np.ndarray) -> np.ndarray:
@@ -114,17 +139,22 @@ def detect(picture: np.ndarray) -> np.ndarray:
 
 
 def travel_directions(positions: np.ndarray, quaternions: np.ndarray) -> np.ndarray:
-    """Unit vectors in the camera's frame (-X forward, Y right, Z up), from positions and rotations
-    world_from_camera (x y z w; camera x right, y down, z forward); zero where it stands."""
+    """Unit vectors in the camera's frame, from positions and rotations; zero where it stands."""
     motion = np.gradient(positions, axis=0) if len(positions) > 1 else np.zeros_like(positions)
-    axis, w = quaternions[:, :3], quaternions[:, 3:]
-    # v' = v + 2 w (v x a) + 2 (v x a) x a rotates by the conjugate.
-    cross = np.cross(motion, axis)
-    right, down, forward = (motion + 2 * w * cross + 2 * np.cross(cross, axis)).T
-    directions = np.stack([-forward, right, -down], axis=1)
+    directions = into_camera(motion, quaternions)
     length = np.linalg.norm(directions, axis=1, keepdims=True)
     standing = 1e-3  # metres from frame to frame
     return np.where(length > standing, directions / np.maximum(length, standing), 0)
+
+
+def into_camera(vectors: np.ndarray, quaternions: np.ndarray) -> np.ndarray:
+    """Vectors of the world in the camera's frame (-X forward, Y right, Z up), by rotations
+    world_from_camera (x y z w; camera x right, y down, z forward)."""
+    axis, w = quaternions[:, :3], quaternions[:, 3:]
+    # v' = v + 2 w (v x a) + 2 (v x a) x a rotates by the conjugate.
+    cross = np.cross(vectors, axis)
+    right, down, forward = (vectors + 2 * w * cross + 2 * np.cross(cross, axis)).T
+    return np.stack([-forward, right, -down], axis=1)
 
 
 def main() -> None:

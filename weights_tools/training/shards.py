@@ -1,5 +1,6 @@
 """Frames of a drive, packed for training: one .npz file, read with nothing but NumPy."""
 
+import zipfile
 from dataclasses import dataclass, fields
 from pathlib import Path
 
@@ -13,6 +14,7 @@ class Frame:
     rgb: np.ndarray  # height x width x 3, uint8
     range: np.ndarray  # height x width, float32, metres along the ray; 0 where there is sky
     moving: np.ndarray  # height x width, bool
+    ground: np.ndarray  # height x width, bool: the road's plane under the camera (ground.py)
     features: np.ndarray  # count x 3: u, v (pixels), standard deviation of both (radians)
     travel: np.ndarray  # direction of motion in the camera's frame; 0 0 0 where it stands
     camera_height: float  # metres above the road
@@ -28,6 +30,7 @@ class Shard:
     rgb: np.ndarray  # N x H x W x 3, uint8
     range: np.ndarray  # N x H x W, uint16, RANGE_UNITS per metre
     moving: np.ndarray  # N x H x W/8, uint8: a bit for each pixel
+    ground: np.ndarray  # the same
     features: np.ndarray  # of all frames, float32
     first_feature: np.ndarray  # N + 1: where each frame's features begin
     travel: np.ndarray  # N x 3, float32
@@ -40,10 +43,15 @@ class Shard:
 
     def frame(self, i: int) -> Frame:
         width = self.rgb.shape[2]
+
+        def mask(bits: np.ndarray) -> np.ndarray:
+            return np.unpackbits(bits, axis=-1, count=width).astype(bool)
+
         return Frame(
             self.rgb[i],
             self.range[i].astype(np.float32) / RANGE_UNITS,
-            np.unpackbits(self.moving[i], axis=-1, count=width).astype(bool),
+            mask(self.moving[i]),
+            mask(self.ground[i]),
             self.features[self.first_feature[i] : self.first_feature[i + 1]],
             self.travel[i],
             float(self.camera_height[i]),
@@ -57,6 +65,7 @@ def pack(frames: list[Frame]) -> Shard:
         rgb=np.stack([frame.rgb for frame in frames]),
         range=np.stack(units).astype(np.uint16),
         moving=np.stack([np.packbits(frame.moving, axis=-1) for frame in frames]),
+        ground=np.stack([np.packbits(frame.ground, axis=-1) for frame in frames]),
         features=np.concatenate([frame.features for frame in frames]).astype(np.float32),
         first_feature=np.cumsum([0, *(len(frame.features) for frame in frames)]),
         travel=np.stack([frame.travel for frame in frames]).astype(np.float32),
@@ -68,8 +77,11 @@ def pack(frames: list[Frame]) -> Shard:
 
 def write(path: Path, shard: Shard) -> None:
     temporary = path.with_name(path.name + ".tmp")
-    with temporary.open("wb") as file:
-        np.savez_compressed(file, **{f.name: getattr(shard, f.name) for f in fields(Shard)})
+    # As np.savez_compressed does it, but in a third of the time and a tenth more space.
+    with zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+        for f in fields(Shard):
+            with archive.open(f"{f.name}.npy", "w", force_zip64=True) as file:
+                np.lib.format.write_array(file, getattr(shard, f.name))
     temporary.replace(path)
 
 

@@ -5,20 +5,24 @@ weights that an uninterrupted run would have.
 """
 
 import argparse
+import copy
 import csv
+import hashlib
 import math
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
+from typing import Any
 
-import numpy as np
 import torch
 
 from weights_tools.network import Network
 from weights_tools.networks import NETWORKS
-from weights_tools.training.batches import Frames, collate, draw, plain
-from weights_tools.training.loss import losses, pixel_weights, predicted_depth, total
-from weights_tools.training.sparse_points import NoiseModel, simulate
+from weights_tools.training.batches import Batch, Frames, draw
+from weights_tools.training.loss import losses, total
+from weights_tools.training.sparse_points import NoiseModel
+from weights_tools.training.validate import validate
 
 
 @dataclass(frozen=True)
@@ -31,6 +35,10 @@ class Settings:
     decay: float = 1e-4  # of weights, as AdamW has it
     clip: float = 1.0  # norm of the gradient
     seed: int = 0
+    average: float = 0.999  # share of the mean of weights that a step keeps; the mean is exported
+    bfloat16: bool = False  # convolutions in that type, for processors that are faster at it
+    fixed_propagation: bool = False  # normalized convolutions stay as they start
+    batch_normalization: bool = False  # while it is trained; it ends up in the weights
     checkpoint_every: int = 500  # steps
 
 
@@ -46,20 +54,49 @@ class Training:
     """Network, optimizer and the number of steps done, as they stand in DIR/checkpoint.pt."""
 
     def __init__(
-        self, settings: Settings, shards: Sequence[Path], folder: Path, device: torch.device
+        self,
+        settings: Settings,
+        shards: Sequence[Path],
+        folder: Path,
+        device: torch.device,
+        starts: Sequence[Path] = (),
     ) -> None:
         self.settings = settings
         self.device = device
         self.frames = Frames(shards)
         self.shards = [path.name for path in shards]
         self.step = 0
-        self.network = Network(NETWORKS[settings.network](), settings.seed).to(device)
-        self.optimizer = torch.optim.AdamW(
-            self.network.parameters(), lr=settings.rate, weight_decay=settings.decay
-        )
+        self.stages: list[dict[str, Any]] = []  # of training, before this one
+        description, normalizes = NETWORKS[settings.network](), settings.batch_normalization
+        self.network = Network(description, settings.seed, normalizes).to(device)
         self._path = folder / "checkpoint.pt"
+        if not self._path.exists():
+            for path in starts:
+                self._start_from(path)
+        self.mean = copy.deepcopy(self.network).requires_grad_(False).eval()
+        if settings.fixed_propagation:
+            self.network.fix_propagation()
+        self.optimizer = torch.optim.AdamW(
+            [values for values in self.network.parameters() if values.requires_grad],
+            lr=settings.rate,
+            weight_decay=settings.decay,
+        )
         if self._path.exists():
             self._resume()
+
+    def _start_from(self, path: Path) -> None:
+        """Takes the layers that another training has in common with this one."""
+        state = torch.load(path, map_location=self.device)
+        other = checkpoint_network(state)
+        if state["settings"]["batch_normalization"] and self.settings.batch_normalization:
+            self.network.load_state_dict(other.state_dict())
+        else:
+            own, weights = self.network.weights(), other.weights()
+            common = {name: values for name, values in weights.items() if name in own}
+            self.network.load({name: v.detach() for name, v in {**own, **common}.items()})
+        digest = hashlib.sha256(path.read_bytes()).hexdigest()
+        self.stages += [{**stage, "for": path.name} for stage in state["stages"]]
+        self.stages.append({**_stage(state), "checkpoint": digest})
 
     def _resume(self) -> None:
         state = torch.load(self._path, map_location=self.device)
@@ -70,53 +107,73 @@ class Training:
                     "repeat them or choose another folder"
                 )
         self.network.load_state_dict(state["network"])
+        self.mean.load_state_dict(state["mean"])
         self.optimizer.load_state_dict(state["optimizer"])
-        self.step = state["step"]
+        self.step, self.stages = state["step"], state["stages"]
 
     def save(self) -> None:
         state = {
             "settings": asdict(self.settings),
             "shards": self.shards,
+            "width": self.frames[0].rgb.shape[1],
             "step": self.step,
+            "stages": self.stages,
             "network": self.network.state_dict(),
+            "mean": self.mean.state_dict(),
             "optimizer": self.optimizer.state_dict(),
         }
         temporary = self._path.with_name(self._path.name + ".tmp")
         torch.save(state, temporary)
         temporary.replace(self._path)
 
-    def advance(self) -> dict[str, float]:
+    def batches(self, end: int) -> Iterator[Batch]:
+        """Of the steps from now to `end`; the next one is made while one is used."""
+        settings, model = self.settings, NoiseModel()
+        if not self.network.knows_any_unit:
+            model = replace(model, scale=(1.0, 1.0))
+
+        def make(step: int) -> Batch:
+            return draw(self.frames, settings.seed, step, settings.batch, model)
+
+        with ThreadPoolExecutor(1) as maker:
+            coming = maker.submit(make, self.step)
+            for step in range(self.step, end):
+                batch = coming.result()
+                if step + 1 < end:
+                    coming = maker.submit(make, step + 1)
+                yield batch.to(self.device)
+
+    def advance(self, batch: Batch) -> dict[str, float]:
         """One step; gives the terms of the loss."""
-        batch = draw(self.frames, self.settings.seed, self.step, self.settings.batch, NoiseModel())
-        batch = batch.to(self.device)
         for group in self.optimizer.param_groups:
             group["lr"] = learning_rate(self.settings, self.step)
         self.optimizer.zero_grad()
-        terms = losses(self.network, batch)
+        terms = losses(self.network, batch, self.settings.bfloat16)
         total(terms).backward()
         torch.nn.utils.clip_grad_norm_(self.network.parameters(), self.settings.clip)
         self.optimizer.step()
         self.step += 1
+        # Young means forget faster.
+        keep = min(self.settings.average, self.step / (self.step + 10))
+        with torch.no_grad():
+            now = self.network.state_dict()
+            for name, mean in self.mean.state_dict().items():
+                if mean.is_floating_point():
+                    mean.lerp_(now[name], 1 - keep)
         return {name: value.item() for name, value in terms.items()}
 
 
-@torch.no_grad()
-def validate(network: Network, frames: Frames, device: torch.device) -> dict[str, float]:
-    """Of all frames, each with points of its own: mean relative error, and the share of the pixels
-    within 1.25 of the truth. The scale of the input is taken as known."""
-    sums = dict.fromkeys(("absrel", "delta1", "weight"), 0.0)
-    for i in range(len(frames)):
-        frame = frames[i]
-        points = simulate(frame, np.random.RandomState([i, 1]))
-        batch = collate([plain(frame, points)]).to(device)
-        weight = pixel_weights(batch.truth)
-        depth = predicted_depth(network, batch.inputs) / batch.scale
-        truth = torch.where(batch.truth > 0, batch.truth, 1.0)
-        sums["absrel"] += ((depth - truth).abs() / truth * weight).sum().item()
-        within = torch.maximum(depth / truth, truth / depth) < 1.25
-        sums["delta1"] += (within * weight).sum().item()
-        sums["weight"] += weight.sum().item()
-    return {name: sums[name] / max(sums["weight"], 1e-9) for name in ("absrel", "delta1")}
+def checkpoint_network(state: dict[str, Any]) -> Network:
+    """The mean network that a checkpoint holds."""
+    settings = state["settings"]
+    normalizes = settings["batch_normalization"]
+    network = Network(NETWORKS[settings["network"]](), normalizes=normalizes)
+    network.load_state_dict(state["mean"])
+    return network.eval()
+
+
+def _stage(state: dict[str, Any]) -> dict[str, Any]:
+    return {"steps_done": state["step"], **state["settings"], "shards": state["shards"]}
 
 
 def train(
@@ -125,27 +182,30 @@ def train(
     training_shards: Sequence[Path],
     validation_shards: Sequence[Path],
     device: torch.device,
+    starts: Sequence[Path] = (),
     until: int | None = None,
 ) -> Network:
-    """Trains to the end, or to step `until`. Appends a line to DIR/log.csv at each checkpoint."""
+    """Trains to the end, or to step `until`; gives the mean of the weights. Appends a line to
+    DIR/log.csv at each checkpoint."""
     folder.mkdir(parents=True, exist_ok=True)
     unseen = Frames(validation_shards) if validation_shards else None
-    training = Training(settings, training_shards, folder, device)
+    training = Training(settings, training_shards, folder, device, starts)
     end = min(settings.steps, until or settings.steps)
     sums: dict[str, float] = {}
     since = 0
-    while training.step < end:
-        for name, value in training.advance().items():
+    for batch in training.batches(end):
+        for name, value in training.advance(batch).items():
             sums[name] = sums.get(name, 0.0) + value
         since += 1
         if training.step % settings.checkpoint_every == 0 or training.step == end:
             line = {name: value / since for name, value in sums.items()}
-            if unseen:
-                line.update(validate(training.network, unseen, device))
             training.save()
+            if unseen:
+                measured = validate(training.mean, unseen, device, settings.bfloat16)
+                line.update({f"unseen_{name}": value for name, value in measured.items()})
             _log(folder / "log.csv", {"step": training.step, **line})
             sums, since = {}, 0
-    return training.network
+    return training.mean
 
 
 def _log(path: Path, line: dict[str, float]) -> None:
@@ -164,13 +224,19 @@ def main() -> None:
     parser.add_argument("--shards", type=Path, nargs="+", required=True, help="to train on")
     parser.add_argument("--validation", type=Path, nargs="*", default=[], help="other shards")
     parser.add_argument("--device", default="cpu", help="as PyTorch names it (default: cpu)")
-    guided = [name for name in NETWORKS if name != "unguided"]
-    parser.add_argument("--network", choices=guided, default=Settings.network)
+    parser.add_argument("--threads", type=int, help="of the CPU (default: as PyTorch likes)")
+    parser.add_argument("--start", type=Path, nargs="*", default=[],
+                        help="checkpoints to take layers from, the last one first")  # fmt: skip
+    parser.add_argument("--network", choices=list(NETWORKS), default=Settings.network)
     for field in fields(Settings):
-        if field.name != "network":
-            option = f"--{field.name.replace('_', '-')}"
+        option = f"--{field.name.replace('_', '-')}"
+        if field.type is bool:
+            parser.add_argument(option, action="store_true")
+        elif field.name != "network":
             parser.add_argument(option, type=type(field.default), default=field.default)
     arguments = vars(parser.parse_args())
+    if arguments["threads"]:
+        torch.set_num_threads(arguments["threads"])
     settings = Settings(**{name: arguments[name] for name in asdict(Settings())})
     train(
         settings,
@@ -178,6 +244,7 @@ def main() -> None:
         arguments["shards"],
         arguments["validation"],
         torch.device(arguments["device"]),
+        arguments["start"],
     )
 
 

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "slam/io/depth_image.h"
@@ -75,6 +76,60 @@ TEST_F(CompleteTest, TakesWhatRunHasSaved) {
                  Path("dense.png"), "--threads", "1"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(cv::countNonZero(ReadDepthImage(Path("dense.png")) != 6.5f), 0);
+}
+
+TEST_F(CompleteTest, CompletesAFolderAndTellsWhatItWrote) {
+  // As the other, and it takes red for the ground and tells how high the camera is.
+  nn::NetworkBuilder net(8);
+  net.Input("image", 3);
+  net.Input("depth", 1);
+  net.Input("confidence", 1);
+  net.Node("points", "median_log", {"depth", "confidence"}, nlohmann::json::object(), 3);
+  net.NormalizedConvolution("mean", "points", "points.1", 1, 1, 15);
+  net.weights.back().values = {0};
+  net.Node("red", "slice", {"image"}, {{"first", 0}, {"count", 1}});
+  net.Node("none", "affine", {"points.2"}, {{"scale", 0.0}, {"offset", 0.0}});
+  net.Output("log_depth", "mean");
+  net.Output("confidence", "mean.1");
+  net.Output("scale", "points.2");
+  net.Output("ground", "red");
+  net.Output("log_metric_scale", "none");
+  net.Write(Path("net.h5"));
+  std::filesystem::create_directory(Path("sparse"));
+  for (const auto& [name, range] : {std::pair{"b", 4.0f}, std::pair{"a", 2.0f}}) {
+    SparseSample sample;
+    sample.image = cv::Mat(16, 32, CV_8UC3, cv::Scalar(0, 0, 51));
+    sample.sparse = {cv::Mat::zeros(16, 32, CV_32F), cv::Mat::zeros(16, 32, CV_32F)};
+    sample.sparse.range.at<float>(8, 16) = range;
+    sample.sparse.confidence.at<float>(8, 16) = 0.5f;
+    WriteSparseSample(Path("sparse/" + std::string(name) + ".h5"), sample);
+  }
+  const ProgramResult result = RunOrb360({"complete", "--sparse", Path("sparse"), "--weights",
+                                          Path("net.h5"), "--out", Path("dense"), "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json told = nlohmann::json::parse(result.out);
+  ASSERT_EQ(told.size(), 2);
+  const float expected[] = {2, 4};  // by name
+  for (std::size_t i = 0; i < 2; ++i) {
+    const cv::Mat depth = ReadDepthImage(told[i]["depth"].get<std::string>());
+    EXPECT_EQ(cv::countNonZero(depth != expected[i]), 0);
+    const cv::Mat ground = cv::imread(told[i]["ground"].get<std::string>(), cv::IMREAD_UNCHANGED);
+    EXPECT_EQ(cv::countNonZero(ground != 65535 / 5), 0);
+    // The median of the points is a height of the camera.
+    EXPECT_NEAR(told[i]["camera_heights_per_unit"].get<double>(), 1 / expected[i], 1e-6);
+  }
+  EXPECT_TRUE(std::filesystem::exists(Path("dense/a_confidence.png")));
+  EXPECT_TRUE(std::filesystem::exists(Path("dense/b.png")));
+
+  std::filesystem::create_directory(Path("empty"));
+  const ProgramResult empty = RunOrb360(
+      {"complete", "--sparse", Path("empty"), "--weights", Path("net.h5"), "--out", Path("dense")});
+  EXPECT_EQ(empty.status, 1);
+  EXPECT_THAT(empty.err, HasSubstr("has no .h5 file"));
+  const ProgramResult image =
+      RunOrb360({"complete", "--sparse", Path("sparse"), "--image", Path("image.png"), "--weights",
+                 Path("net.h5"), "--out", Path("dense")});
+  EXPECT_THAT(image.err, HasSubstr("--image is for one file"));
 }
 
 TEST_F(CompleteTest, SaysWhatIsWrong) {

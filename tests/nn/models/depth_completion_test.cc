@@ -60,6 +60,7 @@ TEST(DepthCompletion, OnePointIsTheDepthAroundIt) {
     ASSERT_EQ(dense.confidence.size(), picture.depth.size());
     EXPECT_EQ(dense.scale, 12.5f);
     EXPECT_FALSE(dense.log_metric_scale);
+    EXPECT_TRUE(dense.ground.empty());
     // Where nothing is seen the value is the bias: the median.
     EXPECT_THAT(dense.depth, Each(testing::FloatNear(12.5f, 1e-5f)));
     EXPECT_GT(dense.confidence[middle], 0);
@@ -130,6 +131,47 @@ TEST(DepthCompletion, GivesTheImageAsRedGreenBlueBetween0And1) {
   EXPECT_THAT(dense.confidence, Each(testing::FloatEq(0.4f)));
 }
 
+TEST(DepthCompletion, SeesPicturesOfTheWidthThatTheNetworkExpects) {
+  NetworkBuilder net = Propagation(8);
+  net.json["normalisation"] = {{"width", 32}};
+  const Graph graph = net.Build();
+  for (const PictureSize size : {PictureSize{16, 32}, PictureSize{64, 128}, PictureSize{10, 20}}) {
+    const DepthCompletion model(graph, size);
+    EXPECT_EQ(model.network_size(), (PictureSize{16, 32}));
+    DepthCompletion::Workspace workspace(model);
+    Picture picture(size);
+    picture.depth[picture.depth.size() / 2] = 7;
+    picture.confidence[picture.depth.size() / 2] = 1;
+    const DensePicture dense = model.Complete(picture.view(), &workspace);
+    EXPECT_THAT(dense.depth, testing::SizeIs(picture.depth.size()));
+    EXPECT_THAT(dense.depth, Each(testing::FloatNear(7, 1e-5f)));
+  }
+  for (const nlohmann::json& wrong :
+       {nlohmann::json(0), nlohmann::json("512"), nlohmann::json(0.5), nlohmann::json(1 << 20)}) {
+    net.json["normalisation"] = {{"width", wrong}};
+    const Graph refused = net.Build();
+    EXPECT_THAT(MessageOf<UserError>([&] {
+                  DepthCompletion(refused, {16, 32});
+                }),
+                HasSubstr("should be an integer from 1 to 32768"));
+  }
+}
+
+TEST(DepthCompletion, TellsTheGroundWhereTheNetworkDoes) {
+  // A size that the network takes, and one that it does not.
+  for (const PictureSize size : {PictureSize{8, 16}, PictureSize{21, 39}}) {
+    Picture picture(size);
+    for (std::size_t i = 2; i < picture.rgb.size(); i += 3) picture.rgb[i] = 204;  // blue: 0.8
+    NetworkBuilder net = Propagation(8);
+    net.Input("image", 3);
+    net.Node("blue", "slice", {"image"}, {{"first", 2}, {"count", 1}});
+    net.Output("ground", "blue");
+    const DensePicture dense = Complete(net.Build(), size, picture);
+    ASSERT_EQ(dense.ground.size(), picture.depth.size());
+    EXPECT_THAT(dense.ground, Each(testing::FloatEq(0.8f)));
+  }
+}
+
 TEST(DepthCompletion, RefusesNetworksForSomethingElse) {
   const auto refusal = [](const auto& change) {
     NetworkBuilder net = Propagation(1);
@@ -147,6 +189,8 @@ TEST(DepthCompletion, RefusesNetworksForSomethingElse) {
               HasSubstr("output \"log_depth\" should have 1 channel of the picture's size"));
   EXPECT_THAT(refusal([](NetworkBuilder* net) { net->json["outputs"][2]["tensor"] = "mean"; }),
               HasSubstr("output \"scale\" should have 1 channel of 1x1"));
+  EXPECT_THAT(refusal([](NetworkBuilder* net) { net->Output("ground", "points.2"); }),
+              HasSubstr("output \"ground\" should have 1 channel of the picture's size"));
   EXPECT_THAT(refusal([](NetworkBuilder* net) { net->Input("image", 4); }),
               HasSubstr("input \"image\" should have 3 channels"));
   EXPECT_THAT(refusal([](NetworkBuilder* net) { net->Input("normals", 3); }),

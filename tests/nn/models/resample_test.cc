@@ -53,6 +53,28 @@ TEST(Resample, KeepsSmoothPicturesOfTheSphere) {
   }
 }
 
+TEST(Resample, SmallerImagesAreMeansOfWhatTheyCover) {
+  std::vector<float> picture(16 * 32);
+  for (std::size_t i = 0; i < picture.size(); ++i) picture[i] = static_cast<float>(i % 7 * i);
+  std::vector<float> to(4 * 8);
+  ResampleImage(picture, {16, 32}, to, {4, 8});
+  for (int v = 0; v < 4; ++v) {
+    for (int u = 0; u < 8; ++u) {
+      float sum = 0;
+      for (int i = 0; i < 16; ++i) {
+        sum += picture[static_cast<std::size_t>((4 * v + i / 4) * 32 + 4 * u + i % 4)];
+      }
+      EXPECT_FLOAT_EQ(to[static_cast<std::size_t>(8 * v + u)], sum / 16);
+    }
+  }
+  // Sizes that are no halves, and larger ones, as ResampleBilinear has them.
+  for (const PictureSize size : {PictureSize{10, 20}, PictureSize{20, 40}}) {
+    std::vector<float> other(static_cast<std::size_t>(size.height) * size.width);
+    ResampleImage(picture, {16, 32}, other, size);
+    EXPECT_EQ(other, Resampled(picture, {16, 32}, size));
+  }
+}
+
 TEST(Resample, PointsMoveToThePixelThatHoldsThem) {
   const std::vector<float> depth = {0, 5, 0, 0, 3, 0};
   const std::vector<float> confidence = {0, 0.5f, 0, 0, 0.75f, 0};

@@ -1,0 +1,209 @@
+"""Measures are what they say, on pictures whose errors are known."""
+
+import contextlib
+import io
+import json
+import stat
+import tempfile
+import unittest
+from pathlib import Path
+
+import cv2
+import h5py
+import numpy as np
+
+from tests.weights_tools import drives
+from weights_tools import network_file, networks
+from weights_tools.evaluation import evaluate_depth, pictures
+from weights_tools.evaluation.classical import interpolate
+from weights_tools.evaluation.depth_errors import DepthErrors
+from weights_tools.evaluation.ground_plane import distance_of_ground
+from weights_tools.export import export, untrained
+from weights_tools.network import Network
+from weights_tools.training.sphere import bearings
+from weights_tools.training.train import Settings
+
+
+class DepthErrorsTest(unittest.TestCase):
+    def test_measures_of_a_constant_factor(self) -> None:
+        truth = np.full((60, 120), 8.0)
+        errors = DepthErrors()
+        errors.add(truth, 1.1 * truth)
+        for where in ({}, {"range_bin": 1}, {"band": 0}, {"band": 5}):
+            measures = errors.measures(**where)
+            self.assertAlmostEqual(measures["absrel"], 0.1)
+            self.assertAlmostEqual(measures["rmse"], 0.8)
+            self.assertAlmostEqual(measures["mae"], 0.8)
+            self.assertAlmostEqual(measures["delta1"], 1.0)
+        self.assertTrue(np.isnan(errors.measures(range_bin=0)["absrel"]))
+
+    def test_pixels_count_by_solid_angle_bin_and_band(self) -> None:
+        truth = np.full((90, 180), 30.0)
+        truth[:45] = 100.0  # too far to count
+        truth[45:, :90] = 3.0
+        estimate = truth.copy()
+        estimate[75:] *= 2  # the lowest band: 1 - sin(60 degrees) of the lower half
+        errors = DepthErrors()
+        errors.add(truth, estimate)
+        self.assertAlmostEqual(errors.measures()["absrel"], 1 - np.sin(np.pi / 3), places=3)
+        self.assertAlmostEqual(errors.measures(band=0)["absrel"], 1.0)
+        self.assertEqual(errors.measures(band=1)["absrel"], 0.0)
+        self.assertTrue(np.isnan(errors.measures(band=3)["absrel"]))
+        # Errors of both ranges are equal shares: RMSE tells them apart.
+        near, far = errors.measures(range_bin=0)["rmse"], errors.measures(range_bin=3)["rmse"]
+        self.assertAlmostEqual(far / near, 10)
+        twice = DepthErrors()
+        twice += errors
+        twice += errors
+        self.assertAlmostEqual(twice.measures()["rmse"], errors.measures()["rmse"])
+
+    def test_delta_counts_both_directions(self) -> None:
+        truth = np.full((6, 12), 10.0)
+        for factor, expected in ((1.24, 1), (1.26, 0), (1 / 1.24, 1), (1 / 1.26, 0)):
+            errors = DepthErrors()
+            errors.add(truth, factor * truth)
+            self.assertEqual(errors.measures()["delta1"], expected)
+
+
+class ClassicalTest(unittest.TestCase):
+    def test_across_the_seam_and_the_pole(self) -> None:
+        depth = np.zeros((32, 64), np.float32)
+        depth[16, 63], depth[16, 31] = 5.0, 9.0
+        nearest, weighted = interpolate(depth, np.ones_like(depth), 1)
+        self.assertEqual(nearest[16, 0], 5.0)
+        self.assertEqual(nearest[0, 60], 5.0)
+        self.assertEqual(nearest[16, 40], 9.0)
+        self.assertAlmostEqual(float(weighted[16, 63]), 5.0, places=4)
+        # Half way between both.
+        self.assertAlmostEqual(float(weighted[16, 47]), 7.0, places=4)
+
+    def test_confidence_and_distance_weigh(self) -> None:
+        depth = np.zeros((64, 128), np.float32)
+        depth[32, 40], depth[32, 50] = 4.0, 8.0
+        confidence = np.where(depth == 4, 0.2, 0.8).astype(np.float32)
+        _, weighted = interpolate(depth, confidence, 1)
+        a, b = 0.2 / 4**2, 0.8 / 6**2
+        self.assertAlmostEqual(float(weighted[32, 44]), (4 * a + 8 * b) / (a + b), places=2)
+
+    def test_step_takes_the_pixels_it_says(self) -> None:
+        random = np.random.RandomState(0)
+        depth = random.uniform(1, 9, (16, 32)).astype(np.float32)
+        nearest, _ = interpolate(depth, np.ones_like(depth), 4)
+        np.testing.assert_array_equal(nearest, depth[2::4, 2::4])
+
+    def test_without_points_it_is_the_unit(self) -> None:
+        for estimate in interpolate(np.zeros((8, 16)), np.zeros((8, 16)), 4):
+            self.assertTrue((estimate == 1).all())
+
+
+class GroundPlaneTest(unittest.TestCase):
+    def test_finds_a_tilted_plane_among_outliers(self) -> None:
+        height, width, distance = 128, 256, 1.7
+        normal = np.array([0.08, -0.05, 1.0])
+        normal /= np.linalg.norm(normal)
+        u, v = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
+        down = -bearings(u, v, height, width) @ normal
+        random = np.random.RandomState(0)
+        depth = distance / np.maximum(down, 0.03) * np.exp(0.05 * random.standard_normal(u.shape))
+        wrong = random.uniform(size=u.shape) < 0.2
+        depth[wrong] *= random.uniform(0.3, 0.8, wrong.sum())  # things on the road
+        found = distance_of_ground(depth, np.full(u.shape, 0.9), (down > 0.05).astype(float))
+        self.assertIsNotNone(found)
+        self.assertAlmostEqual(found / distance, 1, delta=0.01)
+
+    def test_hardly_any_ground_gives_none(self) -> None:
+        ones = np.ones((64, 128))
+        self.assertIsNone(distance_of_ground(ones, ones, 0 * ones))
+
+
+class EvaluationTest(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def program(self, factor: float) -> Path:
+        """Stands for orb360: knows the street, but for a factor."""
+        street = np.rint(256 * factor * drives.street()).astype(np.uint16)
+        # Where there is sky some depth is claimed, with little confidence.
+        cv2.imwrite(str(self.folder / "street.png"), np.where(street == 0, 30000, street))
+        sure = np.where(drives.street() > 0, 60000, 20000).astype(np.uint16)
+        cv2.imwrite(str(self.folder / "sure.png"), sure)
+        cv2.imwrite(str(self.folder / "ground.png"), drives.road().astype(np.uint16) * 65535)
+        path = self.folder / "orb360"
+        path.write_text(
+            f"""#!/usr/bin/python3
+import json, pathlib, sys
+options = dict(zip(sys.argv[2::2], sys.argv[3::2]))
+assert sys.argv[1] == "complete" and sys.argv[-1] == "--json"
+assert pathlib.Path(options["--weights"]).exists()
+here = {str(self.folder)!r}
+print(json.dumps([dict(sparse=str(f), depth=here + "/street.png", confidence=here + "/sure.png",
+    ground=here + "/ground.png", camera_heights_per_unit={1.1 / drives.CAMERA_HEIGHT})
+    for f in sorted(pathlib.Path(options["--sparse"]).glob("*.h5"))]))
+"""
+        )
+        path.chmod(path.stat().st_mode | stat.S_IXUSR)
+        return path
+
+    def test_the_summary_is_of_what_the_program_gave(self) -> None:
+        weights = self.folder / "net.h5"
+        network, provenance = untrained("propagation", 0)
+        export(weights, network, provenance)
+        methods = {evaluate_depth.OURS: weights, evaluate_depth.ALONE: weights}
+        evaluation = evaluate_depth.Evaluation(
+            methods, self.program(1.2), (100, 1000), shown=1, out=self.folder
+        )
+        result = evaluation.drive("street", [drives.frame(0), drives.frame(1)])
+        summary = result.summary()
+        self.assertAlmostEqual(summary["absrel"], 0.2, delta=0.002)
+        self.assertEqual(summary["delta1"], 1)
+        self.assertAlmostEqual(summary["absrel_propagation"], 0.2, delta=0.002)
+        self.assertTrue(np.isnan(summary["absrel_published"]))
+        self.assertTrue(0.02 < summary["absrel_best_classical"] < 0.3)
+        for key in ("median_abs_log", "p95_abs_log", "fused_median_abs_log"):
+            self.assertAlmostEqual(summary[f"scale_{key}"], np.log(1.2), delta=0.005)
+        self.assertAlmostEqual(summary["scale_guard_median_abs_log"], np.log(1.1), places=6)
+        total = evaluate_depth.Result()
+        total += result
+        self.assertEqual(total.summary()["absrel"], summary["absrel"])
+        table = evaluate_depth.calibration_table(total)
+        np.testing.assert_allclose(table[:, 1], np.log(1.2), atol=0.01)
+        np.testing.assert_allclose(table[:, 0], 65535 / 60000 - 1, atol=1e-4)
+        pictures.write_calibration(self.folder / "calibration.png", table)
+        for name in ("street-0.jpg", "calibration.png"):
+            self.assertIsNotNone(cv2.imread(str(self.folder / name)), name)
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            evaluate_depth.print_tables({"street": result}, total)
+        self.assertRegex(printed.getvalue(), r"street \| 0\.200 \| 1\.000")
+
+    def test_sparse_files_have_what_the_program_reads(self) -> None:
+        frame = drives.frame()
+        points = evaluate_depth.simulate(frame, np.random.RandomState(0))
+        evaluate_depth.write_sparse(self.folder / "a.h5", frame, points)
+        with h5py.File(self.folder / "a.h5") as file:
+            np.testing.assert_array_equal(file["image"], frame.rgb)
+            np.testing.assert_array_equal(file["range"], points.depth)
+            self.assertEqual(file["confidence"].dtype, np.float32)
+            self.assertEqual(file.attrs["world_from_camera"].shape, (7,))
+
+    def test_propagation_is_taken_out_of_a_network(self) -> None:
+        description = networks.depth_completion((8, 12, 20, 24, 36), hidden=10)
+        path = self.folder / "whole.h5"
+        export(path, Network(description), {})
+        alone = evaluate_depth.propagation_of(path, self.folder / "alone.h5")
+        outputs = [port["tensor"] for port in network_file.read(alone).graph.outputs]
+        self.assertEqual(outputs, ["propagated", "propagated.c", "points.median"])
+
+    def test_evaluation_towns_are_rendered_with_all_mountings(self) -> None:
+        specs = evaluate_depth.town_specs("Town1", is_quick=True)
+        self.assertEqual(sum(spec.frames // evaluate_depth.QUICK_EVERY for spec in specs), 20)
+        self.assertEqual(len({spec.name for spec in specs}), 3)
+        text = json.dumps([list(spec.options) for spec in specs])
+        for part in ('"--camera-height", "1.0"', '"--camera-pitch", "5"', '"--depth-every", "5"'):
+            self.assertIn(part, text)
+        self.assertEqual(Settings().network, "depth_completion")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,1 @@
+"""How good depth completion is, beside simpler ways to do it."""

@@ -1,0 +1,55 @@
+"""Errors of ranges, weighted by the solid angle of their pixels, by range and latitude."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from weights_tools.training.sphere import row_weights
+
+# Upper ends of the bins of true range, metres; beyond the last nothing counts. As slam/evaluation.
+RANGE_ENDS = (5.0, 10.0, 20.0, 40.0, 80.0)
+LATITUDE_BANDS = 6  # of equal height, the lowest first
+_KINDS = ("weight", "squared", "absolute", "relative", "within")
+
+
+@dataclass
+class DepthErrors:
+    """Sums over pixels: range bins x latitude bands x kinds."""
+
+    sums: np.ndarray = field(
+        default_factory=lambda: np.zeros((len(RANGE_ENDS), LATITUDE_BANDS, len(_KINDS)))
+    )
+
+    def add(self, truth: np.ndarray, estimate: np.ndarray) -> None:
+        """Panoramas of one size, metres; truth is 0 where there is no surface."""
+        height, width = truth.shape
+        rows = np.arange(height)
+        weight = np.repeat(row_weights(height)[:, None], width, axis=1)
+        band = (height - 1 - rows) * LATITUDE_BANDS // height
+        band = np.repeat(band[:, None], width, axis=1)
+        known = (truth > 0) & (truth <= RANGE_ENDS[-1])
+        truth, estimate = truth[known].astype(float), np.maximum(estimate[known], 1e-3)
+        weight = weight[known]
+        cell = np.searchsorted(RANGE_ENDS, truth) * LATITUDE_BANDS + band[known]
+        error = np.abs(estimate - truth)
+        within = np.maximum(estimate / truth, truth / estimate) < 1.25
+        for i, values in enumerate((1.0, error**2, error, error / truth, within)):
+            counted = np.bincount(cell, weight * values, minlength=self.sums[..., 0].size)
+            self.sums[..., i] += counted.reshape(self.sums.shape[:2])
+
+    def __iadd__(self, other: "DepthErrors") -> "DepthErrors":
+        self.sums += other.sums
+        return self
+
+    def measures(self, range_bin: int | None = None, band: int | None = None) -> dict[str, float]:
+        """Of everything, a bin of range or a band of latitude; NaN where there are no pixels."""
+        sums = self.sums if range_bin is None else self.sums[range_bin : range_bin + 1]
+        sums = sums if band is None else sums[:, band : band + 1]
+        weight, squared, absolute, relative, within = sums.sum(axis=(0, 1))
+        with np.errstate(invalid="ignore"):
+            return {
+                "absrel": float(relative / weight),
+                "delta1": float(within / weight),
+                "rmse": float(np.sqrt(squared / weight)),
+                "mae": float(absolute / weight),
+            }

@@ -1,0 +1,410 @@
+"""Measures the released weights on towns they were not trained on.
+
+Renders each town with three mountings of the camera (its own height and level; 1 m high and 3 m
+high, tilted by 5 degrees), draws sparse points as SLAM gives them (simulated: 5 % wrong, noise as
+measured), completes them with `orb360 complete` and compares with the rendered ranges up to 80 m,
+weighted by solid angle. The headline figures are means over 500, 1,000 and 2,000 points. Drives are
+rendered once, into a cache outside the repository.
+"""
+
+import argparse
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import cv2
+import h5py
+import numpy as np
+import torch
+
+from weights_tools import network_file
+from weights_tools.evaluation import pictures
+from weights_tools.evaluation.classical import interpolate
+from weights_tools.evaluation.depth_errors import LATITUDE_BANDS, RANGE_ENDS, DepthErrors
+from weights_tools.evaluation.ground_plane import distance_of_ground
+from weights_tools.training import shards
+from weights_tools.training.make_dataset import DriveSpec, Programs, circuit_spec, render
+from weights_tools.training.shards import Frame
+from weights_tools.training.sparse_points import NoiseModel, SparsePoints, simulate
+from weights_tools.training.sphere import row_weights
+from weights_tools.training.validate import error_cut
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+POINTS = (100, 500, 1000, 2000, 3000)
+HEADLINE = (500, 1000, 2000)
+OURS, ALONE, PUBLISHED = "depth completion", "propagation alone", "published encoder-decoder"
+NEAREST, WEIGHTED = "nearest neighbour", "inverse distance"
+METHODS = (OURS, PUBLISHED, ALONE, WEIGHTED, NEAREST)
+CLASSICAL_STEP = 4  # pixels between those that classical interpolation is measured at
+FUSED = 10  # keyframes
+# Height (None: the town's own), pitch, roll; and how many of a town's frames have it.
+MOUNTINGS = ((None, 0, 0, 8), (1.0, 5, -3, 6), (3.0, -4, 5, 6))
+# One frame every five seconds of the drive, with --quick; otherwise each second.
+QUICK_EVERY = 5
+
+
+def town_specs(town: str, is_quick: bool) -> list[DriveSpec]:
+    specs = []
+    for i, (height, pitch, roll, frames) in enumerate(MOUNTINGS):
+        options = ["--town", town, "--fps", "1", "--width", "1024"]
+        options += ["--camera-pitch", str(pitch), "--camera-roll", str(roll)]
+        if height:
+            options += ["--camera-height", str(height)]
+        if is_quick:
+            options += ["--depth-every", str(QUICK_EVERY)]
+        specs.append(DriveSpec(f"{town}-{i}", options, frames * QUICK_EVERY))
+    return specs
+
+
+def frames_of(spec: DriveSpec, programs: Programs, cache: Path) -> list[Frame]:
+    key = repr((spec.options, spec.frames, spec.path, renderer_fingerprint())).encode()
+    path = cache / f"{spec.name}-{hashlib.sha256(key).hexdigest()[:8]}.npz"
+    if not path.exists():
+        print(f"rendering {spec.name}", file=sys.stderr)
+        cache.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=cache) as folder:
+            shards.write(path, shards.pack(render(spec, programs, Path(folder))))
+    shard = shards.read(path)
+    return [shard.frame(i) for i in range(len(shard))]
+
+
+def renderer_fingerprint() -> str:
+    """Changes with the renderer's source, so that no stale drive is used."""
+    digest = hashlib.sha256()
+    for folder in ("apps/town", "slam/geometry"):
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.suffix in (".h", ".cc"):
+                digest.update(str(path.relative_to(ROOT)).encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()
+
+
+@dataclass
+class Scale:
+    """Of the frames of a drive, in order: |ln| of the error of the metric scale."""
+
+    plane: list[float] = field(default_factory=list)  # ln of estimated over true scale
+    guard: list[float] = field(default_factory=list)
+
+
+@dataclass
+class Result:
+    """Of a town, or of several."""
+
+    errors: dict[tuple[str, int], DepthErrors] = field(default_factory=dict)
+    cuts: list[float] = field(default_factory=list)
+    # Pixels drawn at random: expected error, observed error, solid angle.
+    calibration: list[np.ndarray] = field(default_factory=list)
+    scales: list[Scale] = field(default_factory=list)
+
+    def of(self, method: str, points: int) -> DepthErrors:
+        return self.errors.setdefault((method, points), DepthErrors())
+
+    def __iadd__(self, other: "Result") -> "Result":
+        for (method, points), errors in other.errors.items():
+            self.of(method, points).__iadd__(errors)
+        self.cuts += other.cuts
+        self.calibration += other.calibration
+        self.scales += other.scales
+        return self
+
+    def headline(self, method: str) -> dict[str, float]:
+        total = DepthErrors()
+        for points in HEADLINE:
+            if (method, points) in self.errors:
+                total += self.errors[method, points]
+        return total.measures()
+
+    def summary(self) -> dict[str, float]:
+        ours = self.headline(OURS)
+        plane = np.abs(np.concatenate([scale.plane for scale in self.scales] or [[]]))
+        guard = np.abs(np.concatenate([scale.guard for scale in self.scales] or [[]]))
+        fused = np.abs([value for scale in self.scales for value in _fused(scale.plane)])
+        classical = [self.headline(method)["absrel"] for method in (NEAREST, WEIGHTED)]
+        return {
+            "absrel": ours["absrel"],
+            "delta1": ours["delta1"],
+            "rmse": ours["rmse"],
+            "mae": ours["mae"],
+            "absrel_best_classical": min(classical),
+            "absrel_propagation": self.headline(ALONE)["absrel"],
+            "absrel_published": self.headline(PUBLISHED)["absrel"],
+            "scale_median_abs_log": _quantile(plane, 0.5),
+            "scale_p95_abs_log": _quantile(plane, 0.95),
+            "scale_fused_median_abs_log": _quantile(fused, 0.5),
+            "scale_guard_median_abs_log": _quantile(guard, 0.5),
+            "rmse_cut_by_dropping_20_percent": float(np.mean(self.cuts)) if self.cuts else np.nan,
+        }
+
+
+def _quantile(values: np.ndarray, share: float) -> float:
+    values = values[np.isfinite(values)]
+    return float(np.quantile(values, share)) if len(values) else np.nan
+
+
+def _fused(logs: Sequence[float]) -> Iterator[float]:
+    """Medians over neighbouring frames; of fewer where a drive is short."""
+    logs = [value for value in logs if np.isfinite(value)]
+    for first in range(0, max(len(logs) - FUSED, 0) + 1, FUSED):
+        if logs[first : first + FUSED]:
+            yield float(np.median(logs[first : first + FUSED]))
+
+
+def write_sparse(path: Path, frame: Frame, points: SparsePoints) -> None:
+    """As `orb360 run --save-sparse` does."""
+    with h5py.File(path, "w") as file:
+        file["image"] = frame.rgb
+        file["range"], file["confidence"] = points.depth, points.confidence
+        file.attrs["frame_index"] = np.int32(0)
+        file.attrs["timestamp"] = 0.0
+        file.attrs["world_from_camera"] = [0.0, 0, 0, 0, 0, 0, 1]
+
+
+def propagation_of(weights: Path, out: Path) -> Path:
+    """A network file whose outputs are the first guess of another's."""
+    network = network_file.read(weights)
+    outputs = {"log_depth": "propagated", "confidence": "propagated.c", "scale": "points.median"}
+    ports = [{"name": name, "tensor": tensor} for name, tensor in outputs.items()]
+    dtype = next(iter(network.weights.values())).dtype.type
+    network_file.write(out, replace(network.graph, outputs=ports), network.weights, dtype)
+    return out
+
+
+def complete(orb360: Path, weights: Path, sparse: Path, out: Path) -> dict[str, dict[str, Any]]:
+    """What --json tells, by the name of the sparse file."""
+    command = [orb360, "complete", "--sparse", sparse, "--weights", weights, "--out", out, "--json"]
+    done = subprocess.run([str(part) for part in command], check=True, stdout=subprocess.PIPE)
+    return {Path(entry["sparse"]).stem: entry for entry in json.loads(done.stdout)}
+
+
+def read_share(path: str) -> np.ndarray:
+    return cv2.imread(path, cv2.IMREAD_UNCHANGED).astype(np.float32) / 65535
+
+
+def read_depth(path: str) -> np.ndarray:
+    return cv2.imread(path, cv2.IMREAD_UNCHANGED).astype(np.float32) / shards.RANGE_UNITS
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    networks: dict[str, Path]  # methods and their weights
+    orb360: Path
+    points: Sequence[int]
+    shown: int  # frames of each drive that pictures are made of
+    out: Path
+
+    def drive(self, name: str, frames: Sequence[Frame]) -> Result:
+        """Of every frame with every number of points."""
+        result = Result()
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = Path(temporary)
+            (folder / "sparse").mkdir()
+            given = {}
+            for i, frame in enumerate(frames):
+                for count in self.points:
+                    model = NoiseModel(points=(count, count), scale=(1, 1))
+                    given[f"{count:04}-{i:03}"] = simulate(
+                        frame, np.random.RandomState([i, count]), model
+                    )
+            for key, points in given.items():
+                write_sparse(folder / f"sparse/{key}.h5", frames[int(key[5:])], points)
+            told = {
+                method: complete(self.orb360, weights, folder / "sparse", folder / method)
+                for method, weights in self.networks.items()
+            }
+            scales: dict[int, Scale] = {count: Scale() for count in HEADLINE}
+            for key, points in given.items():
+                count, i = int(key[:4]), int(key[5:])
+                self._frame(result, frames[i], points, count, {m: told[m][key] for m in told})
+                if count in HEADLINE:
+                    _add_scale(scales[count], told[OURS][key], frames[i])
+                if count == 1000 and i < self.shown:
+                    entry = told[OURS][key]
+                    pictures.write_completion(
+                        self.out / f"{name}-{i}.jpg",
+                        frames[i],
+                        points,
+                        read_depth(entry["depth"]),
+                        read_share(entry["confidence"]),
+                    )
+            result.scales += [scale for count, scale in scales.items() if count in self.points]
+        return result
+
+    def _frame(
+        self,
+        result: Result,
+        frame: Frame,
+        points: SparsePoints,
+        count: int,
+        told: dict[str, dict[str, Any]],
+    ) -> None:
+        for method, entry in told.items():
+            result.of(method, count).add(frame.range, read_depth(entry["depth"]))
+        half = CLASSICAL_STEP // 2
+        truth = frame.range[half::CLASSICAL_STEP, half::CLASSICAL_STEP]
+        classical = interpolate(points.depth, points.confidence, CLASSICAL_STEP)
+        for method, estimate in zip((NEAREST, WEIGHTED), classical):
+            result.of(method, count).add(truth, estimate)
+        if count in HEADLINE:
+            depth, confidence = (
+                read_depth(told[OURS]["depth"]),
+                read_share(told[OURS]["confidence"]),
+            )
+            self._confidence(result, frame.range, depth, confidence)
+
+    @staticmethod
+    def _confidence(
+        result: Result, truth: np.ndarray, depth: np.ndarray, confidence: np.ndarray
+    ) -> None:
+        known = (truth > 0) & (truth <= RANGE_ENDS[-1])
+        weight = row_weights(len(truth))[:, None] * known
+        relative = np.abs(depth - truth) / np.where(truth > 0, truth, 1)
+        arrays = (relative, confidence, truth, weight)
+        result.cuts.append(error_cut(*(torch.from_numpy(array) for array in arrays)))
+        drawn = np.random.RandomState(0).choice(np.flatnonzero(known), 2000)
+        log_error = np.abs(np.log(np.maximum(depth.flat[drawn], 1e-3) / truth.flat[drawn]))
+        expected = 1 / np.maximum(confidence.flat[drawn], 1e-4) - 1
+        result.calibration.append(np.stack([expected, log_error, weight.flat[drawn]]))
+
+
+def _add_scale(scale: Scale, entry: dict[str, Any], frame: Frame) -> None:
+    """The input is in metres: the true scale is 1."""
+    planes = (read_share(entry[name]) for name in ("confidence", "ground"))
+    distance = distance_of_ground(read_depth(entry["depth"]), *planes)
+    scale.plane.append(np.log(frame.camera_height / distance) if distance else np.nan)
+    scale.guard.append(np.log(frame.camera_height * entry["camera_heights_per_unit"]))
+
+
+def calibration_table(result: Result) -> np.ndarray:
+    """By decile of the expected error: means of expected and observed |ln error|."""
+    if not result.calibration:
+        return np.zeros((0, 2))
+    expected, observed, weight = np.concatenate(result.calibration, axis=1)
+    order = np.argsort(expected)
+    share = np.cumsum(weight[order]) / weight.sum()
+    rows = []
+    for i in range(10):
+        part = order[(share > i / 10) & (share <= (i + 1) / 10)]
+        own = weight[part]
+        rows.append([(values[part] * own).sum() / own.sum() for values in (expected, observed)])
+    return np.array(rows)
+
+
+def print_tables(results: dict[str, Result], total: Result) -> None:
+    def table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+        print(f"\n{title}\n")
+        print("| " + " | ".join(heads) + " |")
+        print("|---" + "|---:" * (len(heads) - 1) + "|")
+        for row in rows:
+            print("| " + " | ".join(row) + " |")
+
+    everything = {**results, "all": total}
+    keys = list(total.summary())
+    rows = [[name, *(f"{r.summary()[key]:.3f}" for key in keys)] for name, r in everything.items()]
+    table("Headline (500 to 2,000 points)", ["", *keys], rows)
+    counts = sorted({points for _, points in total.errors})
+    for key in ("absrel", "delta1", "rmse", "mae"):
+        rows = [
+            [method, *(f"{total.of(method, count).measures()[key]:.3f}" for count in counts)]
+            for method in METHODS
+        ]
+        table(f"{key} by number of points", ["", *map(str, counts)], rows)
+    sums = {method: DepthErrors() for method in METHODS}
+    for (method, count), errors in total.errors.items():
+        if count in HEADLINE:
+            sums[method] += errors
+    heads = [f"to {end:g} m" for end in RANGE_ENDS]
+    bands = [f"{180 * i / LATITUDE_BANDS - 90:g}°" for i in range(LATITUDE_BANDS)]
+    for key in ("absrel", "delta1", "rmse", "mae"):
+        by_range, by_band = (
+            [
+                [method, *(f"{sums[method].measures(**{axis: i})[key]:.3f}" for i in range(count))]
+                for method in METHODS
+            ]
+            for axis, count in (("range_bin", len(RANGE_ENDS)), ("band", LATITUDE_BANDS))
+        )
+        table(f"{key} by range", ["", *heads], by_range)
+        table(f"{key} by latitude, from 30° below to the poles", ["", *bands], by_band)
+    rows = [
+        [f"{i + 1}", f"{expected:.4f}", f"{observed:.4f}"]
+        for i, (expected, observed) in enumerate(calibration_table(total))
+    ]
+    table("Calibration: |ln error| by decile", ["decile", "expected", "observed"], rows)
+
+
+def build() -> None:
+    subprocess.run([ROOT / "scripts/install_packages"], check=True, stdout=sys.stderr)
+    configure = ["cmake", "--preset", "release"]
+    subprocess.run(configure, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    programs = ["cmake", "--build", "--preset", "release", "--target", "orb360", "town"]
+    subprocess.run(programs, cwd=ROOT, check=True, stdout=sys.stderr)
+
+
+def parse_arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("seed", nargs="?", help="a fresh town, besides the others")
+    parser.add_argument("--quick", action="store_true", help="20 frames of each town, not 100")
+    parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    towns = [f"Town{i}" for i in range(1, 6)]
+    parser.add_argument("--towns", nargs="*", default=towns, help="[Town1 ... Town5]")
+    parser.add_argument("--circuits", type=Path, nargs="*", default=[], metavar="MESH",
+                        help="circuits of torcs-data (.acc); not part of `all`")  # fmt: skip
+    parser.add_argument("--points", type=int, nargs="+", default=POINTS, help="[100 ... 3000]")
+    weights = ROOT / "weights"
+    parser.add_argument("--weights", type=Path, default=weights / "depth_completion.h5")
+    parser.add_argument("--published", type=Path, default=weights / "encoder_decoder.h5")
+    caches = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
+    parser.add_argument("--cache", type=Path, default=caches / "orb360/depth",
+                        help="folder for the rendered drives [%(default)s]")  # fmt: skip
+    parser.add_argument("--out", type=Path, default=ROOT / "out/evaluate-depth",
+                        help="folder for the pictures [out/evaluate-depth]")  # fmt: skip
+    parser.add_argument("--build", type=Path, default=ROOT / "build", help="folder of the programs")
+    parser.add_argument("--skip-build", action="store_true", help="use what is there")
+    return parser.parse_args()
+
+
+def main() -> int:
+    arguments = parse_arguments()
+    if not arguments.skip_build:
+        build()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    programs = Programs(arguments.build / "town", arguments.build / "orb360")
+    alone = propagation_of(arguments.weights, arguments.out / "propagation.h5")
+    networks = {OURS: arguments.weights, ALONE: alone}
+    if arguments.published.exists():
+        networks[PUBLISHED] = arguments.published
+    shown = 1 if arguments.quick else 3
+    evaluation = Evaluation(networks, programs.orb360, arguments.points, shown, arguments.out)
+    towns = [*arguments.towns, *([arguments.seed] if arguments.seed else [])]
+    groups = {town: town_specs(town, arguments.quick) for town in towns}
+    for mesh in arguments.circuits:
+        groups[mesh.stem] = [circuit_spec(mesh, 20 if arguments.quick else 100, 1024)]
+    results, total = {}, Result()
+    for name, specs in groups.items():
+        result = Result()
+        for spec in specs:
+            frames = frames_of(spec, programs, arguments.cache)
+            print(f"completing {spec.name}", file=sys.stderr)
+            result += evaluation.drive(spec.name, frames)
+        results[name] = result
+        if name in towns:
+            total += result
+    pictures.write_calibration(arguments.out / "calibration.png", calibration_table(total))
+    if arguments.json:
+        summaries = {name: result.summary() for name, result in results.items()}
+        summaries["all"] = total.summary()
+        # NaN is no JSON.
+        finite = {n: {k: v if v == v else None for k, v in s.items()} for n, s in summaries.items()}
+        print(json.dumps(finite, indent=2))
+    else:
+        print_tables(results, total)
+        print(f"\nPictures are in {arguments.out}.")
+    return 0

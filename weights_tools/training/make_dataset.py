@@ -1,0 +1,152 @@
+"""Renders drives and packs them: python3 -m weights_tools.training.make_dataset --help
+
+Can be stopped at any time: the same command goes on with the shards that are missing. Every drive is
+drawn from its own number, so the first of many are those of few.
+"""
+
+import argparse
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from weights_tools.training import shards
+from weights_tools.training.make_shard import halved, read_drive
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+LIGHTS = ("noon", "morning", "sunset", "overcast")
+# Those that other measurements are made on.
+RESERVED = ("street-1", "aalborg")
+
+
+class DriveError(Exception):
+    """A drive that could not be rendered or tracked."""
+
+
+@dataclass(frozen=True)
+class Programs:
+    town: Path
+    orb360: Path
+
+
+@dataclass(frozen=True)
+class DriveSpec:
+    """One drive: a town of a seed, or a circuit of torcs-data."""
+
+    name: str  # of the shard
+    options: Sequence[str]  # of `town render`, without the folder
+    frames: int
+    is_tracked: bool = False  # by SLAM; then only its keyframes are kept
+    circuit: Path | None = None
+    path: Sequence[str] = field(default=())  # options of `town path`
+
+
+def town_spec(seed: int, frames: int, width: int, is_tracked: bool = False) -> DriveSpec:
+    """Light, traffic, the camera's height and tilt and what its sensor does follow from the seed."""
+    random = np.random.RandomState([seed, is_tracked])
+    options = ["--town", str(seed), "--light", LIGHTS[random.randint(len(LIGHTS))]]
+    options += ["--traffic", f"{random.uniform():.2f}"]
+    options += ["--camera-height", f"{random.uniform(0.8, 3):.3f}"]
+    options += ["--camera-pitch", f"{random.uniform(-5, 5):.2f}"]
+    options += ["--camera-roll", f"{random.uniform(-5, 5):.2f}"]
+    options += _sensor(random)
+    # A frame each second when there is no tracking: some ten metres from one to the next.
+    options += ["--fps", "20" if is_tracked else "1", "--width", str(width)]
+    name = f"tracked{seed}" if is_tracked else f"town{seed}"
+    return DriveSpec(name, options, frames, is_tracked)
+
+
+def circuit_spec(mesh: Path, frames: int, width: int) -> DriveSpec:
+    if mesh.stem in RESERVED:
+        raise ValueError(f"{mesh}: is kept for other measurements; leave it out")
+    random = np.random.RandomState([ord(letter) for letter in mesh.stem])
+    options = ["--light", LIGHTS[random.randint(len(LIGHTS))], *_sensor(random)]
+    options += ["--fps", "1", "--width", str(width)]
+    path = ["--height", f"{random.uniform(0.8, 3):.3f}", "--speed", f"{random.uniform(15, 30):.1f}"]
+    return DriveSpec(mesh.stem, options, frames, circuit=mesh, path=path)
+
+
+def _sensor(random: np.random.RandomState) -> list[str]:
+    options = []
+    for option, share in (("--auto-exposure", 0.5), ("--noise", 0.3), ("--dual-lens", 0.2)):
+        if random.uniform() < share:
+            options.append(option)
+    if random.uniform() < 0.3:
+        options += ["--jpeg-quality", str(random.randint(40, 95))]
+    return options
+
+
+def make(spec: DriveSpec, programs: Programs, out: Path) -> None:
+    """Writes OUT/full/NAME.npz and, with half as many rows and columns, OUT/half/NAME.npz."""
+    paths = [out / size / f"{spec.name}.npz" for size in ("full", "half")]
+    if all(path.exists() for path in paths):
+        return
+    with tempfile.TemporaryDirectory(dir=out) as folder:
+        frames = render(spec, programs, Path(folder))
+    for path in paths:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        shards.write(path, shards.pack(frames))
+        frames = [halved(frame) for frame in frames]
+
+
+def render(spec: DriveSpec, programs: Programs, folder: Path) -> list[shards.Frame]:
+    """The frames that have a depth; of a tracked drive the keyframes. Leaves files in the folder."""
+    drive, run = folder / "drive", folder / "run"
+    where = []
+    if spec.circuit:
+        line = folder / "path.txt"
+        _call([programs.town, "path", "--torcs", spec.circuit, "--out", line, *spec.path])
+        where = ["--scene", str(spec.circuit), "--path", str(line)]
+    frames = ["--frames", str(spec.frames)]
+    _call([programs.town, "render", *where, *spec.options, *frames, "--masks", "--out", drive])
+    if not spec.is_tracked:
+        return read_drive(drive)
+    _call([programs.orb360, "run", drive, "--weights", "none", "--mask", "none",
+           "--save-sparse", "--out", run])  # fmt: skip
+    return [frame for frame in read_drive(drive, run=run) if len(frame.points) > 0]
+
+
+def _call(command: Sequence[object]) -> None:
+    done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise DriveError(f"{command[0]} failed: {done.stderr.strip()}")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description="Renders drives and packs them for training.")
+    parser.add_argument("out", type=Path, help="folder for full/ and half/ with the shards")
+    parser.add_argument("--seeds", type=int, nargs=2, default=(1000, 1064), metavar=("FIRST", "END"))
+    parser.add_argument("--frames", type=int, default=24, help="of a drive (default: 24)")
+    parser.add_argument("--width", type=int, default=1024, help="of the pictures (default: 1024)")
+    parser.add_argument("--tracked-seeds", type=int, nargs="*", default=[],
+                        help="towns that SLAM tracks, for sparse points of its own")  # fmt: skip
+    parser.add_argument("--tracked-frames", type=int, default=200, help="of these (default: 200)")
+    parser.add_argument("--circuits", type=Path, nargs="*", default=[],
+                        help="meshes (.acc) of circuits of torcs-data")  # fmt: skip
+    parser.add_argument("--build", type=Path, default=ROOT / "build", help="folder of the programs")
+    arguments = parser.parse_args()
+    programs = Programs(arguments.build / "town", arguments.build / "orb360")
+    frames, width = arguments.frames, arguments.width
+    specs = [circuit_spec(mesh, frames, width) for mesh in arguments.circuits]
+    specs += [town_spec(seed, frames, width) for seed in range(*arguments.seeds)]
+    for seed in arguments.tracked_seeds:
+        specs.append(town_spec(seed, arguments.tracked_frames, width, is_tracked=True))
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    failed = 0
+    for i, spec in enumerate(specs, 1):
+        problem = ""
+        try:
+            make(spec, programs, arguments.out)
+        except DriveError as error:
+            failed += 1
+            problem = f" left out: {error}"
+        print(f"{i} of {len(specs)}: {spec.name}{problem}", flush=True)
+    return 1 if failed == len(specs) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
