@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 
@@ -19,6 +20,8 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   void Write(std::string_view data) { temporary_.Write(data); }
+  /// See OutputFile.
+  void Overwrite(std::int64_t offset, std::string_view data) { temporary_.Overwrite(offset, data); }
   void Commit();
 
  private:

@@ -19,9 +19,11 @@ void ThrowWriteError(const std::filesystem::path& path, int error) {
                            : "; choose a folder you can write to"));
 }
 
-OutputFile::OutputFile(std::filesystem::path path)
+OutputFile::OutputFile(std::filesystem::path path, Mode mode)
     : path_(std::move(path)),
-      descriptor_(open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+      descriptor_(open(
+          path_.c_str(),
+          O_WRONLY | O_CREAT | O_CLOEXEC | (mode == Mode::kAppend ? O_APPEND : O_TRUNC), 0666)) {
   if (descriptor_ < 0) ThrowWriteError(path_, errno);
 }
 
@@ -35,6 +37,19 @@ void OutputFile::Write(std::string_view data) {
     const ssize_t written = write(descriptor_, data.data(), data.size());
     if (written >= 0) {
       data.remove_prefix(static_cast<size_t>(written));
+    } else if (errno != EINTR) {
+      ThrowWriteError(path_, errno);
+    }
+  }
+}
+
+void OutputFile::Overwrite(std::int64_t offset, std::string_view data) {
+  ORB360_CHECK(descriptor_ >= 0, path_);
+  while (!data.empty()) {
+    const ssize_t written = pwrite(descriptor_, data.data(), data.size(), offset);
+    if (written >= 0) {
+      data.remove_prefix(static_cast<size_t>(written));
+      offset += written;
     } else if (errno != EINTR) {
       ThrowWriteError(path_, errno);
     }

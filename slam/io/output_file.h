@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 
@@ -10,13 +11,17 @@ namespace orb360 {
 /// UserError of one line.
 class OutputFile {
  public:
-  /// Creates the file, or empties the one that is there.
-  explicit OutputFile(std::filesystem::path path);
+  enum class Mode { kReplace, kAppend };
+
+  /// Creates the file; empties the one that is there, or goes on at its end.
+  explicit OutputFile(std::filesystem::path path, Mode mode = Mode::kReplace);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
   void Write(std::string_view data);
+  /// Writes over what stands at `offset` (bytes from the beginning); Write goes on where it was.
+  void Overwrite(std::int64_t offset, std::string_view data);
   /// Waits until all that was written is on the disk, and closes.
   void SyncAndClose();
 

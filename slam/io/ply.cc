@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "nn/base/check.h"
-#include "slam/io/atomic_file.h"
 #include "slam/io/number_text.h"
 
 namespace orb360 {
@@ -23,11 +22,31 @@ constexpr std::string_view kHeaderEnd =
     "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
 constexpr size_t kPointBytes = 3 * sizeof(float) + 3;
 
+constexpr std::string_view kSurfaceProperties =
+    "\nproperty float x\nproperty float y\nproperty float z\n"
+    "property float nx\nproperty float ny\nproperty float nz\n"
+    "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+    "property float confidence\nend_header\n";
+constexpr size_t kSurfaceBytes = 7 * sizeof(float) + 3;
+/// Room for a comment and any number of points, so that headers are equally long.
+constexpr size_t kSurfaceBeginBytes = 160;
+
+/// Clouds may be larger than the memory left: they are written in pieces.
+constexpr size_t kChunkBytes = size_t{1} << 20;
+
+UserError NotOurs(const std::filesystem::path& path) {
+  return UserError(path.string() + ": is not a cloud that orb360 wrote");
+}
+
+std::string ReadBytes(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {(std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>()};
+}
+
 }  // namespace
 
 void WritePly(const std::filesystem::path& path, std::span<const ColoredPoint> points,
               const Rigid3& file_world_from_map) {
-  constexpr size_t kChunkBytes = size_t{1} << 20;  // Clouds may be larger than the memory left.
   AtomicFile file(path);
   std::string buffer(kHeaderBegin);
   buffer += std::to_string(points.size());
@@ -47,8 +66,7 @@ void WritePly(const std::filesystem::path& path, std::span<const ColoredPoint> p
 }
 
 std::vector<ColoredPoint> ReadPly(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::string bytes = ReadBytes(path);
   std::string_view data = bytes;
   const size_t end = data.find(kHeaderEnd);
   std::optional<size_t> count;
@@ -57,13 +75,79 @@ std::vector<ColoredPoint> ReadPly(const std::filesystem::path& path) {
     data.remove_prefix(end + kHeaderEnd.size());
   }
   if (!count || data.size() % kPointBytes != 0 || *count != data.size() / kPointBytes) {
-    throw UserError(path.string() + ": is not a cloud that orb360 wrote");
+    throw NotOurs(path);
   }
   std::vector<ColoredPoint> points(*count);
   for (ColoredPoint& point : points) {
     std::memcpy(point.position.data(), data.data(), 3 * sizeof(float));
     std::memcpy(point.rgb.data(), data.data() + 3 * sizeof(float), point.rgb.size());
     data.remove_prefix(kPointBytes);
+  }
+  return points;
+}
+
+SurfacePlyWriter::SurfacePlyWriter(const std::filesystem::path& path, double voxel_size)
+    : voxel_size_(voxel_size), file_(path) {
+  file_.Write(Header());
+}
+
+std::string SurfacePlyWriter::Header() const {
+  std::string comment = "comment confidence c: 1/c - 1 is the error to be expected, in voxels of ";
+  comment += ToText(static_cast<float>(voxel_size_));
+  std::string element = "\nelement vertex ";
+  element += std::to_string(num_points_);
+  std::string header = "ply\nformat binary_little_endian 1.0\n";
+  ORB360_CHECK(header.size() + comment.size() + element.size() <= kSurfaceBeginBytes, comment);
+  comment.resize(kSurfaceBeginBytes - header.size() - element.size(), ' ');
+  header += comment;
+  header += element;
+  header += kSurfaceProperties;
+  return header;
+}
+
+void SurfacePlyWriter::Append(std::span<const SurfacePoint> points) {
+  std::string buffer;
+  for (const SurfacePoint& point : points) {
+    buffer.append(reinterpret_cast<const char*>(point.position.data()), 3 * sizeof(float));
+    buffer.append(reinterpret_cast<const char*>(point.normal.data()), 3 * sizeof(float));
+    buffer.append(reinterpret_cast<const char*>(point.rgb.data()), point.rgb.size());
+    buffer.append(reinterpret_cast<const char*>(&point.confidence), sizeof(float));
+    if (buffer.size() >= kChunkBytes) {
+      file_.Write(buffer);
+      buffer.clear();
+    }
+  }
+  file_.Write(buffer);
+  num_points_ += points.size();
+}
+
+void SurfacePlyWriter::Commit() {
+  file_.Overwrite(0, Header());
+  file_.Commit();
+}
+
+std::vector<SurfacePoint> ReadSurfacePly(const std::filesystem::path& path) {
+  const std::string bytes = ReadBytes(path);
+  std::string_view data = bytes;
+  constexpr std::string_view kElement = "\nelement vertex ";
+  const size_t properties = data.find(kSurfaceProperties);
+  const size_t element = data.find(kElement);
+  std::optional<size_t> count;
+  if (data.starts_with("ply\n") && properties != std::string_view::npos && element < properties) {
+    const size_t number = element + kElement.size();
+    count = ParseNumber<size_t>(data.substr(number, properties - number));
+    data.remove_prefix(properties + kSurfaceProperties.size());
+  }
+  if (!count || data.size() % kSurfaceBytes != 0 || *count != data.size() / kSurfaceBytes) {
+    throw NotOurs(path);
+  }
+  std::vector<SurfacePoint> points(*count);
+  for (SurfacePoint& point : points) {
+    std::memcpy(point.position.data(), data.data(), 3 * sizeof(float));
+    std::memcpy(point.normal.data(), data.data() + 3 * sizeof(float), 3 * sizeof(float));
+    std::memcpy(point.rgb.data(), data.data() + 6 * sizeof(float), 3);
+    std::memcpy(&point.confidence, data.data() + 6 * sizeof(float) + 3, sizeof(float));
+    data.remove_prefix(kSurfaceBytes);
   }
   return points;
 }

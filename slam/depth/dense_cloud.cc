@@ -1,0 +1,160 @@
+#include "slam/depth/dense_cloud.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <numbers>
+
+#include "nn/base/check.h"
+
+namespace orb360 {
+namespace {
+
+/// Distances at which keyframes are compared, as shares of the median range: from pixels that see
+/// nearly the same to where half of what one sees is hidden from the other.
+constexpr double kDistances[] = {0.125, 0.25, 0.5, 1.0, 2.0};
+
+/// Views that were used last.
+class ViewCache {
+ public:
+  ViewCache(std::span<const DenseView> views, const DepthLoader& load,
+            const ConfirmationOptions& options, size_t capacity)
+      : views_(views), load_(load), options_(options), capacity_(capacity) {}
+
+  /// Stays valid until the next call but `capacity`.
+  const DepthView& Get(size_t index) {
+    const auto found = entries_.find(index);
+    if (found != entries_.end()) {
+      found->second.used = ++now_;
+      return found->second.view;
+    }
+    return Insert(index, load_(views_[index].frame_index));
+  }
+
+  const DepthView& Insert(size_t index, const DenseDepth& depth) {
+    if (entries_.size() >= capacity_) {
+      entries_.erase(std::ranges::min_element(entries_, {},
+                                              [](const auto& entry) { return entry.second.used; }));
+    }
+    const DenseView& view = views_[index];
+    Entry entry{DepthView(depth, view.world_from_camera, view.scale, options_), ++now_};
+    return entries_.insert_or_assign(index, std::move(entry)).first->second.view;
+  }
+
+ private:
+  struct Entry {
+    DepthView view;
+    std::int64_t used;
+  };
+  std::span<const DenseView> views_;
+  const DepthLoader& load_;
+  const ConfirmationOptions& options_;
+  const size_t capacity_;
+  std::map<size_t, Entry> entries_;
+  std::int64_t now_ = 0;
+};
+
+/// A hundredth of the median of a few views' median ranges.
+double ChooseVoxelSize(std::span<const DenseView> views, const DepthLoader& load) {
+  constexpr size_t kSamples = 15;
+  std::vector<double> medians;
+  const size_t step = views.size() / kSamples + 1;
+  for (size_t i = 0; i < views.size(); i += step) {
+    const double median = views[i].scale * MedianRange(load(views[i].frame_index).range);
+    if (median > 0) medians.push_back(median);
+  }
+  if (medians.empty()) return 1.0;  // There will be no point.
+  const auto middle = medians.begin() + static_cast<std::ptrdiff_t>(medians.size() / 2);
+  std::ranges::nth_element(medians, middle);
+  return 0.01 * *middle;
+}
+
+}  // namespace
+
+double MedianRange(const cv::Mat& range) {
+  ORB360_CHECK(range.type() == CV_32FC1, range.type());
+  // Of each row as many pixels as its solid angle is worth.
+  std::vector<float> ranges;
+  for (int row = 0; row < range.rows; ++row) {
+    const double latitude = std::numbers::pi * (0.5 - (row + 0.5) / range.rows);
+    const int step = std::max(1, static_cast<int>(std::lround(1.0 / std::cos(latitude))));
+    for (int column = 0; column < range.cols; column += step) {
+      const float value = range.at<float>(row, column);
+      if (value > 0) ranges.push_back(value);
+    }
+  }
+  if (ranges.empty()) return 0.0;
+  const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
+  std::ranges::nth_element(ranges, middle);
+  return *middle;
+}
+
+std::vector<size_t> ChooseNeighbours(std::span<const DenseView> views, size_t view,
+                                     double median_range, int max_neighbours) {
+  struct Candidate {
+    size_t index;
+    double distance;  // logarithm of the share of the median range
+  };
+  std::vector<Candidate> sides[2];  // before and after the view
+  for (const size_t index : views[view].neighbours) {
+    ORB360_CHECK(index < views.size() && index != view, index, view, views.size());
+    const double distance =
+        (views[index].world_from_camera.translation - views[view].world_from_camera.translation)
+            .norm();
+    if (distance > 0) {
+      sides[index > view].push_back({index, std::log(distance / median_range)});
+    }
+  }
+  std::vector<size_t> chosen;
+  // The middle first: where fewer are wanted, it is the best.
+  for (const int at : {2, 3, 1, 4, 0}) {
+    for (std::vector<Candidate>& side : sides) {
+      if (side.empty() || static_cast<int>(chosen.size()) >= max_neighbours) continue;
+      const double wanted = std::log(kDistances[at]);
+      const auto best = std::ranges::min_element(side, {}, [wanted](const Candidate& c) {
+        return std::pair(std::abs(c.distance - wanted), c.index);
+      });
+      chosen.push_back(best->index);
+      side.erase(best);
+    }
+  }
+  std::ranges::sort(chosen);
+  return chosen;
+}
+
+DenseCloudStatistics FuseCloud(std::span<const DenseView> views, const DepthLoader& load,
+                               const DenseCloudOptions& options, const VoxelSink& sink) {
+  DenseCloudStatistics statistics;
+  statistics.voxel_size = options.voxel_size ? *options.voxel_size : ChooseVoxelSize(views, load);
+  ORB360_CHECK(statistics.voxel_size > 0, statistics.voxel_size);
+  ORB360_CHECK(options.max_neighbours >= 0 && options.max_views > options.max_neighbours,
+               options.max_neighbours, options.max_views);
+  const SamplingOptions sampling{statistics.voxel_size,
+                                 options.max_range_voxels * statistics.voxel_size,
+                                 options.max_error_voxels * statistics.voxel_size};
+  ViewCache cache(views, load, options.confirmation, static_cast<size_t>(options.max_views));
+  VoxelGrid grid(statistics.voxel_size);
+  for (size_t i = 0; i < views.size(); ++i) {
+    const DenseDepth depth = load(views[i].frame_index);
+    const double median_range = views[i].scale * MedianRange(depth.range);
+    if (!(median_range > 0)) continue;
+    ++statistics.views;
+    const DepthView& view = cache.Insert(i, depth);
+    std::vector<const DepthView*> others;
+    for (const size_t neighbour : ChooseNeighbours(views, i, median_range, options.max_neighbours))
+      others.push_back(&cache.Get(neighbour));
+    for (const ConfirmedPoint& point :
+         ConfirmSurface(view, others, options.confirmation, sampling)) {
+      const cv::Vec3b& bgr = depth.color.at<cv::Vec3b>(point.row, point.column);
+      grid.Add(point.position, point.normal, {bgr[2], bgr[1], bgr[0]}, point.error,
+               static_cast<int>(i));
+      ++statistics.confirmed;
+    }
+    if (grid.num_voxels() > options.max_voxels) sink(grid.TakeOldest());
+  }
+  sink(grid.TakeAll());
+  return statistics;
+}
+
+}  // namespace orb360

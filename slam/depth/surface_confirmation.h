@@ -1,0 +1,111 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "slam/depth/dense_depth.h"
+#include "slam/geometry/rigid3.h"
+
+namespace orb360 {
+
+struct ConfirmationOptions {
+  /// Other keyframes that must see a point where it is.
+  int min_support = 2;
+  /// A point is refused when more than this share of the keyframes with an opinion see through it.
+  double max_conflict_share = 0.34;
+  /// Two ranges agree up to so many expected errors ...
+  double tolerance_errors = 2.5;
+  /// ... and this share of the range more: for poses, sampling, and what confidence does not know.
+  double tolerance_share = 0.01;
+  /// The least expected error of ln(range), however confident the network is.
+  double min_error = 0.01;
+  /// Keyframes of the same place err alike: together they are at most so many times as certain as
+  /// the best of them (in variance).
+  double max_independent = 4.0;
+};
+
+/// Dense depth of a keyframe in the world, ready for comparison.
+class DepthView {
+ public:
+  /// `scale`: world units in one unit of the ranges.
+  DepthView(const DenseDepth& depth, const Rigid3& world_from_camera, double scale,
+            const ConfirmationOptions& options);
+
+  int width() const { return range_.cols; }
+  int height() const { return range_.rows; }
+  const Rigid3& world_from_camera() const { return world_from_camera_; }
+
+  /// World units; 0 where unknown.
+  float range(int row, int column) const { return range_.at<float>(row, column); }
+  /// Of ln(range), to be expected.
+  float error(int row, int column) const {
+    return errors_[confidence_.at<std::uint8_t>(row, column)];
+  }
+  /// The least of the ranges of a pixel and the eight around it; 0 where one is unknown.
+  float Nearest(int row, int column) const;
+
+  /// Unit vector through a pixel's centre, camera frame.
+  Eigen::Vector3f BearingOf(int row, int column) const;
+
+  /// The range along a bearing (camera frame, unit), between pixels: linear in 1 / range, which is
+  /// exact on planes, where the four pixels around see one surface; that of the nearest pixel
+  /// otherwise. With the error of that pixel. Range 0 where unknown.
+  struct Sample {
+    float range;
+    float error;
+    int row;  // of the nearest pixel
+    int column;
+  };
+  Sample At(const Eigen::Vector3f& bearing) const;
+
+  /// The surface around a pixel as a plane, fitted to ranges of the pixels around it: unit normal
+  /// towards the camera, camera frame. Zero where there is none.
+  Eigen::Vector3f Normal(int row, int column) const;
+
+ private:
+  Rigid3 world_from_camera_;
+  cv::Mat range_;
+  cv::Mat confidence_;                       // CV_8UC1, times 255: a quarter of the memory
+  std::array<float, 256> errors_{};          // by that
+  std::vector<Eigen::Vector2f> longitudes_;  // cosine and sine of each column's longitude
+  std::vector<Eigen::Vector2f> latitudes_;   // of each row's latitude
+};
+
+/// A point of a keyframe that others have confirmed.
+struct ConfirmedPoint {
+  Eigen::Vector3d position;  // world
+  Eigen::Vector3f normal;    // world, unit, towards the camera
+  float error;               // along the normal, to be expected, world units
+  int row;                   // its pixel
+  int column;
+};
+
+/// Which pixels of a keyframe are tried.
+struct SamplingOptions {
+  /// World units: where pixels are closer to each other than half of this, every other one, every
+  /// fourth one ... is taken, and towards the poles, fewer of each row, so that every direction has
+  /// as many.
+  double spacing = 0.05;
+  /// World units; what is farther away is left out.
+  double max_range = 50.0;
+  /// World units; as are points whose expected error is larger.
+  double max_error = 0.25;
+};
+
+/// The points of a keyframe that the others agree with. A point is compared with what each of them
+/// sees in its direction: the same surface supports it, something nearer hides it, and something
+/// farther away, here and in the pixels around, contradicts it: the keyframe looks through it. What
+/// moves and what the network invents meets contradiction, or no support. Where keyframes agree,
+/// the point moves along its normal to the mean of all, weighted by certainty.
+///
+/// Ordered by row, then column: the same for any number of threads.
+std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
+                                           std::span<const DepthView* const> others,
+                                           const ConfirmationOptions& options,
+                                           const SamplingOptions& sampling);
+
+}  // namespace orb360

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+
+#include "slam/depth/dense_cloud.h"
+#include "slam/depth/surface_point.h"
+#include "slam/io/range_store.h"
+
+namespace orb360 {
+
+struct DenseCloudSummary {
+  DenseCloudStatistics fusion;
+  std::uint64_t points = 0;
+};
+
+/// Fuses the stored depth of `views` (FuseCloud) and writes the cloud (SurfacePlyWriter), in the
+/// world of their poses. Memory is bounded by the options, whatever the number of views; a folder
+/// `PATH.voxels` holds the rest in the meantime. `look`, where there is one, is shown all points,
+/// in pieces. Throws UserError where the disk fails.
+DenseCloudSummary WriteDenseCloud(
+    const std::filesystem::path& path, const RangeStore& store, std::span<const DenseView> views,
+    const DenseCloudOptions& options,
+    const std::function<void(std::span<const SurfacePoint>)>& look = nullptr);
+
+}  // namespace orb360
