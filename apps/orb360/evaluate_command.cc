@@ -10,11 +10,13 @@
 #include "apps/orb360/commands.h"
 #include "apps/orb360/evaluation_report.h"
 #include "nn/base/check.h"
+#include "slam/evaluation/cloud_folder.h"
 #include "slam/evaluation/depth_folder.h"
 #include "slam/evaluation/trajectory_error.h"
 #include "slam/evaluation/trajectory_plot.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/dataset.h"
+#include "slam/io/ply.h"
 #include "slam/io/trajectory.h"
 
 namespace orb360 {
@@ -63,6 +65,17 @@ void AddDepthErrors(const std::filesystem::path& truth, const std::filesystem::p
   if (depth.images > 0) (*report)["depth"] = ToJson(depth);
 }
 
+/// Errors of the dense cloud, where the estimate has one and the truth has depth images.
+void AddCloudErrors(const EvaluateOptions& options, const std::vector<StampedPose>& truth,
+                    const std::vector<PosePair>& pairs, nlohmann::json* report) {
+  const std::filesystem::path cloud = std::filesystem::path(options.estimate) / "cloud.ply";
+  const std::filesystem::path sequence = options.groundtruth;
+  if (!IsSurfacePly(cloud) || !std::filesystem::is_directory(sequence / Dataset::kDepthName)) {
+    return;
+  }
+  (*report)["cloud"] = ToJson(CompareCloudFile(cloud, sequence, truth, pairs));
+}
+
 int Evaluate(const EvaluateOptions& options) {
   const std::vector<StampedPose> truth =
       ReadTrajectory(TrajectoryFile(options.groundtruth, Dataset::kGroundTruthName));
@@ -80,6 +93,7 @@ int Evaluate(const EvaluateOptions& options) {
   AddRunFigures(options.estimate,
                 static_cast<double>(pairs.size()) / static_cast<double>(truth.size()), &report);
   AddDepthErrors(options.groundtruth, options.estimate, &report);
+  AddCloudErrors(options, truth, pairs, &report);
   if (!options.plot.empty()) {
     WriteFileAtomically(options.plot, PlotTrajectory(truth, pairs, *errors));
   }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <iomanip>
+#include <span>
 #include <sstream>
 #include <string>
 
@@ -36,6 +37,16 @@ constexpr Row kRows[] = {
     {"rpe_frame_rot_deg", "  rotation", "deg", 5},
 };
 
+/// Of the cloud.
+constexpr Row kCloudRows[] = {
+    {"points", "cloud, points compared", "", 0},
+    {"median_distance", "  median distance from the surface", "m", 3},
+    {"accuracy_10cm", "  accuracy: nearer than 10 cm", "%", 1, 100.0},
+    {"accuracy_25cm", "  nearer than 25 cm", "%", 1, 100.0},
+    {"completeness_10cm", "  completeness of what is within 15 m: 10 cm", "%", 1, 100.0},
+    {"completeness_25cm", "  25 cm", "%", 1, 100.0},
+};
+
 /// A column of the table of depth errors.
 constexpr Row kDepthColumns[] = {{"rmse", "RMSE", "m", 3},
                                  {"mae", "MAE", "m", 3},
@@ -46,6 +57,15 @@ constexpr Row kDepthColumns[] = {{"rmse", "RMSE", "m", 3},
 constexpr int kLabelWidth = 44;
 constexpr int kDepthLabelWidth = 18;
 constexpr int kNumberWidth = 12;
+
+void PrintRows(std::span<const Row> rows, const nlohmann::json& report, std::ostream& out) {
+  for (const Row& row : rows) {
+    if (!report.contains(row.key)) continue;
+    out << std::left << std::setw(kLabelWidth) << row.label << std::right << std::setw(kNumberWidth)
+        << std::setprecision(row.decimals) << row.factor * report[row.key].get<double>() << ' '
+        << row.unit << '\n';
+  }
+}
 
 nlohmann::json ToJson(const DepthErrorBin& bin) {
   return {{"rmse", bin.Rmse()},
@@ -131,14 +151,20 @@ nlohmann::json ToJson(const DepthFolderErrors& depth) {
   return json;
 }
 
+nlohmann::json ToJson(const CloudErrors& errors) {
+  return {{"points", errors.points},
+          {"surfels", errors.surfels},
+          {"median_distance", errors.median_distance},
+          {"accuracy_10cm", errors.accuracy[0]},
+          {"accuracy_25cm", errors.accuracy[1]},
+          {"completeness_10cm", errors.completeness[0]},
+          {"completeness_25cm", errors.completeness[1]}};
+}
+
 void PrintReport(const nlohmann::json& report, std::ostream& out) {
   out << std::fixed;
-  for (const Row& row : kRows) {
-    if (!report.contains(row.key)) continue;
-    out << std::left << std::setw(kLabelWidth) << row.label << std::right << std::setw(kNumberWidth)
-        << std::setprecision(row.decimals) << row.factor * report[row.key].get<double>() << ' '
-        << row.unit << '\n';
-  }
+  PrintRows(kRows, report, out);
+  if (report.contains("cloud")) PrintRows(kCloudRows, report["cloud"], out);
   if (report.contains("depth")) PrintDepth(report["depth"], out);
 }
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "slam/evaluation/cloud_error.h"
 #include "slam/evaluation/depth_folder.h"
 #include "slam/evaluation/trajectory_error.h"
 
@@ -14,6 +15,10 @@ nlohmann::json ToJson(const TrajectoryErrors& errors);
 
 /// The part under its key "depth". Bins that no pixel falls into have null for errors.
 nlohmann::json ToJson(const DepthFolderErrors& depth);
+
+/// The part under its key "cloud": shares of points near the surface (accuracy) and of the surface
+/// near points (completeness), at two distances.
+nlohmann::json ToJson(const CloudErrors& errors);
 
 /// A report as a table for people.
 void PrintReport(const nlohmann::json& report, std::ostream& out);

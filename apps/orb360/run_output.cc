@@ -63,7 +63,8 @@ void RunOutput::Append(double timestamp, const Rigid3& map_from_camera) {
   journal_.Append({timestamp, *file_world_from_map_ * map_from_camera});
 }
 
-void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::json& summary) {
+void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,
+                       const DensePictures& pictures) {
   Rigid3 file_world_from_map;
   if (!reconstruction.frames.empty()) {
     file_world_from_map =
@@ -79,9 +80,13 @@ void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::jso
   WriteTrajectory(folder_ / "keyframes.txt", ToStamped(reconstruction.keyframes),
                   file_world_from_map);
   WritePly(folder_ / "cloud.ply", cloud, file_world_from_map);
-  if (!reconstruction.keyframes.empty())
-    WriteFileAtomically(folder_ / "map.svg", DrawMap(reconstruction, file_world_from_map));
+  std::string map_svg;
+  if (!reconstruction.keyframes.empty()) {
+    map_svg = DrawMap(reconstruction, file_world_from_map);
+    WriteFileAtomically(folder_ / "map.svg", map_svg);
+  }
   WriteFileAtomically(folder_ / "summary.json", summary.dump(2) + "\n");
+  WriteRunReport(folder_, reconstruction, summary, map_svg, pictures);
   std::filesystem::remove(folder_ / kJournalName);
 }
 

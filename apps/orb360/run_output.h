@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "apps/orb360/run_report.h"
 #include "slam/io/trajectory.h"
 #include "slam/pipeline/reconstruction.h"
 
@@ -24,9 +25,10 @@ class RunOutput {
   /// Adds to the journal. Its world is that of the first pose.
   void Append(double timestamp, const Rigid3& map_from_camera);
 
-  /// Writes trajectory.txt, keyframes.txt, cloud.ply, map.svg (where there is a keyframe) and
-  /// summary.json, then removes the journal.
-  void Finish(const Reconstruction& reconstruction, const nlohmann::json& summary);
+  /// Writes trajectory.txt, keyframes.txt, cloud.ply, map.svg (where there is a keyframe),
+  /// summary.json and the report (WriteRunReport), then removes the journal.
+  void Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,
+              const DensePictures& pictures = {});
 
   const std::filesystem::path& folder() const { return folder_; }
 

@@ -21,13 +21,12 @@ struct DenseCloudOptions {
   double max_error_voxels = 5;
   /// Keyframes that each one is compared with.
   int max_neighbours = 10;
-  ConfirmationOptions confirmation;
+  ConfirmationOptions confirmation{};
   /// Keyframes held in memory, at 2.5 MB each for 1024 x 512 pixels. They are read again where
   /// this is less than the path that max_neighbours extend over.
   int max_views = 48;
-  /// Voxels held in memory, at about 100 bytes each; what has not been seen for longest goes
-  /// first.
-  size_t max_voxels = size_t{1} << 21;
+  /// Voxels held in memory, at 150 bytes each; what has not been seen for longest goes first.
+  size_t max_voxels = 1'400'000;
 };
 
 /// A keyframe with dense depth, at the end of a run.

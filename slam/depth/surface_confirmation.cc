@@ -89,7 +89,7 @@ DepthView::DepthView(const DenseDepth& depth, const Rigid3& world_from_camera, d
   ORB360_CHECK(depth.range.type() == CV_32FC1 && depth.confidence.type() == CV_32FC1,
                depth.range.type(), depth.confidence.type());
   ORB360_CHECK(depth.range.size() == depth.confidence.size() && depth.range.rows >= 4 &&
-                   depth.range.cols >= 8,
+                   depth.range.cols >= 8 && depth.range.cols % 2 == 0,
                depth.range.size(), depth.confidence.size());
   ORB360_CHECK(scale > 0 && std::isfinite(scale), scale);
   depth.range.convertTo(range_, CV_32F, scale);
@@ -136,17 +136,19 @@ DepthView::Sample DepthView::At(const Eigen::Vector3f& bearing) const {
   const float u = (longitude / (2.0f * kPi) + 0.5f) * static_cast<float>(width()) - 0.5f;
   const float v = (0.5f - latitude / kPi) * static_cast<float>(height()) - 0.5f;
   const int left = static_cast<int>(std::floor(u));
-  const int top = std::clamp(static_cast<int>(std::floor(v)), 0, height() - 2);
+  const int top = static_cast<int>(std::floor(v));
   const float right_share = u - static_cast<float>(left);
-  const float bottom_share = std::clamp(v - static_cast<float>(top), 0.0f, 1.0f);
-  const int columns[2] = {left < 0 ? left + width() : left,
-                          left + 1 >= width() ? left + 1 - width() : left + 1};
-  const float* upper = range_.ptr<float>(top);
-  const float* lower = range_.ptr<float>(top + 1);
-  const float corners[4] = {upper[columns[0]], upper[columns[1]], lower[columns[0]],
-                            lower[columns[1]]};
-  const int row = bottom_share < 0.5f ? top : top + 1;
-  const int column = right_share < 0.5f ? columns[0] : columns[1];
+  const float bottom_share = v - static_cast<float>(top);
+  // Beyond a pole the first or last row goes on at the opposite longitude.
+  const auto range_at = [this](int row, int column) {
+    const bool is_beyond = row < 0 || row >= height();
+    const int x = column + (is_beyond ? width() / 2 : 0);
+    return range(std::clamp(row, 0, height() - 1), (x + width()) % width());
+  };
+  const float corners[4] = {range_at(top, left), range_at(top, left + 1), range_at(top + 1, left),
+                            range_at(top + 1, left + 1)};
+  const int row = std::clamp(bottom_share < 0.5f ? top : top + 1, 0, height() - 1);
+  const int column = (right_share < 0.5f ? left + width() : left + 1) % width();
   Sample sample{range(row, column), error(row, column), row, column};
   const auto [least, most] = std::minmax({corners[0], corners[1], corners[2], corners[3]});
   if (least > 0 && most < kEdgeRatio * least) {
@@ -210,7 +212,8 @@ std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
     if (normal.isZero()) return std::nullopt;
     const float incidence = std::max(-normal.dot(bearing), kMinIncidence);
     const float own_error = range * view.error(row, column) * incidence;
-    float information = 1.0f / (own_error * own_error);
+    const float own_information = 1.0f / (own_error * own_error);
+    float information = own_information;
     float best = information;
     float shift = 0;
     int support = 0;
@@ -219,6 +222,7 @@ std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
       const Opinion opinion = Ask(witness, range * bearing, normal, own_error * own_error, options);
       if (opinion.verdict == Opinion::kContradicts) ++conflict;
       if (opinion.verdict != Opinion::kSupports) continue;
+      if (opinion.information > options.redundant_ratio * own_information) return std::nullopt;
       ++support;
       information += opinion.information;
       shift += opinion.information * opinion.offset;
@@ -243,9 +247,9 @@ std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
     for (int column = 0; column < view.width(); column += step) {
       const float range = view.range(row, column);
       if (!(range > 0) || range > sampling.max_range) continue;
-      // The largest power of two at which pixels are no more than half of the spacing apart.
+      // The largest power of two at which pixels are no farther apart than the spacing.
       int stride = 1;
-      while (2.0f * static_cast<float>(stride) * range * pixel_angle <= 0.5f * sampling.spacing) {
+      while (2.0f * static_cast<float>(stride) * range * pixel_angle <= sampling.spacing) {
         stride *= 2;
       }
       if (row % stride != 0 || column / step % stride != 0) continue;

@@ -23,6 +23,8 @@ struct ConfirmationOptions {
   double tolerance_share = 0.01;
   /// The least expected error of ln(range), however confident the network is.
   double min_error = 0.01;
+  /// A point is left to a keyframe that sees it too and has so many times less variance.
+  double redundant_ratio = 4.0;
   /// Keyframes of the same place err alike: together they are at most so many times as certain as
   /// the best of them (in variance).
   double max_independent = 4.0;
@@ -31,7 +33,8 @@ struct ConfirmationOptions {
 /// Dense depth of a keyframe in the world, ready for comparison.
 class DepthView {
  public:
-  /// `scale`: world units in one unit of the ranges.
+  /// `scale`: world units in one unit of the ranges. Contract: images of an even width, 8 x 4 or
+  /// more.
   DepthView(const DenseDepth& depth, const Rigid3& world_from_camera, double scale,
             const ConfirmationOptions& options);
 
@@ -87,7 +90,7 @@ struct ConfirmedPoint {
 /// Which pixels of a keyframe are tried.
 struct SamplingOptions {
   /// World units: where pixels are closer to each other than half of this, every other one, every
-  /// fourth one ... is taken, and towards the poles, fewer of each row, so that every direction has
+  /// fourth one ... is taken; and towards the poles, fewer of each row, so that every direction has
   /// as many.
   double spacing = 0.05;
   /// World units; what is farther away is left out.

@@ -126,6 +126,13 @@ void SurfacePlyWriter::Commit() {
   file_.Commit();
 }
 
+bool IsSurfacePly(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string begin(kSurfaceBeginBytes + kSurfaceProperties.size(), '\0');
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return file && begin.ends_with(kSurfaceProperties);
+}
+
 std::vector<SurfacePoint> ReadSurfacePly(const std::filesystem::path& path) {
   const std::string bytes = ReadBytes(path);
   std::string_view data = bytes;

@@ -51,6 +51,9 @@ class SurfacePlyWriter {
   std::uint64_t num_points_ = 0;
 };
 
+/// True where the file begins as those of SurfacePlyWriter do.
+bool IsSurfacePly(const std::filesystem::path& path);
+
 /// The points of a file that SurfacePlyWriter wrote. Throws UserError for any other.
 std::vector<SurfacePoint> ReadSurfacePly(const std::filesystem::path& path);
 

@@ -1,5 +1,6 @@
 #include "slam/io/ply.h"
 
+#include <filesystem>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -56,6 +57,64 @@ TEST(Ply, RefusesOtherFiles) {
   WriteText(folder / "text.ply", "ply\nformat ascii 1.0\n");
   for (const char* name : {"cut.ply", "text.ply", "absent.ply"}) {
     EXPECT_THAT(MessageOf<UserError>([&] { ReadPly(folder / name); }), testing::HasSubstr(name));
+  }
+}
+
+TEST(SurfacePly, WritesTheBytesThatTheFormatAsksFor) {
+  const TempFolder folder;
+  SurfacePlyWriter writer(folder / "a.ply", 0.05);
+  writer.Append(std::vector<SurfacePoint>{{{1.0f, -2.0f, 0.5f}, {0, 0, 1}, {10, 20, 255}, 0.5f}});
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.ply"));
+  writer.Commit();
+  const std::string bytes = ReadText(folder / "a.ply");
+  EXPECT_THAT(bytes, testing::StartsWith("ply\nformat binary_little_endian 1.0\ncomment "));
+  EXPECT_THAT(bytes, testing::HasSubstr("voxels of 0.05"));
+  EXPECT_THAT(bytes,
+              testing::EndsWith("\nelement vertex 1\n"
+                                "property float x\nproperty float y\nproperty float z\n"
+                                "property float nx\nproperty float ny\nproperty float nz\n"
+                                "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                                "property float confidence\nend_header\n" +
+                                std::string("\x00\x00\x80\x3f\x00\x00\x00\xc0\x00\x00\x00\x3f"
+                                            "\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x80\x3f"
+                                            "\x0a\x14\xff\x00\x00\x00\x3f",
+                                            31)));
+}
+
+TEST(SurfacePly, ReadsBackAnyNumberOfPointsInAnyNumberOfPieces) {
+  const TempFolder folder;
+  for (const size_t pieces : {size_t{0}, size_t{1}, size_t{3}}) {
+    SurfacePlyWriter writer(folder / "a.ply", 0.05);
+    std::vector<SurfacePoint> points(70000);  // More than is written at once.
+    for (size_t i = 0; i < pieces; ++i) {
+      points[5].position.x() = static_cast<float>(i);
+      points[5].confidence = 0.25f;
+      writer.Append(points);
+    }
+    writer.Commit();
+    EXPECT_EQ(writer.num_points(), pieces * points.size());
+    const std::vector<SurfacePoint> read = ReadSurfacePly(folder / "a.ply");
+    ASSERT_EQ(read.size(), pieces * points.size());
+    for (size_t i = 0; i < pieces; ++i) {
+      EXPECT_EQ(read[i * points.size() + 5].position.x(), static_cast<float>(i));
+      EXPECT_EQ(read[i * points.size() + 5].confidence, 0.25f);
+    }
+  }
+}
+
+TEST(SurfacePly, RefusesOtherFiles) {
+  const TempFolder folder;
+  WritePly(folder / "sparse.ply", std::vector<ColoredPoint>(3));
+  SurfacePlyWriter writer(folder / "a.ply", 0.05);
+  writer.Append(std::vector<SurfacePoint>(10));
+  writer.Commit();
+  CopyTruncated(folder / "a.ply", folder / "cut.ply", 0.95);
+  EXPECT_TRUE(IsSurfacePly(folder / "a.ply"));
+  EXPECT_FALSE(IsSurfacePly(folder / "sparse.ply"));
+  EXPECT_FALSE(IsSurfacePly(folder / "absent.ply"));
+  for (const char* name : {"sparse.ply", "cut.ply", "absent.ply"}) {
+    EXPECT_THAT(MessageOf<UserError>([&] { ReadSurfacePly(folder / name); }),
+                testing::HasSubstr(name));
   }
 }
 

@@ -1,0 +1,96 @@
+#include "apps/orb360/dense_output.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <system_error>
+
+#include "nn/base/check.h"
+#include "slam/evaluation/cloud_picture.h"
+#include "slam/evaluation/depth_picture.h"
+#include "slam/io/dataset.h"
+#include "slam/io/depth_image.h"
+#include "slam/io/output_file.h"
+
+namespace orb360 {
+namespace {
+
+constexpr int kCloudPictureSide = 1600;   // pixels
+constexpr int kDepthPictureWidth = 1024;  // pixels
+/// Keyframes that are drawn, spread over the run.
+constexpr size_t kDrawnKeyframes = 3;
+/// What is drawn in the colours of near and far, in median ranges.
+constexpr double kNear = 0.25;
+constexpr double kFar = 8.0;
+
+std::vector<DensePictures::OfKeyframe> DrawKeyframes(const RangeStore& store,
+                                                     std::span<const DenseView> views) {
+  std::vector<DensePictures::OfKeyframe> pictures;
+  const size_t count = std::min(kDrawnKeyframes, views.size());
+  for (size_t i = 0; i < count; ++i) {
+    const int frame_index = views[(2 * i + 1) * views.size() / (2 * count)].frame_index;
+    const DenseDepth depth = store.Get(frame_index);
+    const double median = MedianRange(depth.range);
+    if (!(median > 0)) continue;
+    pictures.push_back(
+        {frame_index, DrawDepth(depth, kNear * median, kFar * median, kDepthPictureWidth)});
+  }
+  return pictures;
+}
+
+}  // namespace
+
+std::vector<DenseView> MakeDenseViews(const Reconstruction& reconstruction,
+                                      std::span<const double> scales, const RangeStore& store,
+                                      const Rigid3& file_world_from_map) {
+  const std::vector<FramePose>& keyframes = reconstruction.keyframes;
+  ORB360_CHECK(scales.size() == keyframes.size(), scales.size(), keyframes.size());
+  std::vector<DenseView> views;
+  constexpr size_t kNone = static_cast<size_t>(-1);
+  std::vector<size_t> view_of(keyframes.size(), kNone);
+  for (size_t i = 0; i < keyframes.size(); ++i) {
+    if (!store.Contains(keyframes[i].index)) continue;
+    view_of[i] = views.size();
+    views.push_back(
+        {keyframes[i].index, file_world_from_map * keyframes[i].world_from_camera, scales[i], {}});
+  }
+  for (const CovisibleFrames& pair : reconstruction.covisibility) {
+    const size_t first = view_of[pair.first];
+    const size_t second = view_of[pair.second];
+    if (first == kNone || second == kNone) continue;
+    views[first].neighbours.push_back(second);
+    views[second].neighbours.push_back(first);
+  }
+  return views;
+}
+
+DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const RangeStore& store,
+                             std::span<const DenseView> views, const DenseCloudOptions& options) {
+  DenseOutput output;
+  if (views.empty()) {
+    output.cloud = WriteDenseCloud(folder / "cloud.ply", store, views, options);
+    return output;
+  }
+  std::vector<Eigen::Vector3d> path;
+  for (const DenseView& view : views) path.push_back(view.world_from_camera.translation);
+  CloudPicture picture(path, kCloudPictureSide);
+  output.cloud =
+      WriteDenseCloud(folder / "cloud.ply", store, views, options,
+                      [&](std::span<const SurfacePoint> points) { picture.Add(points); });
+  output.pictures = {picture.Draw(), DrawKeyframes(store, views)};
+  return output;
+}
+
+void SaveDepth(const std::filesystem::path& folder, const RangeStore& store,
+               std::span<const DenseView> views) {
+  const std::filesystem::path images = folder / Dataset::kDepthName;
+  std::error_code error;
+  std::filesystem::create_directories(images, error);
+  if (error) ThrowWriteError(images, error.value());
+  for (const DenseView& view : views) {
+    char name[32];
+    std::snprintf(name, sizeof name, "%06d.png", view.frame_index);
+    WriteDepthImage(images / name, view.scale * store.Get(view.frame_index).range);
+  }
+}
+
+}  // namespace orb360

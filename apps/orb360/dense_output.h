@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "apps/orb360/run_report.h"
+#include "slam/depth/dense_cloud.h"
+#include "slam/io/dense_cloud_file.h"
+#include "slam/io/range_store.h"
+#include "slam/pipeline/reconstruction.h"
+
+namespace orb360 {
+
+/// The keyframes of a reconstruction that have depth in the store, in the frame of the written
+/// files. Neighbours are those that see the same landmarks, in the same map. `scales`, one for each
+/// of `reconstruction.keyframes`: the scale of the map at the end over that when the depth was
+/// made.
+std::vector<DenseView> MakeDenseViews(const Reconstruction& reconstruction,
+                                      std::span<const double> scales, const RangeStore& store,
+                                      const Rigid3& file_world_from_map);
+
+struct DenseOutput {
+  DenseCloudSummary cloud;
+  DensePictures pictures;
+};
+
+/// Writes cloud.ply, fused from the views, into `folder`, and draws it and a few keyframes.
+DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const RangeStore& store,
+                             std::span<const DenseView> views, const DenseCloudOptions& options);
+
+/// Writes the range of every view into `folder`/depth, a 16-bit PNG (WriteDepthImage) named by the
+/// frame's index, in the world's unit at the end.
+void SaveDepth(const std::filesystem::path& folder, const RangeStore& store,
+               std::span<const DenseView> views);
+
+}  // namespace orb360

@@ -1,0 +1,147 @@
+#include "apps/orb360/run_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <system_error>
+
+#include "slam/evaluation/chart.h"
+#include "slam/evaluation/html_report.h"
+#include "slam/io/atomic_file.h"
+#include "slam/io/output_file.h"
+
+namespace orb360 {
+namespace {
+
+/// 1234567 as "1,234,567".
+std::string Grouped(double value) {
+  std::string text = Decimal(value, 0);
+  for (auto at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) {
+    text.insert(static_cast<size_t>(at), ",");
+  }
+  return text;
+}
+
+std::string WithUnit(double value, int decimals, const char* unit) {
+  std::string text = Decimal(value, decimals);
+  text += ' ';
+  text += unit;
+  return text;
+}
+
+/// Along the frames; a step from one map to the next does not count.
+double PathLength(const std::vector<FramePose>& frames) {
+  double length = 0;
+  for (size_t i = 1; i < frames.size(); ++i) {
+    if (frames[i].map != frames[i - 1].map) continue;
+    length +=
+        (frames[i].world_from_camera.translation - frames[i - 1].world_from_camera.translation)
+            .norm();
+  }
+  return length;
+}
+
+bool IsMetric(const nlohmann::json& summary) {
+  return summary.contains("scale") && summary["scale"].value("source", "none") != "none";
+}
+
+std::vector<HtmlReport::Tile> MakeTiles(const Reconstruction& reconstruction,
+                                        const nlohmann::json& summary) {
+  const double frames = std::max(summary.value("frames", 0.0), 1.0);
+  const std::string frames_text = Grouped(summary.value("frames", 0.0));
+  const bool is_metric = IsMetric(summary);
+  std::vector<HtmlReport::Tile> tiles = {
+      {WithUnit(100.0 * summary.value("tracked", 0.0) / frames, 1, "%"),
+       "of the " + frames_text + " frames tracked"},
+      {Grouped(summary.value("lost", 0.0)), "times lost"},
+      {Decimal(PathLength(reconstruction.frames), 1) + (is_metric ? " m" : ""),
+       is_metric ? "path" : "path, in units of the map"},
+      {Grouped(summary.value("keyframes", 0.0)), "keyframes"},
+      {Grouped(summary.value("landmarks", 0.0)), "landmarks"},
+      {Decimal(summary.value("features_per_keyframe", 0.0), 0), "features matched in a keyframe"},
+      {Decimal(summary.value("frames_per_second", 0.0), 1), "frames a second"},
+      {WithUnit(summary.value("peak_memory_mb", 0.0), 0, "MB"), "memory at most"},
+  };
+  if (summary.contains("cloud_points")) {
+    tiles.push_back({Grouped(summary["cloud_points"].get<double>()), "points in the cloud"});
+  }
+  if (is_metric) {
+    tiles.push_back({summary["scale"].value("source", ""), "source of the scale"});
+  }
+  return tiles;
+}
+
+std::vector<HtmlReport::Bar> MakeBars(const nlohmann::json& summary) {
+  std::vector<HtmlReport::Bar> bars;
+  if (!summary.contains("timing_ms")) return bars;
+  for (const auto& [stage, times] : summary["timing_ms"].items()) {
+    bars.push_back({stage, times.value("median", 0.0), times.value("p95", 0.0)});
+  }
+  std::ranges::stable_sort(bars, std::ranges::greater(), &HtmlReport::Bar::value);
+  return bars;
+}
+
+std::string KeyframeName(int frame_index) {
+  char name[32];
+  std::snprintf(name, sizeof name, "keyframe_%06d.png", frame_index);
+  return name;
+}
+
+}  // namespace
+
+void WriteRunReport(const std::filesystem::path& run_folder, const Reconstruction& reconstruction,
+                    const nlohmann::json& summary, const std::string& map_svg,
+                    const DensePictures& pictures) {
+  const std::filesystem::path folder = run_folder / "report";
+  std::error_code error;
+  std::filesystem::remove_all(folder, error);  // Pictures of an earlier run.
+  if (!error) std::filesystem::create_directories(folder, error);
+  if (error) ThrowWriteError(folder, error.value());
+
+  HtmlReport report;
+  report.title = summary.value("input", "");
+  report.subtitle = "orb360 ";
+  report.subtitle += summary.value("version", "");
+  if (summary.value("interrupted", false)) report.subtitle += ", ended early";
+  report.tiles = MakeTiles(reconstruction, summary);
+  if (summary.contains("warnings")) {
+    report.warnings = summary["warnings"].get<std::vector<std::string>>();
+  }
+  const auto add_png = [&](const std::string& name, const cv::Mat& image, const std::string& title,
+                           const std::string& caption) {
+    const std::string png = EncodePng(image);
+    WriteFileAtomically(folder / name, png);
+    report.pictures.push_back({title, caption, png, "image/png"});
+  };
+  if (!pictures.cloud.empty()) {
+    add_png("cloud.png", pictures.cloud, "The cloud from above",
+            "Cut off at the height of the camera, so that ceilings and trees hide nothing. The "
+            "line is the camera's path, the ring its beginning. The points are in cloud.ply.");
+  }
+  if (!map_svg.empty()) {
+    report.pictures.push_back(
+        {"Trajectory and map from above",
+         "Keyframes (blue), landmarks (grey), and which keyframes see the same landmarks (green).",
+         map_svg, "image/svg+xml"});
+  }
+  for (const DensePictures::OfKeyframe& keyframe : pictures.keyframes) {
+    add_png(KeyframeName(keyframe.frame_index), keyframe.picture,
+            "Depth of frame " + std::to_string(keyframe.frame_index),
+            "The picture, its range (red is near, blue is far) and its confidence (white is "
+            "certain).");
+  }
+  report.bars_title = "Time of a frame by stage";
+  report.bars_unit = "Milliseconds: median and 95th percentile. Stages may overlap.";
+  report.bars = MakeBars(summary);
+  report.table_title = "Files of this run";
+  report.table = {
+      {"trajectory.txt", "pose of every tracked frame, TUM format, world from camera"},
+      {"keyframes.txt", "the same of the keyframes"},
+      {"cloud.ply", "points with colour, for any viewer of point clouds"},
+      {"map.svg", "the map above, as a file"},
+      {"summary.json", "all figures"},
+  };
+  WriteFileAtomically(folder / "report.html", MakeHtml(report));
+}
+
+}  // namespace orb360

@@ -1,0 +1,208 @@
+#include "slam/evaluation/cloud_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "nn/base/check.h"
+#include "slam/depth/surface_confirmation.h"
+
+namespace orb360 {
+namespace {
+
+constexpr double kSurfelSpacing = 0.05;  // metres
+constexpr double kMaxTrueRange = 80.0;   // metres
+/// Discs of far and slanted surfaces would stick out at edges.
+constexpr float kMaxSurfelRadius = 0.15f;  // metres
+/// Beyond this, every n-th element is looked at: shares of a million are known to a tenth of a
+/// percent.
+constexpr size_t kMostCompared = 1'000'000;
+
+std::array<int, 3> CellOf(const Eigen::Vector3f& position, float size) {
+  return {static_cast<int>(std::floor(position.x() / size)),
+          static_cast<int>(std::floor(position.y() / size)),
+          static_cast<int>(std::floor(position.z() / size))};
+}
+
+/// Positions by cubes of one size, to find those around a place.
+class CellIndex {
+ public:
+  template <typename Position>
+  CellIndex(size_t count, float size, const Position& position) : size_(size) {
+    order_.reserve(count);
+    for (size_t i = 0; i < count; ++i) order_.push_back({CellOf(position(i), size_), i});
+    std::ranges::sort(order_);
+  }
+
+  /// Calls visit(index) for what is in the cube of `place` and the 26 around it.
+  template <typename Visit>
+  void VisitAround(const Eigen::Vector3f& place, const Visit& visit) const {
+    const std::array<int, 3> centre = CellOf(place, size_);
+    for (int x = centre[0] - 1; x <= centre[0] + 1; ++x) {
+      for (int y = centre[1] - 1; y <= centre[1] + 1; ++y) {
+        // The three cubes above each other are neighbours in the order.
+        const Entry first{{x, y, centre[2] - 1}, 0};
+        const Entry last{{x, y, centre[2] + 2}, 0};
+        for (auto it = std::ranges::lower_bound(order_, first); it != order_.end() && *it < last;
+             ++it) {
+          visit(it->second);
+        }
+      }
+    }
+  }
+
+ private:
+  using Entry = std::pair<std::array<int, 3>, size_t>;
+  float size_;
+  std::vector<Entry> order_;
+};
+
+/// Distance of a point from a disc.
+float DistanceFrom(const Surfel& surfel, const Eigen::Vector3f& point) {
+  const Eigen::Vector3f offset = point - surfel.position;
+  const float height = surfel.normal.dot(offset);
+  const float aside = std::sqrt(std::max(0.0f, offset.squaredNorm() - height * height));
+  return std::hypot(height, std::max(0.0f, aside - surfel.radius));
+}
+
+size_t StepFor(size_t count) { return count / kMostCompared + 1; }
+
+/// Share of the distances no larger than each of kDistances.
+std::array<double, 2> Shares(std::span<const float> distances) {
+  std::array<double, 2> shares{};
+  for (size_t i = 0; i < shares.size(); ++i) {
+    const auto within = std::ranges::count_if(distances, [i](float distance) {
+      return distance <= static_cast<float>(CloudErrors::kDistances[i]);
+    });
+    shares[i] = static_cast<double>(within) / static_cast<double>(distances.size());
+  }
+  return shares;
+}
+
+}  // namespace
+
+void TrueSurface::Add(const cv::Mat& range, const cv::Mat& excluded,
+                      const Rigid3& world_from_camera) {
+  ORB360_CHECK(range.type() == CV_32FC1, range.type());
+  ORB360_CHECK(excluded.empty() || (excluded.type() == CV_8UC1 && excluded.size() == range.size()),
+               excluded.type(), excluded.size(), range.size());
+  const cv::Mat certain(range.size(), CV_32FC1, cv::Scalar(1.0));
+  ConfirmationOptions options;
+  options.min_support = 0;
+  const DepthView view({range, certain, {}}, world_from_camera, 1.0, options);
+  const SamplingOptions sampling{kSurfelSpacing, kMaxTrueRange,
+                                 std::numeric_limits<double>::infinity()};
+  const float pixel_angle = std::numbers::pi_v<float> / static_cast<float>(range.rows);
+  for (const ConfirmedPoint& point : ConfirmSurface(view, {}, options, sampling)) {
+    if (!excluded.empty() && excluded.at<std::uint8_t>(point.row, point.column) != 0) continue;
+    const float distance = view.range(point.row, point.column);
+    const Eigen::Vector3f ray = (world_from_camera.rotation.toRotationMatrix() *
+                                 view.BearingOf(point.row, point.column).cast<double>())
+                                    .cast<float>();
+    // Half the diagonal of the pixel where it lies on the surface.
+    const float reach = distance * pixel_angle / std::max(-ray.dot(point.normal), 0.1f);
+    const float radius =
+        std::clamp(0.7f * reach, static_cast<float>(kSurfelSpacing), kMaxSurfelRadius);
+    const Eigen::Vector3f position = point.position.cast<float>();
+    entries_.push_back({CellOf(position, static_cast<float>(kSurfelSpacing)),
+                        {position, point.normal, radius, distance}});
+  }
+  // Twice as many as there were: thinning costs no more than a sort of everything in the end.
+  if (entries_.size() > 2 * thinned_ + 1'000'000) Thin();
+}
+
+void TrueSurface::Thin() {
+  std::ranges::stable_sort(entries_, [](const Entry& a, const Entry& b) {
+    return a.cell != b.cell ? a.cell < b.cell : a.surfel.range < b.surfel.range;
+  });
+  const auto rest = std::ranges::unique(entries_, {}, &Entry::cell);
+  entries_.erase(rest.begin(), rest.end());
+  thinned_ = entries_.size();
+}
+
+std::vector<Surfel> TrueSurface::TakeSurfels() {
+  Thin();
+  std::vector<Surfel> surfels;
+  surfels.reserve(entries_.size());
+  for (const Entry& entry : entries_) surfels.push_back(entry.surfel);
+  entries_.clear();
+  thinned_ = 0;
+  return surfels;
+}
+
+CloudErrors CompareCloud(std::span<const Eigen::Vector3f> cloud, std::span<const Surfel> truth) {
+  constexpr auto kFarthest = static_cast<float>(CloudErrors::kDistances.back());
+  CloudErrors errors;
+
+  // Wide enough that every disc that could be near enough is in a neighbouring cube.
+  const CellIndex surface(truth.size(), kFarthest + kMaxSurfelRadius,
+                          [&](size_t i) { return truth[i].position; });
+  const size_t step = StepFor(cloud.size());
+  std::vector<float> distances((cloud.size() + step - 1) / step);
+#pragma omp parallel for schedule(dynamic, 1024)
+  for (size_t i = 0; i < distances.size(); ++i) {
+    float nearest = 2.0f * kFarthest;
+    surface.VisitAround(cloud[i * step], [&](size_t j) {
+      nearest = std::min(nearest, DistanceFrom(truth[j], cloud[i * step]));
+    });
+    distances[i] = nearest;
+  }
+
+  const CellIndex points(cloud.size(), kFarthest, [&](size_t i) { return cloud[i]; });
+  std::vector<const Surfel*> wanted;
+  for (const Surfel& surfel : truth) {
+    if (surfel.range <= CloudErrors::kCompleteRange) wanted.push_back(&surfel);
+  }
+  const size_t wanted_step = StepFor(wanted.size());
+  std::vector<float> gaps((wanted.size() + wanted_step - 1) / wanted_step);
+#pragma omp parallel for schedule(dynamic, 1024)
+  for (size_t i = 0; i < gaps.size(); ++i) {
+    const Eigen::Vector3f& place = wanted[i * wanted_step]->position;
+    float nearest = 4.0f * kFarthest * kFarthest;
+    points.VisitAround(
+        place, [&](size_t j) { nearest = std::min(nearest, (cloud[j] - place).squaredNorm()); });
+    gaps[i] = std::sqrt(nearest);
+  }
+
+  errors.points = distances.size();
+  errors.surfels = gaps.size();
+  errors.accuracy = Shares(distances);
+  errors.completeness = Shares(gaps);
+  errors.median_distance = std::numeric_limits<double>::quiet_NaN();
+  if (!distances.empty()) {
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::ranges::nth_element(distances, middle);
+    errors.median_distance = std::min(*middle, kFarthest);
+  }
+  return errors;
+}
+
+void AlignLocally(std::span<const PosePair> pairs, std::span<Eigen::Vector3f> points) {
+  ORB360_CHECK(!pairs.empty());
+  std::vector<Rigid3> truth_from_estimate;
+  truth_from_estimate.reserve(pairs.size());
+  for (const PosePair& pair : pairs) {
+    truth_from_estimate.push_back(pair.truth_from_camera * pair.estimate_from_camera.Inverse());
+  }
+  // One pose for each cube of this size, metres: the drift within it is of no account.
+  constexpr float kCell = 1.0f;
+  std::map<std::array<int, 3>, size_t> nearest_of_cell;
+  for (Eigen::Vector3f& point : points) {
+    const std::array<int, 3> cell = CellOf(point, kCell);
+    const auto [found, is_new] = nearest_of_cell.try_emplace(cell, size_t{0});
+    if (is_new) {
+      const Eigen::Vector3d centre(kCell * (cell[0] + 0.5), kCell * (cell[1] + 0.5),
+                                   kCell * (cell[2] + 0.5));
+      const auto nearest = std::ranges::min_element(pairs, {}, [&](const PosePair& pair) {
+        return (pair.estimate_from_camera.translation - centre).squaredNorm();
+      });
+      found->second = static_cast<size_t>(nearest - pairs.begin());
+    }
+    point = (truth_from_estimate[found->second] * point.cast<double>()).cast<float>();
+  }
+}
+
+}  // namespace orb360

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+
+#include "slam/evaluation/trajectory_error.h"
+#include "slam/geometry/rigid3.h"
+
+namespace orb360 {
+
+/// A piece of the true surface: a disc.
+struct Surfel {
+  Eigen::Vector3f position;  // world of the ground truth, metres
+  Eigen::Vector3f normal;    // unit
+  float radius;              // metres: discs of neighbouring pixels overlap
+  float range;               // from the camera that saw it
+};
+
+/// The true surface, as true depth images see it, thinned to one disc in each cube of 5 cm: that
+/// which was seen from nearest.
+class TrueSurface {
+ public:
+  /// Adds what one image sees up to 80 m away. `range`: CV_32FC1, metres, 0 for none; `excluded`,
+  /// CV_8UC1 of the same size or empty, is not 0 where it shows what does not count, such as what
+  /// moves.
+  void Add(const cv::Mat& range, const cv::Mat& excluded, const Rigid3& world_from_camera);
+
+  /// In a fixed order.
+  std::vector<Surfel> TakeSurfels();
+
+ private:
+  struct Entry {
+    std::array<int, 3> cell;
+    Surfel surfel;
+  };
+  void Thin();
+
+  std::vector<Entry> entries_;
+  size_t thinned_ = 0;  // entries at the beginning that are in different cubes, in their order
+};
+
+/// How far a cloud is from the true surface, and the surface from the cloud.
+struct CloudErrors {
+  /// Distances at which both are told, metres.
+  static constexpr std::array<double, 2> kDistances = {0.10, 0.25};
+  /// True surfaces up to this far from a camera should be in the cloud, metres.
+  static constexpr double kCompleteRange = 15.0;
+
+  size_t points = 0;   // of the cloud that were compared
+  size_t surfels = 0;  // of the truth, up to kCompleteRange
+  /// Share of the points no farther from the surface.
+  std::array<double, 2> accuracy{};
+  /// Share of the surface that has a point no farther away.
+  std::array<double, 2> completeness{};
+  /// Median distance of points from the surface, metres; at most the largest of kDistances.
+  double median_distance = 0.0;
+};
+
+/// Compares a cloud (metres, world of the truth) with the true surface. Of very large clouds every
+/// n-th point is looked at. NaN where there is nothing to compare.
+CloudErrors CompareCloud(std::span<const Eigen::Vector3f> cloud, std::span<const Surfel> truth);
+
+/// Moves points of an estimate into the world of the truth, each by what moves the estimate's
+/// nearest pose to the true one: so that the cloud is judged by what is around the camera, not by
+/// the drift of the path, which the errors of the trajectory tell. Contract: there is a pair.
+void AlignLocally(std::span<const PosePair> pairs, std::span<Eigen::Vector3f> points);
+
+}  // namespace orb360

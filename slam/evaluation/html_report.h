@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+namespace orb360 {
+
+/// A page that tells what a run did: figures in large, pictures, bars, and a table. Texts are
+/// plain: what HTML would read as markup is escaped.
+struct HtmlReport {
+  struct Tile {
+    std::string value;
+    std::string label;
+  };
+  struct Picture {
+    std::string title;
+    std::string caption;
+    std::string data;        // of the file
+    std::string media_type;  // such as "image/png"
+  };
+  /// Two lengths from the same zero, such as a median and a 95th percentile.
+  struct Bar {
+    std::string label;
+    double value = 0;
+    double extent = 0;  // at least `value`
+  };
+  struct Row {
+    std::string name;
+    std::string text;
+  };
+
+  std::string title;
+  std::string subtitle;
+  std::vector<Tile> tiles;
+  std::vector<std::string> warnings;
+  std::vector<Picture> pictures;
+  std::string bars_title;
+  std::string bars_unit;
+  std::vector<Bar> bars;
+  std::string table_title;
+  std::vector<Row> table;
+};
+
+/// One file that needs no other: pictures are inside.
+std::string MakeHtml(const HtmlReport& report);
+
+/// A picture (CV_8UC3, BGR) as the bytes of a PNG file.
+std::string EncodePng(const cv::Mat& image);
+
+/// RFC 4648.
+std::string EncodeBase64(const std::string& data);
+
+}  // namespace orb360

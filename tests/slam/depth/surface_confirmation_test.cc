@@ -1,0 +1,225 @@
+#include "slam/depth/surface_confirmation.h"
+
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "tests/slam/depth/range_room.h"
+
+namespace orb360 {
+namespace {
+
+const EquirectangularCamera kCamera(256, 128);
+const RangeRoom kRoom;
+
+/// Cameras along a gentle curve.
+std::vector<Rigid3> Cameras() {
+  std::vector<Rigid3> cameras;
+  for (int i = 0; i < 7; ++i) {
+    cameras.push_back(TurnedCamera({-1.2 + 0.4 * i, 0.3 - 0.02 * i * i, 0.1}, 0.15 * i));
+  }
+  return cameras;
+}
+
+std::vector<DepthView> Views(const std::vector<DenseDepth>& depths,
+                             const ConfirmationOptions& options = {}) {
+  std::vector<DepthView> views;
+  const std::vector<Rigid3> cameras = Cameras();
+  for (size_t i = 0; i < depths.size(); ++i) {
+    views.emplace_back(depths[i], cameras[i], 1.0, options);
+  }
+  return views;
+}
+
+/// The points of the view in the middle, compared with all others.
+std::vector<ConfirmedPoint> ConfirmMiddle(const std::vector<DepthView>& views,
+                                          const ConfirmationOptions& options = {}) {
+  std::vector<const DepthView*> others;
+  for (size_t i = 0; i < views.size(); ++i) {
+    if (i != views.size() / 2) others.push_back(&views[i]);
+  }
+  return ConfirmSurface(views[views.size() / 2], others, options, {.spacing = 0.02});
+}
+
+std::vector<DenseDepth> RenderAll(double confidence = 0.99) {
+  std::vector<DenseDepth> depths;
+  for (const Rigid3& camera : Cameras()) {
+    depths.push_back(kRoom.Render(kCamera, camera, std::nullopt, confidence));
+  }
+  return depths;
+}
+
+TEST(DepthView, RangesBetweenPixelsAreThoseOfThePlaneSeamAndPolesIncluded) {
+  const Rigid3 camera = TurnedCamera({0.5, -0.4, 0.2}, 0.7);
+  const DepthView view(kRoom.Render(kCamera, camera), camera, 1.0, {});
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  int near_edges = 0;
+  const auto error = [&](const Eigen::Vector3d& bearing) {
+    const double truth = kRoom.RangeOfWalls(camera.translation, camera.rotation * bearing);
+    return std::abs(view.At(bearing.cast<float>()).range / truth - 1.0);
+  };
+  for (int i = 0; i < 5000; ++i) {
+    // Where two walls meet, four pixels see two planes.
+    near_edges +=
+        error(Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized()) > 0.002;
+  }
+  EXPECT_LT(near_edges, 500);
+  for (const double latitude : {-1.57, -1.2, 0.0, 1.2, 1.57}) {
+    for (const double turn : {-0.012, -0.004, 0.004, 0.012}) {  // Pixels are 0.025 wide.
+      const double longitude = std::numbers::pi + turn;
+      EXPECT_LT(error({-std::cos(latitude) * std::cos(longitude),
+                       std::cos(latitude) * std::sin(longitude), std::sin(latitude)}),
+                0.003)
+          << latitude << ' ' << turn;
+    }
+  }
+}
+
+TEST(DepthView, NormalsAreThoseOfTheWallsSeamAndPolesIncluded) {
+  const Rigid3 camera = TurnedCamera({0.5, -0.4, 0.2}, 0.7);
+  const DepthView view(kRoom.Render(kCamera, camera), camera, 1.0, {});
+  int wrong = 0;
+  int wrong_at_border = 0;
+  for (int row = 0; row < kCamera.height(); ++row) {
+    for (int column = 0; column < kCamera.width(); ++column) {
+      const Eigen::Vector3d normal = camera.rotation * view.Normal(row, column).cast<double>();
+      EXPECT_NEAR(normal.norm(), 1.0, 1e-5);
+      EXPECT_LT(normal.dot(camera.rotation * view.BearingOf(row, column).cast<double>()), 0.0);
+      const bool is_wrong = normal.cwiseAbs().maxCoeff() < std::cos(0.03);
+      wrong += is_wrong;
+      if (row < 2 || row >= kCamera.height() - 2 || column == 0) wrong_at_border += is_wrong;
+    }
+  }
+  // Near the edges of the room the planes of two walls are mixed.
+  EXPECT_LT(wrong, 0.25 * kCamera.width() * kCamera.height());
+  EXPECT_LT(wrong_at_border, 0.25 * (4 * kCamera.width() + kCamera.height()));
+}
+
+TEST(ConfirmSurface, KeepsTheWallsAndEveryDirectionEqually) {
+  const std::vector<DepthView> views = Views(RenderAll());
+  const std::vector<ConfirmedPoint> points = ConfirmMiddle(views);
+  // A pixel at the equator stands for (2 pi / 256)^2 sr.
+  const double expected = 4.0 * std::numbers::pi / std::pow(kCamera.AngleOfPixels(1.0), 2);
+  EXPECT_GT(points.size(), 0.9 * expected);
+  EXPECT_LT(points.size(), 1.1 * expected);
+  int in_caps = 0;
+  for (const ConfirmedPoint& point : points) {
+    EXPECT_LT(kRoom.DistanceFromWalls(point.position), 0.04);
+    in_caps += std::abs(point.row + 0.5 - 64) > 64 - 128 / 6.0;  // beyond 60 degrees
+  }
+  EXPECT_NEAR(in_caps / static_cast<double>(points.size()), 1.0 - std::sqrt(0.75), 0.02);
+}
+
+TEST(ConfirmSurface, TakesEveryOtherPixelWherePixelsAreDense) {
+  const std::vector<DepthView> views = Views(RenderAll());
+  const size_t all = ConfirmMiddle(views).size();
+  std::vector<const DepthView*> others{&views[0], &views[1], &views[2]};
+  // Pixels are 0.037 apart at the nearest wall, 0.1 at the farthest.
+  const size_t fewer = ConfirmSurface(views[3], others, {}, {.spacing = 0.25}).size();
+  EXPECT_LT(fewer, all / 3);
+  EXPECT_GT(fewer, all / 18);
+}
+
+TEST(ConfirmSurface, RefusesWhatMoves) {
+  std::vector<DenseDepth> depths;
+  std::vector<Ball> balls;
+  for (int i = 0; i < 7; ++i) {
+    balls.push_back({{-2.0 + 0.6 * i, -1.2, 0.0}, 0.4});
+    depths.push_back(kRoom.Render(kCamera, Cameras()[static_cast<size_t>(i)], balls.back()));
+  }
+  const std::vector<ConfirmedPoint> points = ConfirmMiddle(Views(depths));
+  EXPECT_GT(points.size(), 6000u);
+  const auto on_ball = [&](const ConfirmedPoint& point) {
+    return std::abs((point.position - balls[3].centre).norm() - balls[3].radius) < 0.1 &&
+           kRoom.DistanceFromWalls(point.position) > 0.3;
+  };
+  EXPECT_EQ(std::ranges::count_if(points, on_ball), 0);
+
+  // The same ball standing still is kept.
+  for (int i = 0; i < 7; ++i) {
+    depths[static_cast<size_t>(i)] =
+        kRoom.Render(kCamera, Cameras()[static_cast<size_t>(i)], balls[3]);
+  }
+  EXPECT_GT(std::ranges::count_if(ConfirmMiddle(Views(depths)), on_ball), 50);
+}
+
+TEST(ConfirmSurface, RefusesWhatOneKeyframeInvents) {
+  std::vector<DenseDepth> depths = RenderAll();
+  depths[3].range(cv::Rect(100, 50, 20, 20)) *= 0.7;
+  depths[3].range(cv::Rect(0, 80, 20, 20)) *= 1.4;
+  for (const ConfirmedPoint& point : ConfirmMiddle(Views(depths))) {
+    EXPECT_LT(kRoom.DistanceFromWalls(point.position), 0.15);
+  }
+}
+
+TEST(ConfirmSurface, RefusesWhatTooFewSee) {
+  const std::vector<DenseDepth> depths = RenderAll();
+  ConfirmationOptions options;
+  options.min_support = 7;
+  EXPECT_TRUE(ConfirmMiddle(Views(depths), options).empty());
+}
+
+TEST(ConfirmSurface, TheMeanOfAllIsMoreAccurateThanOne) {
+  // 4 % of noise that is the same over 8 x 8 pixels, and a confidence that says so.
+  std::vector<DenseDepth> depths = RenderAll(1.0 / 1.032);
+  std::mt19937 random(7);
+  std::normal_distribution<float> normal(0.0f, 0.04f);
+  double squared_alone = 0;
+  int alone = 0;
+  for (size_t i = 0; i < depths.size(); ++i) {
+    for (int row = 0; row < 128; row += 8) {
+      for (int column = 0; column < 256; column += 8) {
+        depths[i].range(cv::Rect(column, row, 8, 8)) *= std::exp(normal(random));
+      }
+    }
+  }
+  const std::vector<DepthView> views = Views(depths);
+  ConfirmationOptions options;
+  options.redundant_ratio = 1e9;
+  double squared = 0;
+  const std::vector<ConfirmedPoint> points = ConfirmMiddle(views, options);
+  for (const ConfirmedPoint& point : points) {
+    squared += std::pow(kRoom.DistanceFromWalls(point.position), 2);
+    const double own = views[3].range(point.row, point.column);
+    squared_alone += std::pow(
+        kRoom.DistanceFromWalls(Cameras()[3] *
+                                (own * views[3].BearingOf(point.row, point.column).cast<double>())),
+        2);
+    ++alone;
+  }
+  EXPECT_GT(points.size(), 7000u);
+  EXPECT_LT(std::sqrt(squared / alone), 0.7 * std::sqrt(squared_alone / alone));
+}
+
+TEST(ConfirmSurface, LeavesPointsToKeyframesThatSeeThemBetter) {
+  std::vector<DenseDepth> depths = RenderAll();
+  depths[3].confidence.setTo(0.9f);  // An error of 11 % where the others have 1 %.
+  const size_t left = ConfirmMiddle(Views(depths)).size();
+  ConfirmationOptions options;
+  options.redundant_ratio = 1e9;
+  const size_t all = ConfirmMiddle(Views(depths), options).size();
+  EXPECT_GT(all, 1000u);
+  EXPECT_LT(left, all / 50);
+}
+
+TEST(ConfirmSurface, IsTheSameForAnyNumberOfThreads) {
+  const std::vector<DepthView> views = Views(RenderAll());
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(1);
+  const std::vector<ConfirmedPoint> one = ConfirmMiddle(views);
+  omp_set_num_threads(3);
+  const std::vector<ConfirmedPoint> three = ConfirmMiddle(views);
+  omp_set_num_threads(threads);
+  ASSERT_EQ(one.size(), three.size());
+  for (size_t i = 0; i < one.size(); ++i) {
+    ASSERT_EQ(one[i].position, three[i].position);
+    ASSERT_EQ(one[i].normal, three[i].normal);
+    ASSERT_EQ(one[i].error, three[i].error);
+  }
+}
+
+}  // namespace
+}  // namespace orb360

@@ -1,0 +1,121 @@
+#include "slam/io/range_store.h"
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "nn/base/check.h"
+#include "tests/slam/io/temp_folder.h"
+
+namespace orb360 {
+namespace {
+
+DenseDepth Example(int width, int height) {
+  const cv::Size size(width, height);
+  DenseDepth depth{cv::Mat(size, CV_32F), cv::Mat(size, CV_32F), cv::Mat(size, CV_8UC3)};
+  for (int row = 0; row < height; ++row) {
+    for (int column = 0; column < width; ++column) {
+      const double share = (row * width + column) / static_cast<double>(width * height);
+      // All scales that maps could have.
+      depth.range.at<float>(row, column) = static_cast<float>(std::exp(60.0 * share - 30.0));
+      depth.confidence.at<float>(row, column) = static_cast<float>(1.0 - share);
+      depth.color.at<cv::Vec3b>(row, column) =
+          cv::Vec3b(static_cast<uchar>(column), static_cast<uchar>(row), 100);
+    }
+  }
+  return depth;
+}
+
+TEST(RangeStore, GivesBackWithinTheErrorsItPromises) {
+  const TempFolder folder;
+  const RangeStore store(folder / "store");
+  const DenseDepth depth = Example(128, 64);
+  store.Put(7, depth);
+  const DenseDepth read = store.Get(7);
+  ASSERT_EQ(read.range.size(), depth.range.size());
+  for (int row = 0; row < 64; ++row) {
+    for (int column = 0; column < 128; ++column) {
+      const double range = depth.range.at<float>(row, column);
+      ASSERT_NEAR(read.range.at<float>(row, column) / range, 1.0, 5e-4);
+      ASSERT_GT(read.confidence.at<float>(row, column), 0.0f);
+      ASSERT_NEAR(read.confidence.at<float>(row, column), depth.confidence.at<float>(row, column),
+                  1.01 / 255);
+    }
+  }
+  EXPECT_LT(cv::norm(read.color, depth.color, cv::NORM_INF), 20);
+}
+
+TEST(RangeStore, WhatIsNoRangeIsNone) {
+  const TempFolder folder;
+  const RangeStore store(folder / "store");
+  DenseDepth depth = Example(16, 8);
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (int column = 0; column < 4; ++column) {
+    const float none[] = {0.0f, -1.0f, kNan, kInfinity};
+    depth.range.at<float>(3, column) = none[column];
+    depth.confidence.at<float>(4, column) = none[column];
+  }
+  store.Put(0, depth);
+  const DenseDepth read = store.Get(0);
+  for (int row : {3, 4}) {
+    for (int column = 0; column < 4; ++column) {
+      EXPECT_EQ(read.range.at<float>(row, column), 0.0f) << row << ' ' << column;
+      EXPECT_EQ(read.confidence.at<float>(row, column), 0.0f);
+    }
+  }
+  EXPECT_EQ(cv::countNonZero(read.range), 16 * 8 - 8);
+}
+
+TEST(RangeStore, ReplacesAndTellsWhatItHas) {
+  const TempFolder folder;
+  const RangeStore store(folder / "store");
+  EXPECT_FALSE(store.Contains(3));
+  store.Put(3, Example(16, 8));
+  store.Put(3, Example(32, 16));
+  EXPECT_TRUE(store.Contains(3));
+  EXPECT_EQ(store.Get(3).range.cols, 32);
+}
+
+TEST(RangeStore, LeavesNothingBehindAndTakesNothingOver) {
+  const TempFolder folder;
+  std::filesystem::create_directories(folder / "store");
+  WriteText(folder / "store/5", "of a run that was killed");
+  {
+    const RangeStore store(folder / "store");
+    EXPECT_FALSE(store.Contains(5));
+    store.Put(1, Example(16, 8));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "store"));
+}
+
+TEST(RangeStore, SaysWhatIsDamaged) {
+  const TempFolder folder;
+  const RangeStore store(folder / "store");
+  store.Put(1, Example(64, 32));
+  const std::string whole = ReadText(folder / "store/1");
+  for (const double share : {0.0, 0.001, 0.3, 0.99}) {
+    WriteText(folder / "store/1",
+              whole.substr(0, static_cast<size_t>(share * static_cast<double>(whole.size()))));
+    EXPECT_THAT(MessageOf<UserError>([&] { store.Get(1); }), testing::HasSubstr("damaged"));
+  }
+  EXPECT_THAT(MessageOf<UserError>([&] { store.Get(2); }), testing::HasSubstr("gone"));
+  WriteText(folder / "file", "");
+  EXPECT_THAT(MessageOf<UserError>([&] { RangeStore(folder / "file/store"); }),
+              testing::HasSubstr("cannot be written"));
+}
+
+TEST(RangeStore, RefusesImagesThatDoNotBelongTogether) {
+  const TempFolder folder;
+  const RangeStore store(folder / "store");
+  DenseDepth depth = Example(16, 8);
+  depth.color = depth.color.rowRange(0, 4);
+  EXPECT_THROW(store.Put(0, depth), ContractError);
+}
+
+}  // namespace
+}  // namespace orb360
