@@ -15,9 +15,11 @@ namespace {
 
 /// 1234567 as "1,234,567".
 std::string Grouped(double value) {
-  std::string text = Decimal(value, 0);
-  for (auto at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) {
-    text.insert(static_cast<size_t>(at), ",");
+  const std::string digits = Decimal(value, 0);
+  std::string text;
+  for (size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
+    text += digits[i];
   }
   return text;
 }
