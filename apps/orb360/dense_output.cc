@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <system_error>
 
-#include "nn/base/check.h"
 #include "slam/evaluation/cloud_picture.h"
 #include "slam/evaluation/depth_picture.h"
 #include "slam/io/dataset.h"
@@ -40,18 +39,19 @@ std::vector<DensePictures::OfKeyframe> DrawKeyframes(const RangeStore& store,
 }  // namespace
 
 std::vector<DenseView> MakeDenseViews(const Reconstruction& reconstruction,
-                                      std::span<const double> scales, const RangeStore& store,
                                       const Rigid3& file_world_from_map) {
   const std::vector<FramePose>& keyframes = reconstruction.keyframes;
-  ORB360_CHECK(scales.size() == keyframes.size(), scales.size(), keyframes.size());
   std::vector<DenseView> views;
   constexpr size_t kNone = static_cast<size_t>(-1);
   std::vector<size_t> view_of(keyframes.size(), kNone);
   for (size_t i = 0; i < keyframes.size(); ++i) {
-    if (!store.Contains(keyframes[i].index)) continue;
+    const auto scale = reconstruction.depth_scales.find(keyframes[i].index);
+    if (scale == reconstruction.depth_scales.end()) continue;
     view_of[i] = views.size();
-    views.push_back(
-        {keyframes[i].index, file_world_from_map * keyframes[i].world_from_camera, scales[i], {}});
+    views.push_back({keyframes[i].index,
+                     file_world_from_map * keyframes[i].world_from_camera,
+                     scale->second,
+                     {}});
   }
   for (const CovisibleFrames& pair : reconstruction.covisibility) {
     const size_t first = view_of[pair.first];

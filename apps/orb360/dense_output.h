@@ -12,12 +12,9 @@
 
 namespace orb360 {
 
-/// The keyframes of a reconstruction that have depth in the store, in the frame of the written
-/// files. Neighbours are those that see the same landmarks, in the same map. `scales`, one for each
-/// of `reconstruction.keyframes`: the scale of the map at the end over that when the depth was
-/// made.
+/// The keyframes of a reconstruction that have dense depth, in the frame of the written files.
+/// Neighbours are those that see the same landmarks.
 std::vector<DenseView> MakeDenseViews(const Reconstruction& reconstruction,
-                                      std::span<const double> scales, const RangeStore& store,
                                       const Rigid3& file_world_from_map);
 
 struct DenseOutput {

@@ -2,6 +2,7 @@
 #include <exception>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,8 +20,10 @@
 #include "apps/orb360/sparse_output.h"
 #include "apps/orb360/stage_times.h"
 #include "nn/base/check.h"
+#include "slam/depth/depth_completer.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/number_text.h"
+#include "slam/io/range_store.h"
 #include "slam/io/sequence.h"
 #include "slam/pipeline/options.h"
 #include "slam/pipeline/system.h"
@@ -38,7 +41,9 @@ struct RunOptions {
   double camera_height = 0;  // metres; 0: as the configuration or the input says
   std::string resize;
   SequenceOptions sequence;
+  std::string weights = "none";
   bool saves_sparse = false;
+  bool saves_depth = false;
   bool is_quiet = false;
 };
 
@@ -46,6 +51,7 @@ struct RunOptions {
 struct RunRecord {
   int frames = 0;
   double seconds = 0.0;
+  double fusion_seconds = 0.0;  // of the dense cloud
   StageTimes times;
   std::vector<std::string> warnings;
   std::exception_ptr failure;  // of the input or the disk, in the middle
@@ -107,6 +113,22 @@ RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, b
   return record;
 }
 
+/// Fuses the keyframes' depth. A failure of the disk is noted, so that the trajectory is written.
+std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction, const RangeStore& depth,
+                                     const RunOptions& options, const RunOutput& output,
+                                     RunRecord* record) {
+  const auto start = std::chrono::steady_clock::now();
+  std::optional<DenseOutput> dense;
+  try {
+    dense = output.WriteDense(reconstruction, depth, options.saves_depth);
+  } catch (const UserError&) {
+    if (!record->failure) record->failure = std::current_exception();
+  }
+  record->fusion_seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return dense;
+}
+
 /// Where metres come from. Of several maps the first counts: the others continue it.
 nlohmann::json DescribeScale(const Reconstruction& reconstruction, const ScaleOptions& options) {
   const bool is_metric = !reconstruction.maps.empty() && reconstruction.maps.front().is_metric;
@@ -116,8 +138,8 @@ nlohmann::json DescribeScale(const Reconstruction& reconstruction, const ScaleOp
 }
 
 nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& record,
-                         const RunOptions& options, const ScaleOptions& scale, double masked_share,
-                         int threads) {
+                         const std::optional<DenseOutput>& dense, const RunOptions& options,
+                         const ScaleOptions& scale, double masked_share, int threads) {
   nlohmann::json summary = {
       {"version", Version()},
       {"input", options.input},
@@ -138,22 +160,29 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
       {"masked_share", masked_share},
       {"levelled", reconstruction.up.has_value()},
       {"threads", threads},
-      {"weights", "none"},
+      {"weights", options.weights},
       {"interrupted", CaughtInterrupt() != 0 || record.failure != nullptr},
       {"warnings", record.warnings},
   };
   if (reconstruction.initialized_at) summary["initialized_at"] = *reconstruction.initialized_at;
+  if (dense) {
+    summary["cloud"] = {{"points", dense->cloud.points},
+                        {"keyframes", dense->cloud.fusion.views},
+                        {"voxel_size", dense->cloud.fusion.voxel_size},
+                        {"seconds", record.fusion_seconds}};
+  }
   return summary;
 }
 
 void PrintResult(const nlohmann::json& summary, const std::filesystem::path& folder) {
-  std::cout << summary["tracked"] << " of " << summary["frames"] << " frames tracked in "
-            << summary["maps"] << (summary["maps"] == 1 ? " map, " : " maps, ")
-            << summary["keyframes"] << " keyframes, " << summary["landmarks"] << " landmarks, "
-            << std::lround(summary["frames_per_second"].get<double>())
-            << " frames a second\nwrote trajectory.txt, keyframes.txt, cloud.ply, map.svg and "
-               "summary.json to "
-            << folder.string() << std::endl;
+  std::cout
+      << summary["tracked"] << " of " << summary["frames"] << " frames tracked in "
+      << summary["maps"] << (summary["maps"] == 1 ? " map, " : " maps, ") << summary["keyframes"]
+      << " keyframes, " << summary["landmarks"] << " landmarks, "
+      << std::lround(summary["frames_per_second"].get<double>())
+      << " frames a second\nwrote trajectory.txt, keyframes.txt, cloud.ply, map.svg, summary.json "
+         "and report/report.html to "
+      << folder.string() << std::endl;
 }
 
 int Run(const RunOptions& options) {
@@ -176,11 +205,22 @@ int Run(const RunOptions& options) {
 
   const cv::Size size = sequence->image_size();
   System system(EquirectangularCamera(size.width, size.height), system_options, mask);
-  const RunRecord record = ProcessFrames(sequence.get(), &system, &output, options.is_quiet);
+  std::optional<DepthCompleter> completer;
+  std::optional<RangeStore> depth;
+  if (options.weights != "none") {
+    completer.emplace(options.weights, DepthCompleterOptions{.threads = threads});
+    depth.emplace(output.folder() / "depth.tmp");
+    system.CompleteKeyframes(&*completer, [&depth](int frame_index, const DenseDepth& dense) {
+      depth->Put(frame_index, dense);
+    });
+  }
+  RunRecord record = ProcessFrames(sequence.get(), &system, &output, options.is_quiet);
   const Reconstruction reconstruction = system.Finish();
-  const nlohmann::json summary =
-      Summarize(reconstruction, record, options, system_options.scale, masked_share, threads);
-  output.Finish(reconstruction, summary);
+  const std::optional<DenseOutput> dense =
+      depth ? FuseDepth(reconstruction, *depth, options, output, &record) : std::nullopt;
+  const nlohmann::json summary = Summarize(reconstruction, record, dense, options,
+                                           system_options.scale, masked_share, threads);
+  output.Finish(reconstruction, summary, dense);
   if (options.saves_sparse) {
     WriteSparseKeyframes(output.folder() / "sparse", system.maps(),
                          OpenInput(options.input, sequence_options).get());
@@ -217,9 +257,11 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
       ->type_name("DIR");
   command->add_option("--config", options->config, "Options as `orb360 config` prints them")
       ->type_name("FILE");
-  command->add_option("--weights", "Network for dense depth; this version knows none")
-      ->check(CLI::IsMember({"none"}))
-      ->type_name("none");
+  command
+      ->add_option("--weights", options->weights,
+                   "Network for the dense depth of keyframes, and a dense cloud; or none")
+      ->type_name("none|FILE")
+      ->capture_default_str();
   command
       ->add_option("--mask", options->mask,
                    "What to leave out: auto finds what moves with the camera; or none; or an image "
@@ -252,6 +294,9 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
   command->add_option("--resize", options->resize, "Scale every image first")->type_name("WxH");
   command->add_flag("--save-sparse", options->saves_sparse,
                     "Also write each keyframe with its sparse depth to DIR/sparse (HDF5)");
+  command->add_flag(
+      "--save-depth", options->saves_depth,
+      "Also write each keyframe's dense depth to DIR/depth (16-bit PNG, metres * 256)");
   command->add_flag("--quiet", options->is_quiet, "Show no progress");
   command->callback([options, chosen] { *chosen = [options] { return Run(*options); }; });
 }

@@ -29,6 +29,12 @@ std::vector<StampedPose> ToStamped(const std::vector<FramePose>& frames) {
   return poses;
 }
 
+/// The frame of the written files, once everything is known.
+Rigid3 FinalFileWorldFromMap(const Reconstruction& reconstruction) {
+  if (reconstruction.frames.empty()) return {};
+  return FileWorldFromMap(reconstruction.frames.front().world_from_camera, reconstruction.up);
+}
+
 /// The map from above, in the frame of the written files. The more landmarks two keyframes share,
 /// the darker their link.
 std::string DrawMap(const Reconstruction& reconstruction, const Rigid3& file_world_from_map) {
@@ -63,13 +69,21 @@ void RunOutput::Append(double timestamp, const Rigid3& map_from_camera) {
   journal_.Append({timestamp, *file_world_from_map_ * map_from_camera});
 }
 
-void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,
-                       const DensePictures& pictures) {
-  Rigid3 file_world_from_map;
-  if (!reconstruction.frames.empty()) {
-    file_world_from_map =
-        FileWorldFromMap(reconstruction.frames.front().world_from_camera, reconstruction.up);
+DenseOutput RunOutput::WriteDense(const Reconstruction& reconstruction, const RangeStore& store,
+                                  bool saves_depth) const {
+  const std::vector<DenseView> views =
+      MakeDenseViews(reconstruction, FinalFileWorldFromMap(reconstruction));
+  if (saves_depth) SaveDepth(folder_, store, views);
+  DenseCloudOptions options;
+  if (!reconstruction.maps.empty() && !reconstruction.maps.front().is_metric) {
+    options.voxel_size.reset();
   }
+  return WriteDenseOutput(folder_, store, views, options);
+}
+
+void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,
+                       const std::optional<DenseOutput>& dense) {
+  const Rigid3 file_world_from_map = FinalFileWorldFromMap(reconstruction);
   std::vector<ColoredPoint> cloud;
   cloud.reserve(reconstruction.landmarks.size());
   for (const CloudPoint& point : reconstruction.landmarks) {
@@ -79,14 +93,15 @@ void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::jso
                   file_world_from_map);
   WriteTrajectory(folder_ / "keyframes.txt", ToStamped(reconstruction.keyframes),
                   file_world_from_map);
-  WritePly(folder_ / "cloud.ply", cloud, file_world_from_map);
+  WritePly(folder_ / (dense ? "landmarks.ply" : "cloud.ply"), cloud, file_world_from_map);
   std::string map_svg;
   if (!reconstruction.keyframes.empty()) {
     map_svg = DrawMap(reconstruction, file_world_from_map);
     WriteFileAtomically(folder_ / "map.svg", map_svg);
   }
   WriteFileAtomically(folder_ / "summary.json", summary.dump(2) + "\n");
-  WriteRunReport(folder_, reconstruction, summary, map_svg, pictures);
+  WriteRunReport(folder_, reconstruction, summary, map_svg,
+                 dense ? dense->pictures : DensePictures());
   std::filesystem::remove(folder_ / kJournalName);
 }
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/orb360/run_report.h"
+#include "apps/orb360/dense_output.h"
 #include "slam/io/trajectory.h"
 #include "slam/pipeline/reconstruction.h"
 
@@ -25,10 +25,16 @@ class RunOutput {
   /// Adds to the journal. Its world is that of the first pose.
   void Append(double timestamp, const Rigid3& map_from_camera);
 
-  /// Writes trajectory.txt, keyframes.txt, cloud.ply, map.svg (where there is a keyframe),
-  /// summary.json and the report (WriteRunReport), then removes the journal.
+  /// Writes the dense cloud of the keyframes in the store, cloud.ply, and with `saves_depth` their
+  /// ranges (SaveDepth).
+  DenseOutput WriteDense(const Reconstruction& reconstruction, const RangeStore& store,
+                         bool saves_depth) const;
+
+  /// Writes trajectory.txt, keyframes.txt, the landmarks as cloud.ply (as landmarks.ply where there
+  /// is a dense cloud), map.svg (where there is a keyframe), summary.json and the report
+  /// (WriteRunReport), then removes the journal.
   void Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,
-              const DensePictures& pictures = {});
+              const std::optional<DenseOutput>& dense);
 
   const std::filesystem::path& folder() const { return folder_; }
 

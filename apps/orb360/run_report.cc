@@ -64,11 +64,12 @@ std::vector<HtmlReport::Tile> MakeTiles(const Reconstruction& reconstruction,
       {Decimal(summary.value("frames_per_second", 0.0), 1), "frames a second"},
       {WithUnit(summary.value("peak_memory_mb", 0.0), 0, "MB"), "memory at most"},
   };
-  if (summary.contains("cloud_points")) {
-    tiles.push_back({Grouped(summary["cloud_points"].get<double>()), "points in the cloud"});
+  if (summary.contains("cloud")) {
+    tiles.push_back({Grouped(summary["cloud"].value("points", 0.0)), "points in the cloud"});
   }
   if (is_metric) {
-    tiles.push_back({summary["scale"].value("source", ""), "source of the scale"});
+    tiles.push_back({WithUnit(summary["scale"].value("value", 0.0), 2, "m"),
+                     summary["scale"].value("source", "")});
   }
   return tiles;
 }

@@ -17,8 +17,8 @@ struct DenseCloudOptions {
   /// of the median range, for maps that know no metres.
   std::optional<double> voxel_size = 0.05;
   /// Farthest point from its keyframe, and the largest error to be expected of one, in voxels.
-  double max_range_voxels = 1000;
-  double max_error_voxels = 5;
+  double max_range_voxels = 600;
+  double max_error_voxels = 4;
   /// Keyframes that each one is compared with.
   int max_neighbours = 10;
   ConfirmationOptions confirmation{};

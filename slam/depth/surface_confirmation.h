@@ -94,9 +94,9 @@ struct SamplingOptions {
   /// as many.
   double spacing = 0.05;
   /// World units; what is farther away is left out.
-  double max_range = 50.0;
+  double max_range = 30.0;
   /// World units; as are points whose expected error is larger.
-  double max_error = 0.25;
+  double max_error = 0.2;
 };
 
 /// The points of a keyframe that the others agree with. A point is compared with what each of them

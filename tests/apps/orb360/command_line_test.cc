@@ -44,7 +44,6 @@ TEST(CommandLine, AMistakeIsOneLineThatNamesItAndWhereToReadMore) {
   EXPECT_THAT(error({"run", "a.mp4", "--out", "b", "--stride", "0"}), HasSubstr("--stride"));
   EXPECT_THAT(error({"run", "a.mp4", "--out", "b", "--max-frames", "x"}),
               HasSubstr("--max-frames"));
-  EXPECT_THAT(error({"run", "a.mp4", "--out", "b", "--weights", "w.h5"}), HasSubstr("--weights"));
   EXPECT_THAT(error({"run", "a.mp4", "--out", "b", "--colour"}), HasSubstr("--colour"));
   EXPECT_THAT(error({"evaluate", "a"}), HasSubstr("ESTIMATE"));
 }

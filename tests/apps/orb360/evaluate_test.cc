@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 
 #include "slam/geometry/rigid3.h"
 #include "slam/io/depth_image.h"
+#include "slam/io/ply.h"
 #include "slam/io/trajectory.h"
 #include "tests/apps/orb360/program.h"
 #include "tests/apps/orb360/textured_room.h"
@@ -117,6 +119,31 @@ TEST_F(EvaluateTest, MistakesAreOneLine) {
               HasSubstr("0 of its 60 poses have a time in common"));
   EXPECT_THAT(error({"evaluate", Truth(), Estimate(), "--plot", folder_ / "no" / "plot.svg"}),
               HasSubstr("cannot be written"));
+}
+
+TEST_F(EvaluateTest, TellsHowNearTheCloudIsToTheTrueSurface) {
+  // A sphere of 3 m around the first camera, and a cloud 5 cm inside of its lower half.
+  std::filesystem::create_directory(folder_ / "depth");
+  WriteDepthImage(folder_ / "depth" / "000000.png", cv::Mat(128, 256, CV_32FC1, cv::Scalar(3.0f)));
+  const std::vector<StampedPose> truth = ReadTrajectory(Truth());
+  WriteTrajectory(Estimate(), truth);
+  EXPECT_FALSE(Report(folder_.path(), folder_.path()).contains("cloud"));
+  SurfacePlyWriter writer(folder_ / "cloud.ply", 0.05);
+  for (double latitude = -1.57; latitude < 0.0; latitude += 0.02) {
+    for (double longitude = -3.14; longitude < 3.14; longitude += 0.02 / std::cos(latitude)) {
+      const Eigen::Vector3d ray(std::cos(latitude) * std::cos(longitude),
+                                std::cos(latitude) * std::sin(longitude), std::sin(latitude));
+      const Eigen::Vector3d point = truth[0].world_from_camera * (2.95 * ray);
+      writer.Append(std::vector<SurfacePoint>{{point.cast<float>(), {0, 0, 1}, {}, 1.0f}});
+    }
+  }
+  writer.Commit();
+  const nlohmann::json cloud = Report(folder_.path(), folder_.path())["cloud"];
+  EXPECT_NEAR(cloud["median_distance"], 0.05, 0.01);
+  EXPECT_EQ(cloud["accuracy_10cm"], 1.0);
+  EXPECT_NEAR(cloud["completeness_10cm"], 0.5, 0.05);
+  EXPECT_THAT(RunOrb360({"evaluate", folder_.path(), folder_.path()}).out,
+              HasSubstr("accuracy: nearer than 10 cm"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@
 #include "slam/io/trajectory.h"
 #include "tests/apps/orb360/program.h"
 #include "tests/apps/orb360/textured_room.h"
+#include "tests/nn/graph/network_builder.h"
 
 namespace orb360 {
 namespace {
@@ -116,6 +118,60 @@ TEST_F(RunTest, TheSameInputGivesTheSameBytesWithOneAndTwoThreads) {
   for (const char* name : {"trajectory.txt", "keyframes.txt", "cloud.ply", "map.svg"}) {
     EXPECT_EQ(ReadText(OutFile(name)), ReadText(folder_ / "two" / name)) << name;
   }
+}
+
+/// A network that gives every pixel the mean of the points around it, or of all, and is sure of it.
+void WriteMeanNetwork(const std::filesystem::path& path) {
+  nn::NetworkBuilder net(8);
+  net.Input("depth", 1);
+  net.Input("confidence", 1);
+  net.Node("points", "median_log", {"depth", "confidence"}, nlohmann::json::object(), 3);
+  net.NormalizedConvolution("mean", "points", "points.1", 1, 1, 15);
+  net.weights.back().values = {0};
+  net.Node("sure", "affine", {"mean.1"}, {{"scale", 0.0}, {"offset", 0.97}});
+  net.Output("log_depth", "mean");
+  net.Output("confidence", "sure");
+  net.Output("scale", "points.2");
+  net.Write(path);
+}
+
+TEST_F(RunTest, WithANetworkTheCloudIsDenseAndTheSameForAnyNumberOfThreads) {
+  WriteRoom();
+  WriteMeanNetwork(folder_ / "net.h5");
+  const ProgramResult result = Run({"--weights", folder_ / "net.h5", "--save-depth"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::vector<SurfacePoint> points = ReadSurfacePly(OutFile("cloud.ply"));
+  EXPECT_GT(points.size(), 1000u);
+  const nlohmann::json summary = Summary();
+  EXPECT_EQ(summary["cloud"]["points"], points.size());
+  EXPECT_EQ(summary["landmarks"], ReadPly(OutFile("landmarks.ply")).size());
+  const auto files = [](const std::filesystem::path& folder) {
+    return std::distance(std::filesystem::directory_iterator(folder), {});
+  };
+  EXPECT_EQ(files(OutFile("depth")), summary["cloud"]["keyframes"].get<int>());
+  EXPECT_TRUE(std::filesystem::exists(OutFile("report") / "cloud.png"));
+  EXPECT_FALSE(std::filesystem::exists(OutFile("depth.tmp")));
+  EXPECT_FALSE(std::filesystem::exists(OutFile("cloud.ply.voxels")));
+
+  EXPECT_EQ(RunOrb360({"run", Input(), "--out", folder_ / "two", "--threads", "2", "--weights",
+                       folder_ / "net.h5"})
+                .status,
+            0);
+  EXPECT_EQ(ReadText(OutFile("cloud.ply")), ReadText(folder_ / "two" / "cloud.ply"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "two" / "depth"));
+}
+
+TEST_F(RunTest, RefusesWhatIsNoNetwork) {
+  WriteRoom();
+  EXPECT_THAT(Refusal({"--weights", Image(0)}), HasSubstr("is not a network of orb360"));
+}
+
+TEST_F(RunTest, TheReportIsOnePageOfEverything) {
+  WriteRoom();
+  EXPECT_EQ(Run().status, 0);
+  const std::string html = ReadText(OutFile("report") / "report.html");
+  EXPECT_THAT(html, AllOf(HasSubstr(Input()), HasSubstr("of the 24 frames tracked"),
+                          HasSubstr("data:image/svg+xml;base64,"), HasSubstr("frames a second")));
 }
 
 TEST_F(RunTest, SixteenBitImagesGiveTheTrajectoryOfEightBitOnes) {
