@@ -47,7 +47,7 @@ class MakeDatasetTest(unittest.TestCase):
             circuit_spec(Path("tracks/road/street-1/street-1.acc"), 24, 512)
         self.assertEqual(circuit_spec(Path("tracks/road/forza/forza.acc"), 24, 512).name, "forza")
 
-    def test_drives_become_shards_of_two_sizes_once(self) -> None:
+    def test_drives_become_shards_of_three_sizes_once(self) -> None:
         drives.write_drive(self.folder / "made")
         # Copies a drive to where the last argument says.
         script = f'for last; do :; done; echo "$@" >> "{self.folder}/calls"; '
@@ -61,11 +61,12 @@ class MakeDatasetTest(unittest.TestCase):
         calls = (self.folder / "calls").read_text().splitlines()
         self.assertEqual(len(calls), 1)
         self.assertRegex(calls[0], "^render --town 7 .*--frames 3 --masks --out ")
-        full, half = (shards.read(out / size / "town7.npz") for size in ("full", "half"))
+        full, half, quarter = (shards.read(out / s / "town7.npz") for s in make_dataset.SIZES)
         self.assertEqual((len(full), full.rgb.shape[1:3]), (2, (drives.HEIGHT, drives.WIDTH)))
         self.assertEqual(half.rgb.shape[1:3], (drives.HEIGHT // 2, drives.WIDTH // 2))
+        self.assertEqual(quarter.rgb.shape[1:3], (drives.HEIGHT // 4, drives.WIDTH // 4))
         self.assertGreater(full.frame(0).ground.mean(), 0.3)
-        self.assertEqual(sorted(path.name for path in out.iterdir()), ["full", "half"])
+        self.assertEqual(sorted(path.name for path in out.iterdir()), sorted(make_dataset.SIZES))
 
     def test_a_drive_that_cannot_be_rendered_is_left_out_and_said_so(self) -> None:
         self.programs("echo broken town >&2; exit 1")

@@ -71,6 +71,10 @@ def frames_of(spec: DriveSpec, programs: Programs, cache: Path) -> list[Frame]:
         cache.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=cache) as folder:
             shards.write(path, shards.pack(render(spec, programs, Path(folder))))
+    return read_frames(path)
+
+
+def read_frames(path: Path) -> list[Frame]:
     shard = shards.read(path)
     return [shard.frame(i) for i in range(len(shard))]
 
@@ -357,6 +361,8 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--towns", nargs="*", default=towns, help="[Town1 ... Town5]")
     parser.add_argument("--circuits", type=Path, nargs="*", default=[], metavar="MESH",
                         help="circuits of torcs-data (.acc); not part of `all`")  # fmt: skip
+    parser.add_argument("--shards", type=Path, nargs="*", default=[], metavar="FILE",
+                        help="drives that make_dataset has packed; part of `all` as one town")  # fmt: skip
     parser.add_argument("--points", type=int, nargs="+", default=POINTS, help="[100 ... 3000]")
     weights = ROOT / "weights"
     parser.add_argument("--weights", type=Path, default=weights / "depth_completion.h5")
@@ -387,15 +393,21 @@ def main() -> int:
     groups = {town: town_specs(town, arguments.quick) for town in towns}
     for mesh in arguments.circuits:
         groups[mesh.stem] = [circuit_spec(mesh, 20 if arguments.quick else 100, 1024)]
-    results, total = {}, Result()
-    for name, specs in groups.items():
-        result = Result()
-        for spec in specs:
-            frames = frames_of(spec, programs, arguments.cache)
-            print(f"completing {spec.name}", file=sys.stderr)
-            result += evaluation.drive(spec.name, frames)
-        results[name] = result
-        if name in towns:
+    drives = [
+        (group, spec.name, lambda spec=spec: frames_of(spec, programs, arguments.cache))
+        for group, specs in groups.items()
+        for spec in specs
+    ]
+    drives += [
+        ("shards", path.stem, lambda path=path: read_frames(path)) for path in arguments.shards
+    ]
+    results: dict[str, Result] = {}
+    total = Result()
+    for group, name, frames in drives:
+        print(f"completing {name}", file=sys.stderr)
+        result = evaluation.drive(name, frames())
+        results.setdefault(group, Result()).__iadd__(result)
+        if group in (*towns, "shards"):
             total += result
     pictures.write_calibration(arguments.out / "calibration.png", calibration_table(total))
     if arguments.json:

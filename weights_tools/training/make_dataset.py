@@ -19,6 +19,7 @@ from weights_tools.training.make_shard import halved, read_drive
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 LIGHTS = ("noon", "morning", "sunset", "overcast")
+SIZES = ("full", "half", "quarter")
 # Those that other measurements are made on.
 RESERVED = ("street-1", "aalborg")
 
@@ -81,8 +82,8 @@ def _sensor(random: np.random.RandomState) -> list[str]:
 
 
 def make(spec: DriveSpec, programs: Programs, out: Path) -> None:
-    """Writes OUT/full/NAME.npz and, with half as many rows and columns, OUT/half/NAME.npz."""
-    paths = [out / size / f"{spec.name}.npz" for size in ("full", "half")]
+    """Writes OUT/full/NAME.npz, and the same with sides of a half and a quarter."""
+    paths = [out / size / f"{spec.name}.npz" for size in SIZES]
     if all(path.exists() for path in paths):
         return
     with tempfile.TemporaryDirectory(dir=out) as folder:
@@ -91,6 +92,21 @@ def make(spec: DriveSpec, programs: Programs, out: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         shards.write(path, shards.pack(frames))
         frames = [halved(frame) for frame in frames]
+
+
+def make_all(specs: Sequence[DriveSpec], programs: Programs, out: Path) -> int:
+    """Gives how many could be made; says which not, and why."""
+    out.mkdir(parents=True, exist_ok=True)
+    made = 0
+    for i, spec in enumerate(specs, 1):
+        problem = ""
+        try:
+            make(spec, programs, out)
+            made += 1
+        except DriveError as error:
+            problem = f" left out: {error}"
+        print(f"{i} of {len(specs)}: {spec.name}{problem}", flush=True)
+    return made
 
 
 def render(spec: DriveSpec, programs: Programs, folder: Path) -> list[shards.Frame]:
@@ -118,7 +134,7 @@ def _call(command: Sequence[object]) -> None:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description="Renders drives and packs them for training.")
-    parser.add_argument("out", type=Path, help="folder for full/ and half/ with the shards")
+    parser.add_argument("out", type=Path, help="folder for full/, half/ and quarter/ with the shards")
     parser.add_argument("--seeds", type=int, nargs=2, default=(1000, 1064), metavar=("FIRST", "END"))
     parser.add_argument("--frames", type=int, default=24, help="of a drive (default: 24)")
     parser.add_argument("--width", type=int, default=1024, help="of the pictures (default: 1024)")
@@ -135,17 +151,8 @@ def main() -> int:
     specs += [town_spec(seed, frames, width) for seed in range(*arguments.seeds)]
     for seed in arguments.tracked_seeds:
         specs.append(town_spec(seed, arguments.tracked_frames, width, is_tracked=True))
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    failed = 0
-    for i, spec in enumerate(specs, 1):
-        problem = ""
-        try:
-            make(spec, programs, arguments.out)
-        except DriveError as error:
-            failed += 1
-            problem = f" left out: {error}"
-        print(f"{i} of {len(specs)}: {spec.name}{problem}", flush=True)
-    return 1 if failed == len(specs) else 0
+    made = make_all(specs, programs, arguments.out)
+    return 0 if made or not specs else 1
 
 
 if __name__ == "__main__":

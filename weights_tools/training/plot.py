@@ -2,6 +2,7 @@
 
 import argparse
 import csv
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,21 +12,30 @@ from weights_tools.evaluation.pictures import write_chart
 COLUMNS = ("depth", "unseen_absrel", "unseen_scale_error")
 
 
+def draw(out: Path, folders: Sequence[Path]) -> None:
+    """Of several stages one after the other."""
+    curves: dict[str, tuple[list[float], list[float]]] = {}
+    first = 0
+    for folder in folders:
+        with (folder / "log.csv").open() as file:
+            lines = list(csv.DictReader(file))
+        for line in lines:
+            for name in COLUMNS:
+                if name in line:
+                    steps, values = curves.setdefault(name, ([], []))
+                    steps.append(first + int(line["step"]))
+                    values.append(float(line[name]))
+        first += int(lines[-1]["step"]) if lines else 0
+    arrays = {name: (np.array(x), np.array(y)) for name, (x, y) in curves.items()}
+    write_chart(out, "step", "error", arrays)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description="Draws learning curves.")
     parser.add_argument("out", type=Path, help="picture to write (.png)")
-    parser.add_argument("folders", type=Path, nargs="+", help="of weights_tools.training.train")
+    parser.add_argument("folders", type=Path, nargs="+", help="stages, in their order")
     arguments = parser.parse_args()
-    curves = {}
-    for folder in arguments.folders:
-        with (folder / "log.csv").open() as file:
-            lines = list(csv.DictReader(file))
-        steps = np.array([int(line["step"]) for line in lines])
-        for name in COLUMNS:
-            if lines and name in lines[0]:
-                values = np.array([float(line[name]) for line in lines])
-                curves[f"{folder.name}: {name}"] = (steps, values)
-    write_chart(arguments.out, "step", "error", curves)
+    draw(arguments.out, arguments.folders)
 
 
 if __name__ == "__main__":

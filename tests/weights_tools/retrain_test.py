@@ -1,0 +1,77 @@
+"""The whole pipeline, from shards to weights, in a few steps."""
+
+import contextlib
+import io
+import tempfile
+import unittest
+from dataclasses import replace
+from pathlib import Path
+from unittest import mock
+
+import cv2
+import numpy as np
+import torch
+
+from tests.weights_tools import drives
+from weights_tools import network_file
+from weights_tools.training import retrain, shards
+from weights_tools.training.make_dataset import RESERVED
+from weights_tools.training.shards import Frame
+
+
+def doubled(frame: Frame) -> Frame:
+    def grow(picture: np.ndarray) -> np.ndarray:
+        return picture.repeat(2, axis=0).repeat(2, axis=1)
+
+    features = frame.features * [2, 2, 1]
+    pictures = {name: grow(getattr(frame, name)) for name in ("rgb", "range", "moving", "ground")}
+    return replace(frame, features=features, **pictures)
+
+
+class RetrainTest(unittest.TestCase):
+    def test_both_networks_are_trained_in_stages_and_written(self) -> None:
+        threads = torch.get_num_threads()
+        torch.set_num_threads(1)
+        self.addCleanup(torch.set_num_threads, threads)
+        with tempfile.TemporaryDirectory() as temporary:
+            out = Path(temporary)
+            for part in ("training", "validation"):
+                for size, frame in (("half", doubled(drives.frame())), ("quarter", drives.frame())):
+                    path = out / "shards" / part / size / "street.npz"
+                    path.parent.mkdir(parents=True)
+                    shards.write(path, shards.pack([frame]))
+            with contextlib.redirect_stdout(io.StringIO()):
+                for _ in range(2):  # the second time nothing is left to do
+                    retrain.train_all(out, out / "shards", 1e-4, torch.device("cpu"))
+                    times = {path: path.stat().st_mtime_ns for path in out.glob("*/log.csv")}
+                self.assertEqual(len(times), 6)
+            retrain.release(out)
+            for name, network in (("depth_completion", "ours"), ("encoder_decoder", "published")):
+                graph, _ = network_file.read(out / f"{name}.h5")
+                self.assertEqual(graph.normalisation["width"], 2 * drives.WIDTH)
+                self.assertEqual(graph.provenance["network"], name)
+                self.assertEqual(len(graph.provenance["earlier"]), 2)
+                self.assertIsNotNone(cv2.imread(str(out / f"learning_curve_{network}.png")))
+
+    def test_without_shards_it_says_so(self) -> None:
+        with tempfile.TemporaryDirectory() as out:
+            with self.assertRaisesRegex(ValueError, "has no shards to train on"):
+                retrain.train_all(Path(out), Path(out), 1, torch.device("cpu"))
+
+    def test_what_is_validated_on_is_not_trained_on(self) -> None:
+        made = {}
+        with mock.patch.object(
+            retrain.make_dataset, "make_all", lambda specs, _, out: made.update({out.name: specs})
+        ):
+            retrain.render_all(Path("out"), None, [Path("forza.acc")])
+        training, validation = ({s.name for s in made[n]} for n in ("training", "validation"))
+        self.assertFalse(training & validation)
+        self.assertIn("forza", training)
+        self.assertEqual(sum(spec.is_tracked for spec in made["training"]), 8)
+        for name in RESERVED:
+            with self.assertRaisesRegex(ValueError, "kept for other measurements"):
+                retrain.render_all(Path("out"), None, [Path(f"{name}.acc")])
+
+
+if __name__ == "__main__":
+    unittest.main()

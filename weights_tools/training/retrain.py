@@ -1,0 +1,114 @@
+"""Makes the released weights anew: python3 -m weights_tools.training.retrain OUT
+
+Renders the drives, trains both networks in stages, draws their learning curves and writes
+OUT/depth_completion.h5 and OUT/encoder_decoder.h5. Can be stopped at any time: the same command goes
+on. Pictures of a quarter of the size come first: a step costs a sixteenth there, and what is learned
+lasts.
+"""
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from weights_tools.export import export, trained
+from weights_tools.training import make_dataset, plot
+from weights_tools.training.make_dataset import Programs, circuit_spec, town_spec
+from weights_tools.training.train import Settings, train
+
+# Towns by seed. What networks are compared on while they are trained is never trained on.
+TRAINING_SEEDS, VALIDATION_SEEDS = range(1000, 1064), range(2000, 2008)
+TRACKED_SEEDS = range(3000, 3008)  # whose sparse points come from SLAM itself
+FRAMES, VALIDATION_FRAMES, TRACKED_FRAMES = 30, 6, 200
+WIDTH = 1024  # of the rendered pictures; shards are full, half and a quarter of that
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A training, from where others have ended."""
+
+    name: str  # of its folder
+    size: str  # of the shards
+    settings: Settings
+    starts: Sequence[str] = ()
+
+
+_COMMON = Settings(
+    warm_up=50, rate=1.5e-3, bfloat16=True, fixed_propagation=True, batch_normalization=True
+)
+_ALONE = Settings(batch=4, warm_up=20, rate=1e-2, decay=0, average=0.98)
+
+
+def stages(factor: float) -> list[Stage]:
+    """In their order. `factor`: on the numbers of steps; 1 takes two cores a night."""
+
+    def steps(settings: Settings, network: str, count: int, batch: int) -> Settings:
+        count = max(round(factor * count), 1)
+        every = min(settings.checkpoint_every, count)
+        return replace(settings, network=network, steps=count, batch=batch, checkpoint_every=every)
+
+    ours, published = "depth_completion", "encoder_decoder"
+    return [
+        Stage("propagation", "half", steps(_ALONE, "propagation", 400, 4)),
+        Stage("ours_quarter", "quarter", steps(_COMMON, ours, 20_000, 8), ["propagation"]),
+        Stage("ours_half", "half", steps(_COMMON, ours, 20_000, 4), ["ours_quarter"]),
+        Stage("unguided", "quarter", steps(_ALONE, "unguided", 400, 4)),
+        Stage("published_quarter", "quarter", steps(_COMMON, published, 5_000, 8), ["unguided"]),
+        Stage("published_half", "half", steps(_COMMON, published, 5_000, 4), ["published_quarter"]),
+    ]
+
+
+RELEASED = {"ours_half": "depth_completion.h5", "published_half": "encoder_decoder.h5"}
+
+
+def render_all(out: Path, programs: Programs, circuits: Sequence[Path]) -> None:
+    specs = [town_spec(seed, FRAMES, WIDTH) for seed in TRAINING_SEEDS]
+    specs += [town_spec(seed, TRACKED_FRAMES, WIDTH, is_tracked=True) for seed in TRACKED_SEEDS]
+    specs += [circuit_spec(mesh, FRAMES, WIDTH) for mesh in circuits]
+    make_dataset.make_all(specs, programs, out / "training")
+    specs = [town_spec(seed, VALIDATION_FRAMES, WIDTH) for seed in VALIDATION_SEEDS]
+    make_dataset.make_all(specs, programs, out / "validation")
+
+
+def train_all(out: Path, shards: Path, factor: float, device: torch.device) -> None:
+    for stage in stages(factor):
+        paths = [sorted((shards / part / stage.size).glob("*.npz")) for part in ("training", "validation")]
+        if not paths[0]:
+            raise ValueError(f"{shards}: has no shards to train on")
+        print(f"stage {stage.name}", flush=True)
+        starts = [out / start / "checkpoint.pt" for start in stage.starts]
+        train(stage.settings, out / stage.name, paths[0], paths[1], device, starts)
+
+
+def release(out: Path) -> None:
+    for stage, name in RELEASED.items():
+        network, provenance, width = trained(out / stage / "checkpoint.pt")
+        export(out / name, network, provenance, np.float16, width)
+    for name in ("ours", "published"):
+        folders = [out / f"{name}_quarter", out / f"{name}_half"]
+        plot.draw(out / f"learning_curve_{name}.png", folders)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description="Makes the released weights anew.")
+    parser.add_argument("out", type=Path, help="folder for shards, checkpoints and weights")
+    parser.add_argument("--steps", type=float, default=1.0, metavar="FACTOR",
+                        help="on the numbers of steps (default: 1, a night on two cores)")  # fmt: skip
+    parser.add_argument("--circuits", type=Path, nargs="*", default=[],
+                        help="meshes (.acc) of circuits of torcs-data to train on too")  # fmt: skip
+    parser.add_argument("--device", default="cpu", help="as PyTorch names it (default: cpu)")
+    root = Path(__file__).resolve().parent.parent.parent
+    parser.add_argument("--build", type=Path, default=root / "build", help="folder of the programs")
+    arguments = parser.parse_args()
+    programs = Programs(arguments.build / "town", arguments.build / "orb360")
+    shards = arguments.out / "shards"
+    render_all(shards, programs, arguments.circuits)
+    train_all(arguments.out, shards, arguments.steps, torch.device(arguments.device))
+    release(arguments.out)
+
+
+if __name__ == "__main__":
+    main()
