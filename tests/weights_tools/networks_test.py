@@ -110,6 +110,47 @@ class SeedTest(unittest.TestCase):
             other.load({**weights, "n1.weight": weights["n2.weight"]})
 
 
+class NormalizationTest(unittest.TestCase):
+    def test_it_ends_up_in_the_weights(self) -> None:
+        description = networks.depth_completion((8, 12, 20, 24, 36), hidden=10)
+        network = Network(description, 1, normalizes=True).double()
+        self.assertIn("head1", network.normalizations)
+        for name in ("head2", "lateral1", "n1", "global1"):
+            self.assertNotIn(name, network.normalizations)
+        random = np.random.RandomState(0)
+        for norm in network.normalizations.values():
+            for values, low in ((norm.weight, 0.5), (norm.bias, -1), (norm.running_mean, -1)):
+                values.data = torch.from_numpy(random.uniform(low, 1, values.shape))
+        inputs = panorama()
+        in_training = network(inputs)["log_depth"]
+        network.eval()
+        before = network(inputs)["log_depth"]
+        self.assertGreater((in_training - before).abs().max(), 1e-3)
+        # What a file would hold does the same as layers with a normalization behind each.
+        plain = Network(description).double()
+        plain.load({name: value.detach().numpy() for name, value in network.weights().items()})
+        self.assertLess((plain(inputs)["log_depth"] - before).abs().max(), 1e-10)
+        # By hand, for one layer.
+        norm = network.normalizations["encoder1"]
+        x = torch.from_numpy(random.uniform(-1, 1, (2, 3, 6, 6)))
+        weight, bias = (network.layers["encoder1"][role] for role in ("weight", "bias"))
+        x = torch.cat([x, x, x[:, :1]], dim=1)  # seven channels
+        expected = norm(torch.conv2d(x, weight, bias))
+        weights = network.weights()
+        found = torch.conv2d(x, weights["encoder1.weight"], weights["encoder1.bias"])
+        self.assertLess((found - expected).abs().max(), 1e-12)
+
+    def test_bfloat16_is_nearly_the_same(self) -> None:
+        network = small()
+        inputs = panorama(dtype=torch.float32)
+        exact, short = (network.tensors(inputs, bfloat16=short) for short in (False, True))
+        for name in ("log_depth", "completed.c", "ground", "global2"):
+            self.assertEqual(short[name].dtype, torch.float32)
+            difference = (exact[name] - short[name]).abs().max().item()
+            self.assertLess(difference, 0.03, name)
+            self.assertGreater(difference, 0, name)
+
+
 class DepthCompletionTest(unittest.TestCase):
     def test_outputs_have_the_size_of_the_picture(self) -> None:
         outputs = small().double()(panorama())

@@ -165,6 +165,29 @@ class SizeTest(unittest.TestCase):
                     )
                     self.assertAlmostEqual(y[0, 0, v, u].item(), expected, places=14)
 
+    def test_bilinear_is_the_same_in_bfloat16(self) -> None:
+        for padding in ("zero", "wrap_replicate"):
+            for height, width in sizes_for(padding):
+                x = random(2, 3, height, width).bfloat16().requires_grad_()
+                exact = x.detach().double().requires_grad_()
+                y = OPERATIONS["upsample_bilinear"](x, padding=padding)
+                self.assertEqual(y.dtype, torch.bfloat16)
+                expected = OPERATIONS["upsample_bilinear"](exact, padding=padding)
+                np.testing.assert_allclose(y.detach().float(), expected.detach(), atol=1e-2)
+                y.sum().backward()
+                expected.sum().backward()
+                np.testing.assert_allclose(x.grad.float(), exact.grad, atol=4e-2)
+
+    def test_gradients_go_through_padding(self) -> None:
+        for padding in PADDINGS:
+            for width, size in itertools.product((1, 2), ((4, 6), (3, 2))):
+                x = random(2, 2, *size).requires_grad_()
+                last = x.detach().to(memory_format=torch.channels_last).requires_grad_()
+                for values in (x, last):
+                    padded = lambda v, w=width, p=padding: pad(v, w, p)
+                    self.assertTrue(torch.autograd.gradcheck(padded, values))
+                self.assertTrue(torch.equal(pad(x, width, padding), pad(last, width, padding)))
+
     def test_convex_upsampling_weighs_neighbours_by_the_softmax(self) -> None:
         for padding in PADDINGS:
             for height, width in sizes_for(padding):
