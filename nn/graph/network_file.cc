@@ -3,23 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <limits>
-#include <span>
 #include <string>
-#include <string_view>
-#include <system_error>
 #include <vector>
 
 #include <hdf5.h>
-#include <hdf5_hl.h>
-#include <openssl/evp.h>
 
 #include "nn/base/check.h"
 #include "nn/base/hdf5_handle.h"
+#include "nn/base/sealed_file.h"
 #include "nn/graph/json_object.h"
 #include "nn/graph/limits.h"
 #include "nn/graph/parse_graph.h"
@@ -27,92 +20,13 @@
 namespace orb360::nn {
 namespace {
 
-constexpr std::string_view kMagic = "ORB360NN";
-constexpr std::uint32_t kVersion = 1;
-constexpr std::size_t kVersionAt = 8;
-constexpr std::size_t kDigestAt = 16;
-constexpr std::size_t kDigestBytes = 32;
-constexpr std::size_t kHeaderBytes = 512;
-/// All weights that are accepted, as 32-bit floats, and as much again for everything else.
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{limits::kWeights} * 8;
-
-static_assert(std::endian::native == std::endian::little, "numbers are read as they lie in files");
-
-using Bytes = std::vector<unsigned char>;
-
-Bytes ReadBytes(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) throw UserError("cannot be read: " + error.message());
-  if (size > kMostBytes) {
-    throw UserError("has " + std::to_string(size) + " bytes, more than any network");
-  }
-  Bytes bytes(static_cast<std::size_t>(size));
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw UserError("cannot be read: " + std::generic_category().message(errno));
-  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!file) throw UserError("cannot be read to its end");
-  return bytes;
-}
-
-void CheckHeader(const Bytes& bytes) {
-  if (bytes.size() < kHeaderBytes || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) {
-    throw UserError("is not a network of orb360; weights_tools writes them");
-  }
-  std::uint32_t version = 0;
-  std::memcpy(&version, bytes.data() + kVersionAt, sizeof(version));
-  if (version != kVersion) {
-    throw UserError("is a network of version " + std::to_string(version) +
-                    ", and this program reads version " + std::to_string(kVersion) +
-                    "; use the weights that belong to it");
-  }
-  const std::span<const unsigned char> header(bytes.data(), kHeaderBytes);
-  const auto is_zero = [](std::span<const unsigned char> part) {
-    return std::ranges::all_of(part, [](unsigned char byte) { return byte == 0; });
-  };
-  if (!is_zero(
-          header.subspan(kVersionAt + sizeof(version), kDigestAt - kVersionAt - sizeof(version))) ||
-      !is_zero(header.subspan(kDigestAt + kDigestBytes))) {
-    throw UserError("has a damaged header; copy or download it again");
-  }
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
-  unsigned size = 0;
-  const int done = EVP_Digest(bytes.data() + kHeaderBytes, bytes.size() - kHeaderBytes,
-                              digest.data(), &size, EVP_sha256(), nullptr);
-  ORB360_CHECK(done == 1 && size == kDigestBytes, size);
-  if (std::memcmp(digest.data(), bytes.data() + kDigestAt, kDigestBytes) != 0) {
-    throw UserError("is damaged (its SHA-256 is another one); copy or download it again");
-  }
-}
-
-/// The file in memory as the HDF5 library sees it: `bytes` themselves, which must outlive the
-/// handle. (Copies of them would take as long as the digest.)
-Hdf5Handle OpenImage(Bytes* bytes) {
-  Hdf5Handle file(H5LTopen_file_image(bytes->data(), bytes->size(),
-                                      H5LT_FILE_IMAGE_DONT_COPY | H5LT_FILE_IMAGE_DONT_RELEASE),
-                  H5Fclose);
-  if (!file.is_valid()) throw UserError("has no HDF5 content behind its header");
-  return file;
-}
-
-/// A dataset whose bytes are in this file, and nowhere else.
-Hdf5Handle OpenDataset(hid_t group, const std::string& name) {
-  H5L_info_t link;
-  Hdf5Handle set(
-      H5Lget_info(group, name.c_str(), &link, H5P_DEFAULT) >= 0 && link.type == H5L_TYPE_HARD
-          ? H5Dopen2(group, name.c_str(), H5P_DEFAULT)
-          : H5I_INVALID_HID,
-      H5Dclose);
-  if (!set.is_valid()) throw UserError("has no dataset " + Quoted(name));
-  const Hdf5Handle creation(H5Dget_create_plist(set.get()), H5Pclose);
-  if (H5Pget_external_count(creation.get()) != 0 || H5Pget_layout(creation.get()) == H5D_VIRTUAL) {
-    throw UserError("dataset " + Quoted(name) + " lies in another file");
-  }
-  return set;
-}
+constexpr SealedKind kKind = {
+    "ORB360NN", 1, "network", "weights_tools", "use the weights that belong to it",
+    // All weights that are accepted, as 32-bit floats, and as much again for everything else.
+    std::uintmax_t{limits::kWeights} * 8};
 
 std::string ReadText(hid_t file, const std::string& name) {
-  const Hdf5Handle set = OpenDataset(file, name);
+  const Hdf5Handle set = OpenOwnDataset(file, name);
   const Hdf5Handle type(H5Dget_type(set.get()), H5Tclose);
   const Hdf5Handle space(H5Dget_space(set.get()), H5Sclose);
   if (H5Tget_class(type.get()) != H5T_STRING || H5Sget_simple_extent_npoints(space.get()) != 1) {
@@ -179,7 +93,7 @@ std::vector<int> ReadShape(hid_t set, const std::string& name) {
 
 /// `room`: how many numbers are still accepted.
 Weight ReadWeight(hid_t group, const std::string& name, std::int64_t room) {
-  const Hdf5Handle set = OpenDataset(group, name);
+  const Hdf5Handle set = OpenOwnDataset(group, name);
   Weight weight{name, ReadShape(set.get(), name), {}};
   std::int64_t count = 1;
   for (const int size : weight.shape) count *= size;
@@ -230,10 +144,9 @@ std::vector<Weight> ReadWeights(hid_t file) {
 
 Graph ReadNetwork(const std::filesystem::path& path) {
   try {
-    Bytes bytes = ReadBytes(path);
-    CheckHeader(bytes);
+    FileBytes bytes = ReadSealedFile(path, kKind);
     const Hdf5Quiet quiet;
-    const Hdf5Handle file = OpenImage(&bytes);
+    const Hdf5Handle file = OpenSealed(&bytes);
     const std::string json = ReadText(file.get(), "graph");
     return ParseGraph(json, ReadWeights(file.get()));
   } catch (const UserError& reason) {

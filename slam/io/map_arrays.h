@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "slam/map/map.h"
+
+namespace orb360 {
+
+/// A map as plain columns, the way it lies in a file: keyframes and landmarks are numbered from 0
+/// without gaps, in the order of their ids. What is removed is not in it.
+struct MapArrays {
+  // By keyframe.
+  std::vector<int32_t> frame_index;
+  std::vector<double> timestamp;      // s
+  std::vector<double> pose;           // world_from_camera: x y z, quaternion x y z w
+  std::vector<int64_t> features_end;  // number of features up to and with this keyframe's
+  // By feature, keyframe after keyframe.
+  std::vector<float> pixel;  // u v
+  std::vector<float> angle;
+  std::vector<float> sigma;
+  std::vector<uint8_t> level;
+  std::vector<uint8_t> score;
+  std::vector<double> bearing;            // x y z
+  std::vector<uint64_t> feature_bits;     // 4 words
+  std::vector<uint8_t> feature_color;     // red green blue
+  std::vector<int32_t> feature_landmark;  // -1: none
+  // By landmark.
+  std::vector<double> position;        // x y z
+  std::vector<double> mean_direction;  // x y z
+  std::vector<double> max_range;
+  std::vector<uint64_t> landmark_bits;  // 4 words
+  std::vector<uint8_t> landmark_color;  // red green blue
+  std::vector<int32_t> first_keyframe;
+  std::vector<int32_t> visible;
+  std::vector<int32_t> found;
+};
+
+/// Calls `visit(name, column, width)` for each column of a MapArrays, const or not: the
+/// dataset of a file, and how many numbers a row has.
+template <typename Arrays, typename Visit>
+void ForEachColumn(Arrays& a, const Visit& visit) {
+  visit("keyframe_frame_index", a.frame_index, 1);
+  visit("keyframe_timestamp", a.timestamp, 1);
+  visit("keyframe_world_from_camera", a.pose, 7);
+  visit("keyframe_features_end", a.features_end, 1);
+  visit("feature_pixel", a.pixel, 2);
+  visit("feature_angle", a.angle, 1);
+  visit("feature_sigma", a.sigma, 1);
+  visit("feature_level", a.level, 1);
+  visit("feature_score", a.score, 1);
+  visit("feature_bearing", a.bearing, 3);
+  visit("feature_descriptor", a.feature_bits, 4);
+  visit("feature_color", a.feature_color, 3);
+  visit("feature_landmark", a.feature_landmark, 1);
+  visit("landmark_position", a.position, 3);
+  visit("landmark_mean_direction", a.mean_direction, 3);
+  visit("landmark_max_range", a.max_range, 1);
+  visit("landmark_descriptor", a.landmark_bits, 4);
+  visit("landmark_color", a.landmark_color, 3);
+  visit("landmark_first_keyframe", a.first_keyframe, 1);
+  visit("landmark_visible", a.visible, 1);
+  visit("landmark_found", a.found, 1);
+}
+
+MapArrays ToArrays(const Map& map);
+
+/// The map of such columns. Throws UserError with what is wrong where they are not those of a map:
+/// sizes that do not fit, numbers out of range, a landmark that is seen twice in a keyframe.
+Map FromArrays(const MapArrays& arrays);
+
+}  // namespace orb360
