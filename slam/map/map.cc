@@ -228,6 +228,53 @@ void Map::Transform(const Similarity3& target_from_world) {
   }
 }
 
+void Map::Deform(std::span<const Similarity3> corrections) {
+  ORB360_CHECK(corrections.size() == keyframes_.size(), corrections.size(), keyframes_.size());
+  for (std::optional<Landmark>& landmark : landmarks_) {
+    if (!landmark || landmark->observations.empty()) continue;
+    const std::vector<Observation>& observations = landmark->observations;
+    const Similarity3& correction = corrections[observations[observations.size() / 2].keyframe];
+    landmark->position = correction * landmark->position;
+    landmark->mean_direction = correction.rotation * landmark->mean_direction;
+    landmark->max_range *= correction.scale;
+  }
+  for (KeyframeId id = 0; id < keyframe_end(); ++id) {
+    if (keyframes_[id]) {
+      Rigid3& pose = keyframes_[id]->world_from_camera;
+      pose = TransformPose(corrections[id], pose);
+    } else {
+      successors_[id].successor_from_camera.translation *= corrections[id].scale;
+    }
+  }
+}
+
+void Map::Append(const Map& other) {
+  const KeyframeId first_keyframe = keyframe_end();
+  const LandmarkId first_landmark = landmark_end();
+  const auto shift = [](int id, int by) { return id == kNoId ? kNoId : id + by; };
+  for (const std::optional<Keyframe>& theirs : other.keyframes_) {
+    keyframes_.push_back(theirs);
+    if (!theirs) continue;
+    keyframes_.back()->id += first_keyframe;
+    for (LandmarkId& id : keyframes_.back()->landmarks) id = shift(id, first_landmark);
+  }
+  for (const Successor& theirs : other.successors_) {
+    successors_.push_back({shift(theirs.keyframe, first_keyframe), theirs.successor_from_camera});
+  }
+  for (const std::optional<Landmark>& theirs : other.landmarks_) {
+    landmarks_.push_back(theirs);
+    if (!theirs) continue;
+    landmarks_.back()->id += first_landmark;
+    landmarks_.back()->first_keyframe += first_keyframe;
+    for (Observation& o : landmarks_.back()->observations) o.keyframe += first_keyframe;
+  }
+  for (const LandmarkId theirs : other.merged_into_) {
+    merged_into_.push_back(shift(theirs, first_landmark));
+  }
+  num_keyframes_ += other.num_keyframes_;
+  num_landmarks_ += other.num_landmarks_;
+}
+
 void Map::CheckConsistency() const {
   int landmarks = 0;
   for (LandmarkId id = 0; id < landmark_end(); ++id) {

@@ -119,6 +119,14 @@ class Map {
 
   /// Applies target_from_world to every pose and landmark: a change of gauge.
   void Transform(const Similarity3& target_from_world);
+  /// Bends the map: `corrections` holds, by keyframe id, what moves the world around that keyframe
+  /// (entries of removed ones are those of the keyframe that stands for them). A landmark goes with
+  /// the keyframe in the middle of those that see it.
+  void Deform(std::span<const Similarity3> corrections);
+
+  /// Takes over all keyframes and landmarks of another map in the same world; their ids grow by
+  /// keyframe_end() and landmark_end() of this one as it was before.
+  void Append(const Map& other);
 
   /// Throws ContractError where the invariant is broken; for tests.
   void CheckConsistency() const;

@@ -118,7 +118,8 @@ void AdjustLocally(KeyframeId center, const LocalBundleOptions& options,
          options.height_sigma, map);
 }
 
-void AdjustGlobally(const BundleOptions& options, Map* map) {
+void AdjustGlobally(const BundleOptions& options, const std::optional<KnownGround>& ground,
+                    double height_sigma, Map* map) {
   const std::vector<KeyframeId> keyframes = map->KeyframeIds();
   std::vector<LandmarkId> landmarks;
   for (LandmarkId id = 0; id < map->landmark_end(); ++id) {
@@ -126,7 +127,7 @@ void AdjustGlobally(const BundleOptions& options, Map* map) {
   }
   if (keyframes.size() < 2) return;
   const std::span<const KeyframeId> all(keyframes);
-  Adjust(all.subspan(1), all.first(1), landmarks, options, std::nullopt, 0, map);
+  Adjust(all.subspan(1), all.first(1), landmarks, options, ground, height_sigma, map);
 }
 
 }  // namespace orb360

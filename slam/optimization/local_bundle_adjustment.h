@@ -36,6 +36,10 @@ void AdjustLocally(KeyframeId center, const LocalBundleOptions& options,
                    const std::optional<KnownGround>& ground, Map* map);
 
 /// The same for the whole map; its first keyframe is held.
-void AdjustGlobally(const BundleOptions& options, Map* map);
+void AdjustGlobally(const BundleOptions& options, const std::optional<KnownGround>& ground,
+                    double height_sigma, Map* map);
+inline void AdjustGlobally(const BundleOptions& options, Map* map) {
+  AdjustGlobally(options, std::nullopt, 0.0, map);
+}
 
 }  // namespace orb360

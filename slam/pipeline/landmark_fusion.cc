@@ -1,6 +1,7 @@
 #include "slam/pipeline/landmark_fusion.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "slam/features/hamming.h"
 #include "slam/optimization/bearing_residual.h"
@@ -9,7 +10,8 @@
 namespace orb360 {
 namespace {
 
-// Search window in standard deviations: both the landmark and the poses are already estimated.
+// Search window in standard deviations among neighbours: both the landmark and the poses are
+// already estimated.
 constexpr double kSearchSigmas = 3.0;
 constexpr int kMaxDistance = 50;  // differing bits
 
@@ -18,8 +20,22 @@ bool Sees(const Landmark& landmark, KeyframeId keyframe) {
                      [&](const Observation& o) { return o.keyframe == keyframe; });
 }
 
-// Searches landmarks in one keyframe; ids that are gone by now are passed over.
-void FuseInto(KeyframeId target, std::span<const LandmarkId> ids, Map* map) {
+}  // namespace
+
+std::vector<LandmarkId> LandmarksSeenBy(std::span<const KeyframeId> keyframes, const Map& map) {
+  std::vector<LandmarkId> ids;
+  for (const KeyframeId id : keyframes) {
+    const std::vector<LandmarkId>& seen = map.keyframe(id).landmarks;
+    std::copy_if(seen.begin(), seen.end(), std::back_inserter(ids),
+                 [](LandmarkId l) { return l != kNoId; });
+  }
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
+void FuseLandmarks(KeyframeId target, std::span<const LandmarkId> ids, double radius_sigmas,
+                   Map* map) {
   const Keyframe& keyframe = map->keyframe(target);
   const Features& features = *keyframe.features;
   if (features.size() == 0) return;
@@ -27,10 +43,11 @@ void FuseInto(KeyframeId target, std::span<const LandmarkId> ids, Map* map) {
   for (const Keypoint& keypoint : features.keypoints) {
     min_sigma = std::min(min_sigma, keypoint.sigma);
   }
-  const ProjectionSearchOptions search{.radius = kSearchSigmas * min_sigma,
+  const ProjectionSearchOptions search{.radius = radius_sigmas * min_sigma,
                                        .scale_radius = true,
                                        .max_distance = kMaxDistance,
                                        .ratio = 1.0};
+  const double max_squared_residual = kChiSquared95 * std::pow(radius_sigmas / kSearchSigmas, 2);
   const Rigid3 camera_from_world = keyframe.world_from_camera.Inverse();
   std::vector<int> candidates;
   for (const LandmarkId id : ids) {
@@ -46,7 +63,7 @@ void FuseInto(KeyframeId target, std::span<const LandmarkId> ids, Map* map) {
     const Eigen::Vector2d residual = BearingResidual(
         camera_from_world * landmark.position,
         TangentBasis(features.bearings[feature]) / features.keypoints[feature].sigma, nullptr);
-    if (residual.squaredNorm() > kChiSquared95) continue;
+    if (residual.squaredNorm() > max_squared_residual) continue;
     const LandmarkId present = map->keyframe(target).landmarks[feature];
     if (present == kNoId) {
       map->AddObservation(id, target, feature);
@@ -61,29 +78,16 @@ void FuseInto(KeyframeId target, std::span<const LandmarkId> ids, Map* map) {
   }
 }
 
-std::vector<LandmarkId> LandmarksOf(const Keyframe& keyframe) {
-  std::vector<LandmarkId> ids;
-  std::copy_if(keyframe.landmarks.begin(), keyframe.landmarks.end(), std::back_inserter(ids),
-               [](LandmarkId id) { return id != kNoId; });
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
-
-}  // namespace
-
 void FuseWithNeighbours(KeyframeId id, int max_neighbours, Map* map) {
   std::vector<Map::Covisible> neighbours = map->FindCovisible(map->keyframe(id).landmarks, 1, id);
   if (static_cast<int>(neighbours.size()) > max_neighbours) neighbours.resize(max_neighbours);
-  const std::vector<LandmarkId> own = LandmarksOf(map->keyframe(id));
-  std::vector<LandmarkId> theirs;
+  const std::vector<LandmarkId> own = LandmarksSeenBy(std::span(&id, 1), *map);
+  std::vector<KeyframeId> others;
   for (const Map::Covisible& neighbour : neighbours) {
-    FuseInto(neighbour.keyframe, own, map);
-    const std::vector<LandmarkId> seen = LandmarksOf(map->keyframe(neighbour.keyframe));
-    theirs.insert(theirs.end(), seen.begin(), seen.end());
+    FuseLandmarks(neighbour.keyframe, own, kSearchSigmas, map);
+    others.push_back(neighbour.keyframe);
   }
-  std::sort(theirs.begin(), theirs.end());
-  theirs.erase(std::unique(theirs.begin(), theirs.end()), theirs.end());
-  FuseInto(id, theirs, map);
+  FuseLandmarks(id, LandmarksSeenBy(others, *map), kSearchSigmas, map);
 }
 
 }  // namespace orb360

@@ -120,6 +120,37 @@ ConfigSchema MakeConfigSchema(Options* options) {
              "every so many keyframes get dense depth", 1, 1000);
   schema.Add("depth.min_points", &depth.min_points,
              "landmarks that a keyframe must show to be completed", 1, 100000);
+
+  LoopOptions& loop = options->loop;
+  schema.Add("loop.enabled", &loop.enabled,
+             "recognise places: close loops, join maps, find a lost camera by what it sees");
+  schema.Add("loop.min_likeness", &loop.min_likeness,
+             "a place is looked at when it is like the picture, share of the keyframe before", 0.0,
+             10.0);
+  schema.Add("loop.max_candidates", &loop.max_candidates, "places looked at for each lost frame", 1,
+             100);
+  schema.Add("loop.min_inliers", &loop.min_inliers,
+             "landmarks of a place that must be found in the picture", 10, 10000);
+  schema.Add("loop.min_found_share", &loop.min_found_share,
+             "share of the place's landmarks in view that must be found", 0.0, 1.0);
+  schema.Add("loop.min_agreeing", &loop.min_agreeing,
+             "keyframes that must lead to the same correction", 1, 100);
+  schema.Add("loop.max_disagreement", &loop.max_disagreement,
+             "difference of corrections: share of the median range, radians, log of the scale", 0.0,
+             1.0);
+  schema.Add("loop.min_length", &loop.min_length,
+             "least length of a loop, multiples of the median range", 0.0, 10000.0);
+  schema.Add("loop.max_drift", &loop.max_drift,
+             "farthest that a map can have drifted, share of the way round the loop", 0.0, 10.0);
+  schema.Add("loop.max_turn", &loop.max_turn, "the same for directions, radians", 0.0, 3.2);
+  schema.Add("loop.max_scale", &loop.max_scale, "the same for the scale, a factor", 1.0, 100.0);
+  schema.Add("loop.correction_frames", &loop.correction_frames,
+             "frames after which the correction of a loop is adopted", 1, 1000);
+  schema.Add("loop.bundle_frames", &loop.bundle_frames,
+             "frames after which a bundle adjustment of the whole map is adopted, by keyframe", 0.0,
+             100.0);
+  schema.Add("loop.bundle_iterations", &loop.bundle_iterations,
+             "iterations of the bundle adjustment of the whole map", 1, 1000);
   return schema;
 }
 

@@ -4,6 +4,7 @@
 #include "slam/features/orb_extractor.h"
 #include "slam/io/config.h"
 #include "slam/pipeline/initializer.h"
+#include "slam/pipeline/loop_detector.h"
 #include "slam/pipeline/mapper.h"
 #include "slam/pipeline/tracker.h"
 
@@ -65,6 +66,7 @@ struct Options {
   RecoveryOptions recovery;
   ScaleOptions scale;
   DepthOptions depth;
+  LoopOptions loop;
 };
 
 /// Registers every option under its key in a configuration file. `options` must outlive the schema.

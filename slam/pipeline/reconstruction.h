@@ -21,7 +21,7 @@ struct Placement {
 };
 
 struct FramePose {
-  int index;         // in the sequence
+  int index;         // in the sequence; negative: of a run that a loaded map was made in
   double timestamp;  // s
   int map;           // poses of different maps are related only by the motion assumed between them
   Rigid3 world_from_camera;
@@ -49,6 +49,12 @@ struct MapSummary {
   bool is_metric = false;  // else in a scale of its own
 };
 
+/// The camera came back to a place; frame indices.
+struct ClosedLoop {
+  int frame;
+  int place;
+};
+
 /// Landmarks in common that link two keyframes in the covisibility graph.
 inline constexpr int kCovisible = 15;
 
@@ -61,6 +67,9 @@ struct Reconstruction {
   std::vector<MapSummary> maps;
   std::optional<int> initialized_at;  // frame at which the first map was made
   int lost = 0;                       // times tracking was lost after that
+  int relocalized = 0;                // times a lost camera was found again
+  std::vector<ClosedLoop> loops;      // closed within a map
+  std::vector<ClosedLoop> joints;     // by which a map was joined to an older one
   double features_per_keyframe = 0;   // mean number matched to landmarks
   /// Of the keyframes that were given dense depth, by frame index: units of the result in one unit
   /// of that depth.
@@ -69,8 +78,8 @@ struct Reconstruction {
   std::optional<Eigen::Vector3d> up;
 };
 
-/// Everything but `initialized_at`, `lost`, `depth_scales` and which maps are metric. Placements
-/// are by frame index.
+/// Everything but `initialized_at`, `depth_scales`, what is counted and which maps are metric.
+/// Placements are by frame index.
 Reconstruction MakeReconstruction(const std::vector<Map>& maps,
                                   const std::map<int, Placement>& placements);
 

@@ -57,7 +57,9 @@ System::System(const EquirectangularCamera& camera, const Options& options, cons
       mask_(mask),
       extractor_(options.orb),
       pixel_sigma_(camera.AngleOfPixels(options.orb.pixel_sigma)),
-      num_threads_(omp_get_max_threads()) {}
+      num_threads_(omp_get_max_threads()),
+      loops_(LoopDetector(options.loop, options.tracker, options.keyframe.local_keyframes,
+                          pixel_sigma_)) {}
 
 System::~System() = default;
 
@@ -83,6 +85,7 @@ FrameReport System::Process(const Frame& frame) {
   ++num_processed_;
   const Clock::time_point adoption = Clock::now();
   if (job_ && MustAdopt()) AdoptMapping();
+  if (bundle_ && !job_ && num_processed_ >= bundle_->adopt_at) AdoptBundle();
   report.timing_ms["adoption"] = MillisecondsSince(adoption);
 
   const Clock::time_point tracking = Clock::now();
@@ -100,7 +103,11 @@ FrameReport System::Process(const Frame& frame) {
   }
   if (state_ == TrackingState::kTracking && !job_) {
     UpdateLocalMap();
-    if (NeedsKeyframe()) StartMapping();
+    if (loop_ && !bundle_) {
+      StartLoopCorrection();
+    } else if (!keeps_map_ && NeedsKeyframe()) {
+      StartMapping();
+    }
   }
   report.timing_ms["tracking"] = MillisecondsSince(tracking);
   report.timing_ms["frame"] = MillisecondsSince(start);
@@ -117,14 +124,14 @@ FrameReport System::Process(const Frame& frame) {
   return report;
 }
 
-// Threads waiting for one that has no core cost more than they bring: one core is left to mapping
-// and depth completion.
+// Threads waiting for one that has no core cost more than they bring: each job has one.
 int System::FreeThreads() const {
   const auto is_running = [](const auto& job) {
     return job.valid() && job.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
   };
-  const bool is_busy = (job_ && is_running(job_->result)) || is_running(completion_);
-  return is_busy ? std::max(1, num_threads_ - 1) : num_threads_;
+  const bool is_mapping = (job_ && is_running(job_->result)) || is_running(completion_);
+  const bool is_adjusting = bundle_ && is_running(bundle_->adjusted);
+  return std::max(1, num_threads_ - is_mapping - is_adjusting);
 }
 
 // --- tracking ---------------------------------------------------------------------------------
@@ -164,6 +171,8 @@ void System::TrackFrame(const PendingFrame& frame) {
   lost_since_ = num_processed_;
   relocalization_cursor_ = map_.keyframe_end() - 1;
   reference_index_ = -1;
+  loop_.reset();
+  loops_->Restart();
   pending_.push_back(frame);
 }
 
@@ -192,22 +201,31 @@ void System::RecoverFrame(const PendingFrame& frame) {
   std::optional<TrackResult> result = Relocalize(*frame.features);
   if (result) {
     state_ = TrackingState::kTracking;
+    if (!initialized_at_) initialized_at_ = frame.index;  // in a map made earlier
+    ++num_relocalized_;
     before_last_.reset();
     AcceptTracking(frame, std::move(*result));
     before_last_.reset();
     TrackPendingBackwards(last_);
     return;
   }
-  if (num_processed_ - lost_since_ >= options_.recovery.patience_frames) {
+  if (!keeps_map_ && num_processed_ - lost_since_ >= options_.recovery.patience_frames) {
     InitializeMap(frame);
   } else {
-    pending_.push_back(frame);
+    Remember(frame);
   }
 }
 
 std::optional<TrackResult> System::Relocalize(const Features& features) {
   std::optional<TrackResult> result =
       TrackWithoutPrediction(features, local_, pixel_sigma_, options_.tracker);
+  if (!result && options_.loop.enabled) {
+    if (auto found = loops_->FindPose(features, map_, finished_maps_)) {
+      if (found->map < static_cast<int>(finished_maps_.size())) SwitchToMap(found->map);
+      local_ = std::move(found->local);
+      result = std::move(found->result);
+    }
+  }
   for (int i = 0; !result && i < options_.recovery.keyframes_per_frame; ++i) {
     // From the newest keyframe backwards, round and round; neighbours see the same.
     constexpr int kStep = 3;
@@ -270,6 +288,10 @@ void System::InitializeMap(const PendingFrame& frame) {
     if (reference_index_ == pending_.back().index) break;
     reference_index_ = pending_.back().index;  // once more with the frame just before
   }
+  Remember(frame);
+}
+
+void System::Remember(const PendingFrame& frame) {
   pending_.push_back(frame);
   if (static_cast<int>(pending_.size()) > options_.recovery.max_pending_frames) {
     pending_.pop_front();
@@ -297,16 +319,17 @@ void System::CreateMap(const PendingFrame& first, const PendingFrame& second,
   // of the one before was, in its scale.
   Similarity3 gauge;
   gauge.scale = 1.0 / map.MedianRange(keyframe2);
-  if (initialized_at_) {
+  if (map_.num_keyframes() > 0) {
     gauge.scale *= local_.median_range;
     gauge.rotation = last_.world_from_camera.rotation;
     gauge.translation = last_.world_from_camera.translation;
+    if (bundle_) AdoptBundle();
     FinishMap();
-  } else {
-    initialized_at_ = second.index;
   }
+  if (!initialized_at_) initialized_at_ = second.index;
   map.Transform(gauge);
   map_ = std::move(map);
+  if (options_.loop.enabled) loops_->Learn(map_, static_cast<int>(finished_maps_.size()));
 
   state_ = TrackingState::kTracking;
   local_ = MakeLocalMap(map_, keyframe2, options_.keyframe.local_keyframes);
@@ -355,16 +378,23 @@ void System::StartMapping() {
     completed = completer_->camera();
     cv::resize(image_, color, {completed->width(), completed->height()}, 0, 0, cv::INTER_AREA);
   }
-  // The map moves into the job and comes back with its result.
-  auto integrate = [map = std::move(map_), keyframe, ground = ground_, completed,
-                    options = options_]() mutable {
+  // The map moves into the job and comes back with its result; finished maps stay as they are while
+  // there is a job.
+  auto integrate = [map = std::move(map_), loops = std::move(loops_), finished = &finished_maps_,
+                    keyframe, ground = ground_, completed, options = options_]() mutable {
     omp_set_num_threads(1);  // the other core goes on tracking
     const KeyframeId id = IntegrateKeyframe(keyframe, options.mapper, ground, &map);
-    Mapped mapped;
-    mapped.ground = LookForGround(map, ground, options.scale);
-    if (completed) mapped.sparse = ProjectLandmarks(map, id, *completed, options.depth.sparse);
-    mapped.map = std::move(map);
-    return mapped;
+    MappingResult result;
+    result.reference = id;
+    const Rigid3 correction =
+        map.keyframe(id).world_from_camera * keyframe.world_from_camera.Inverse();
+    result.correction = {1.0, correction.rotation, correction.translation};
+    result.ground = LookForGround(map, ground, options.scale);
+    if (completed) result.sparse = ProjectLandmarks(map, id, *completed, options.depth.sparse);
+    if (options.loop.enabled) result.found = loops->Observe(map, id, *finished);
+    result.map = std::move(map);
+    result.loops = std::move(loops);
+    return result;
   };
   map_ = Map();
   job_ = MappingJob{std::async(std::launch::async, std::move(integrate)), std::move(keyframe),
@@ -380,23 +410,24 @@ bool System::MustAdopt() const {
 }
 
 void System::AdoptMapping() {
-  Mapped mapped = job_->result.get();
-  map_ = std::move(mapped.map);
-  CountMap();
-  const KeyframeId id = map_.keyframe_end() - 1;
-  // What was tracked meanwhile moves along with the keyframe.
-  const Rigid3 correction =
-      map_.keyframe(id).world_from_camera * job_->frame.world_from_camera.Inverse();
+  MappingResult result = job_->result.get();
   if (!job_->color.empty()) {
-    StartCompletion(job_->frame.index, job_->color, std::move(mapped.sparse));
+    StartCompletion(job_->frame.index, job_->color, std::move(result.sparse));
   }
   job_.reset();
-  last_.world_from_camera = correction * last_.world_from_camera;
-  if (before_last_) before_last_->world_from_camera = correction * before_last_->world_from_camera;
+  map_ = std::move(result.map);
+  loops_ = std::move(result.loops);
+  if (result.joined_map) AdoptJoinedMap(result);
+  CountMap();
+  // What was tracked meanwhile moves along with the keyframe.
+  MoveTracked(result.correction);
+  ScalePlacements(result.corrections);
   for (LandmarkId& landmark : last_.landmarks) landmark = map_.Resolve(landmark);
   CountSightings(&map_);
-  if (mapped.ground) FollowGround(*mapped.ground);
-  local_ = MakeLocalMap(map_, id, options_.keyframe.local_keyframes);
+  if (result.found) loop_ = std::move(result.found);
+  if (result.ground) FollowGround(*result.ground);
+  local_ = MakeLocalMap(map_, result.reference, options_.keyframe.local_keyframes);
+  if (result.closed) FollowCorrection(result);
 }
 
 void System::StartCompletion(int frame_index, const cv::Mat& color,
@@ -418,20 +449,23 @@ void System::FollowGround(const KnownGround& ground) {
 // A change of gauge of the present map and of all that is relative to it; the place where the map
 // began stays.
 void System::Rescale(double factor) {
+  if (bundle_) AdoptBundle();
+  loop_.reset();  // measured in the unit before
+  loops_->Restart();
   const Eigen::Vector3d center = map_.PoseOf(0).translation;
   const Similarity3 gauge{factor, Eigen::Quaterniond::Identity(), (1 - factor) * center};
   map_.Transform(gauge);
-  last_.world_from_camera = TransformPose(gauge, last_.world_from_camera);
-  if (before_last_) {
-    before_last_->world_from_camera = TransformPose(gauge, before_last_->world_from_camera);
-  }
+  MoveTracked(gauge);
   for (auto& [index, placement] : placements_) {
     const bool is_here = placement.map == static_cast<int>(finished_maps_.size());
-    if (!is_here) continue;
-    placement.reference_from_camera.translation *= factor;
-    const auto depth = depth_scales_.find(index);
-    if (depth != depth_scales_.end()) depth->second *= factor;
+    if (is_here) ScalePlacement(index, factor, &placement);
   }
+}
+
+void System::ScalePlacement(int frame_index, double factor, Placement* placement) {
+  placement->reference_from_camera.translation *= factor;
+  const auto depth = depth_scales_.find(frame_index);
+  if (depth != depth_scales_.end()) depth->second *= factor;
 }
 
 void System::FinishMap() {
@@ -471,7 +505,12 @@ void System::UpdateLocalMap() {
 Reconstruction System::Finish() {
   if (job_) AdoptMapping();
   if (completion_.valid()) completion_.get();
-  if (initialized_at_) FinishMap();
+  if (bundle_) AdoptBundle();
+  if (closed_loops_.size() + joints_.size() > 0) {
+    StartBundle();  // what came after the last loop takes part as well
+    AdoptBundle();
+  }
+  if (map_.num_keyframes() > 0) FinishMap();
 
   Reconstruction result = MakeReconstruction(finished_maps_, placements_);
   for (size_t i = 0; i < result.maps.size(); ++i) {
@@ -482,6 +521,9 @@ Reconstruction System::Finish() {
   result.initialized_at = initialized_at_;
   result.depth_scales = depth_scales_;
   result.lost = num_lost_;
+  result.relocalized = num_relocalized_;
+  result.loops = closed_loops_;
+  result.joints = joints_;
   return result;
 }
 

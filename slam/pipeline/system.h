@@ -16,6 +16,7 @@
 #include "slam/io/frame_source.h"
 #include "slam/map/map.h"
 #include "slam/pipeline/local_map.h"
+#include "slam/pipeline/loop_detector.h"
 #include "slam/pipeline/options.h"
 #include "slam/pipeline/reconstruction.h"
 #include "slam/pipeline/tracker.h"
@@ -47,6 +48,9 @@ class System {
   /// `mask`: CV_8U of the frames' size, 0 where features are left out; may be empty.
   System(const EquirectangularCamera& camera, const Options& options, const cv::Mat& mask);
   ~System();
+  /// Before the first frame: a map made earlier, in which the camera is to be found. `is_kept`: it
+  /// stays as it is, and frames are only located in it.
+  void StartIn(Map map, const std::optional<KnownGround>& ground, bool is_kept);
   System(const System&) = delete;
   System& operator=(const System&) = delete;
 
@@ -65,6 +69,8 @@ class System {
 
   /// The maps, in the order they were begun; complete after Finish().
   const std::vector<Map>& maps() const { return finished_maps_; }
+  /// The ground under each, where it was found; such a map is in metres.
+  const std::vector<std::optional<KnownGround>>& grounds() const { return grounds_; }
 
  private:
   struct PendingFrame {  // without a pose so far
@@ -72,20 +78,37 @@ class System {
     double timestamp;
     std::shared_ptr<const Features> features;
   };
-  struct Mapped {
+  /// What changes the present map: the mapping of a keyframe, or the correction of a loop.
+  struct MappingResult {
     Map map;
-    std::vector<SparsePoint> sparse;    // of the newest keyframe, where it is to be completed
-    std::optional<KnownGround> ground;  // as the newest keyframe sees it
+    std::optional<LoopDetector> loops;
+    KeyframeId reference = kNoId;          // around which tracking goes on
+    Similarity3 correction;                // what moved the world around it
+    std::vector<SparsePoint> sparse;       // of the keyframe, where it is to be completed
+    std::optional<KnownGround> ground;     // as the keyframe sees it
+    std::optional<Loop> found;             // by the keyframe
+    std::vector<Similarity3> corrections;  // by keyframe, where the map was bent
+    std::optional<ClosedLoop> closed;      // by a correction
+    std::optional<int> joined_map;         // the finished one that comes first in `map`
+    KeyframeId keyframe_shift = 0;         // of what was the present map
+    LandmarkId landmark_shift = 0;
   };
   struct MappingJob {
-    std::future<Mapped> result;
-    TrackedFrame frame;  // the keyframe as it was tracked
+    std::future<MappingResult> result;
+    TrackedFrame frame;  // the keyframe as it was tracked; of a correction the frame before it
     cv::Mat color;       // its picture, where it is to be completed
     int adopt_at;        // value of num_processed_ at which it is due
+  };
+  /// Bundle adjustment of a copy of the map.
+  struct BundleJob {
+    std::future<Map> adjusted;
+    Map before;
+    int adopt_at;
   };
   void TrackFrame(const PendingFrame& frame);
   void RecoverFrame(const PendingFrame& frame);
   void InitializeMap(const PendingFrame& frame);
+  void Remember(const PendingFrame& frame);
   std::optional<TrackResult> Relocalize(const Features& features);
   void AcceptTracking(const PendingFrame& frame, TrackResult result);
   void TrackPendingBackwards(TrackedFrame last);
@@ -100,6 +123,16 @@ class System {
   void FollowGround(const KnownGround& ground);
   void Rescale(double factor);
   void FinishMap();
+  void StartLoopCorrection();
+  void StartBundle();
+  void AdoptBundle();
+  void SwitchToMap(int finished);
+  void AdoptJoinedMap(const MappingResult& result);
+  void RenumberMaps(const std::vector<int>& number_of, int shifted, KeyframeId shift);
+  void ScalePlacements(const std::vector<Similarity3>& corrections);
+  void ScalePlacement(int frame_index, double factor, Placement* placement);
+  void MoveTracked(const Similarity3& correction);
+  void FollowCorrection(const MappingResult& result);
   void CountMap();
   void CountSightings(Map* map);
   void UpdateLocalMap();
@@ -127,10 +160,17 @@ class System {
   std::map<int, double> depth_scales_;  // see Reconstruction
   cv::Mat image_;                       // of the frame in Process
 
-  Map map_;  // empty while a job has it
+  std::vector<Map> finished_maps_;     // before the jobs, which look at it until they end
+  Map map_;                            // empty while a job has it
+  std::optional<LoopDetector> loops_;  // likewise
   std::optional<MappingJob> job_;
-  std::vector<Map> finished_maps_;
-  std::vector<std::optional<KnownGround>> grounds_;  // of the finished maps
+  std::optional<Loop> loop_;  // found, and not closed so far
+  std::optional<BundleJob> bundle_;
+  bool keeps_map_ = false;
+  std::vector<ClosedLoop> closed_loops_;
+  std::vector<ClosedLoop> joints_;
+  int num_relocalized_ = 0;
+  std::vector<std::optional<KnownGround>> grounds_;  // by finished map
   /// Once it is found, the map is in metres.
   std::optional<KnownGround> ground_;
   LocalMap local_;

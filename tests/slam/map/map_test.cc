@@ -101,6 +101,46 @@ TEST(Map, AChangeOfGaugeChangesNoImage) {
   EXPECT_NEAR(map.MedianRange(0), 2.5 * before.MedianRange(0), 1e-9);
 }
 
+TEST(Map, BendingMovesLandmarksWithTheKeyframeInTheMiddle) {
+  Map map = SmallMap();
+  map.RemoveKeyframe(3, 2);
+  const Map before = map;
+  const Similarity3 moved{1.5, ExpSo3({0, 0, 0.2}), {1, 0, 0}};
+  // Every landmark is seen from 0, 1 and 2.
+  const std::vector<Similarity3> corrections = {{}, moved, moved, moved};
+  map.Deform(corrections);
+  map.CheckConsistency();
+  EXPECT_EQ((map.PoseOf(0).translation - before.PoseOf(0).translation).norm(), 0.0);
+  for (LandmarkId id = 0; id < 30; ++id) {
+    const Eigen::Vector3d was = before.PoseOf(1).Inverse() * before.landmark(id).position;
+    const Eigen::Vector3d is = map.PoseOf(1).Inverse() * map.landmark(id).position;
+    EXPECT_LT((is - 1.5 * was).norm(), 1e-9);
+    EXPECT_NEAR(map.landmark(id).max_range, 1.5 * before.landmark(id).max_range, 1e-12);
+  }
+  // The removed one follows, its distance from its successor scaled.
+  EXPECT_LT((map.PoseOf(3).translation - moved * before.PoseOf(3).translation).norm(), 1e-12);
+}
+
+TEST(Map, AppendingKeepsBothMapsAndTheirHistory) {
+  Map map = SmallMap();
+  map.RemoveLandmark(7);
+  Map other = SmallMap();
+  other.RemoveKeyframe(2, 1);
+  other.MergeLandmark(3, 4);
+  const Map before = map;
+  map.Append(other);
+  map.CheckConsistency();
+  EXPECT_EQ(map.num_keyframes(), 4 + 3);
+  EXPECT_EQ(map.num_landmarks(), 29 + 29);
+  EXPECT_FALSE(map.HasKeyframe(4 + 2));
+  EXPECT_EQ(map.LivingKeyframe(4 + 2), 4 + 1);
+  EXPECT_EQ(map.Resolve(30 + 3), 30 + 4);
+  EXPECT_EQ((map.PoseOf(4 + 2).translation - other.PoseOf(2).translation).norm(), 0.0);
+  EXPECT_EQ(map.landmark(30 + 9).first_keyframe, 4 + other.landmark(9).first_keyframe);
+  EXPECT_EQ(map.keyframe(1).landmarks, before.keyframe(1).landmarks);
+  EXPECT_EQ(map.keyframe(4 + 1).landmarks[9], 30 + 9);
+}
+
 TEST(Map, LevelsAndRangesAreInverse) {
   for (int level = 0; level < 8; ++level) {
     EXPECT_EQ(PredictLevel(RangeAtLevelZero(3.7, level), 3.7), level);

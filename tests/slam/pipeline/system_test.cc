@@ -1,6 +1,7 @@
 #include "slam/pipeline/system.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
 #include <utility>
@@ -285,6 +286,90 @@ TEST(SystemSlow, BeginsANewMapElsewhereAndKeepsTheOldOne) {
   EXPECT_GE(result.maps[1].tracked, 60);
   EXPECT_GT(result.maps[0].landmarks, 100);
   EXPECT_GT(result.maps[1].landmarks, 100);
+}
+
+TEST(SystemSlow, FindsItselfAgainWhereverItIsPutAndHoweverItIsTurned) {
+  const BoxRoom room = Hall();
+  System system(kCamera, SmallOptions(), {});
+  for (int i = 0; i < 90; ++i) {
+    system.Process(MakeFrame(i, room.Render(kCamera, TruePose(i))));
+  }
+  const cv::Mat black = cv::Mat::zeros(kCamera.height(), kCamera.width(), CV_8UC3);
+  const std::array<Eigen::Vector3d, 3> turns = {
+      Eigen::Vector3d(0, 0, 3), Eigen::Vector3d(1.5, 0, 0), Eigen::Vector3d(0.5, -2, 1)};
+  std::vector<double> frames = Count(90);
+  for (size_t t = 0; t < turns.size(); ++t) {
+    for (int i = 0; i < 5; ++i, frames.push_back(-1)) {
+      EXPECT_NE(system.Process(MakeFrame(static_cast<int>(frames.size()), black)).state,
+                TrackingState::kTracking);
+    }
+    const double place = 10.5 + 20.0 * static_cast<double>(t);
+    Rigid3 pose = TruePose(place);
+    pose.rotation = pose.rotation * ExpSo3(turns[t]);
+    const int index = static_cast<int>(frames.size());
+    EXPECT_EQ(system.Process(MakeFrame(index, room.Render(kCamera, pose))).state,
+              TrackingState::kTracking);
+    frames.push_back(place);
+  }
+  Reconstruction result = system.Finish();
+  EXPECT_EQ(result.maps.size(), 1u);
+  EXPECT_EQ(result.relocalized, 3);
+  ASSERT_EQ(result.frames.size(), 93u);
+  EXPECT_LT(Compare(result.frames, frames).rmse, 0.01 * 1.3 * 90 / 25);
+}
+
+TEST(SystemSlow, LocatesTheCameraInAMapOfAnEarlierRunAndLeavesItAsItIs) {
+  const BoxRoom room = Hall();
+  System earlier(kCamera, SmallOptions(), {});
+  for (int i = 0; i < 90; ++i) earlier.Process(MakeFrame(i, room.Render(kCamera, TruePose(i))));
+  earlier.Finish();
+  ASSERT_EQ(earlier.maps().size(), 1u);
+  const Map& map = earlier.maps().front();
+  std::vector<Eigen::Vector3d> found, expected;
+  for (const KeyframeId id : map.KeyframeIds()) {
+    found.push_back(map.keyframe(id).world_from_camera.translation);
+    expected.push_back(TruePose(map.keyframe(id).frame_index).translation);
+  }
+  const Similarity3 fit = AlignSimilarity(found, expected).value();
+
+  System later(kCamera, SmallOptions(), {});
+  later.StartIn(map, earlier.grounds().front(), /*is_kept=*/true);
+  std::vector<double> frames;
+  for (int i = 0; i < 30; ++i) {
+    frames.push_back(70.5 - 2 * i);  // the other way
+    const FrameReport report =
+        later.Process(MakeFrame(i, room.Render(kCamera, TruePose(frames.back()))));
+    ASSERT_TRUE(report.world_from_camera.has_value()) << i;
+    const Eigen::Vector3d place = fit * report.world_from_camera->translation;
+    EXPECT_LT((place - TruePose(frames.back()).translation).norm(), 0.05) << i;
+  }
+  const Reconstruction result = later.Finish();
+  EXPECT_EQ(result.lost, 0);
+  EXPECT_EQ(result.initialized_at, 0);
+  ASSERT_EQ(later.maps().size(), 1u);
+  EXPECT_EQ(later.maps().front().num_keyframes(), map.num_keyframes());
+  EXPECT_EQ(later.maps().front().num_landmarks(), map.num_landmarks());
+}
+
+TEST(SystemSlow, GoesOnInAMapOfAnEarlierRun) {
+  const BoxRoom room = Hall();
+  System earlier(kCamera, SmallOptions(), {});
+  for (int i = 0; i < 60; ++i) earlier.Process(MakeFrame(i, room.Render(kCamera, TruePose(i))));
+  earlier.Finish();
+  System later(kCamera, SmallOptions(), {});
+  later.StartIn(earlier.maps().front(), earlier.grounds().front(), /*is_kept=*/false);
+  std::vector<double> frames;
+  for (int i = 0; i < 60; ++i) {
+    frames.push_back(50 + i);
+    later.Process(MakeFrame(i, room.Render(kCamera, TruePose(frames.back()))));
+  }
+  const Reconstruction result = later.Finish();
+  EXPECT_EQ(result.maps.size(), 1u);
+  ASSERT_EQ(result.frames.size(), 60u);
+  EXPECT_GT(later.maps().front().num_keyframes(), earlier.maps().front().num_keyframes());
+  EXPECT_LT(result.keyframes.front().index, 0);  // of the earlier run
+  const PathError error = Compare(result.frames, frames);
+  EXPECT_LT(error.rmse, 0.01 * error.length);
 }
 
 TEST(System, GivesNothingButDoesNotFailOnAWorldWithoutTexture) {

@@ -1,0 +1,177 @@
+#include "slam/pipeline/loop_correction.h"
+
+#include <algorithm>
+
+#include "slam/map/covisibility.h"
+#include "slam/optimization/pose_graph.h"
+#include "slam/pipeline/landmark_fusion.h"
+
+namespace orb360 {
+namespace {
+
+// Landmarks that two keyframes share to hold each other in the pose graph.
+constexpr int kHeldShared = 30;
+// How much heavier a revisit is: it is right to centimetres, while the pairs on the way, many times
+// as many and all of the same landmarks, share an error of metres.
+constexpr double kRevisitWeight = 1000.0;
+// Keyframes on either side of a loop whose landmarks are exchanged, for each revisit.
+constexpr int kFusedNeighbours = 6;
+// Search window for them, in standard deviations: both sides may be a little bent still.
+constexpr double kFusionSigmas = 10.0;
+
+Similarity3 AsSimilarity(const Rigid3& pose) { return {1.0, pose.rotation, pose.translation}; }
+
+void AddSurroundings(const Map& map, KeyframeId center, std::vector<KeyframeId>* keyframes) {
+  keyframes->push_back(center);
+  int added = 0;
+  for (const Map::Covisible& near : map.FindCovisible(map.keyframe(center).landmarks, 1, center)) {
+    if (added++ == kFusedNeighbours) break;
+    keyframes->push_back(near.keyframe);
+  }
+}
+
+void SortUnique(std::vector<KeyframeId>* ids) {
+  std::sort(ids->begin(), ids->end());
+  ids->erase(std::unique(ids->begin(), ids->end()), ids->end());
+}
+
+/// What both ends of a loop see becomes one.
+void FuseEnds(const std::vector<Revisit>& revisits, Map* map) {
+  std::vector<KeyframeId> present;
+  std::vector<KeyframeId> past;
+  for (const Revisit& revisit : revisits) {
+    AddSurroundings(*map, map->LivingKeyframe(revisit.keyframe), &present);
+    AddSurroundings(*map, map->LivingKeyframe(revisit.place), &past);
+  }
+  SortUnique(&present);
+  SortUnique(&past);
+  for (const KeyframeId id : present) {
+    FuseLandmarks(id, LandmarksSeenBy(past, *map), kFusionSigmas, map);
+  }
+  for (const KeyframeId id : past) {
+    FuseLandmarks(id, LandmarksSeenBy(present, *map), kFusionSigmas, map);
+  }
+}
+
+void FillRemoved(const Map& map, std::vector<Similarity3>* corrections) {
+  for (KeyframeId id = 0; id < map.keyframe_end(); ++id) {
+    if (!map.HasKeyframe(id)) (*corrections)[id] = (*corrections)[map.LivingKeyframe(id)];
+  }
+}
+
+/// How much larger the surroundings of a keyframe became.
+double ScaleOfChange(const Keyframe& before, const Map& map_before, const Map& map_after) {
+  const Eigen::Vector3d& after = map_after.keyframe(before.id).world_from_camera.translation;
+  std::vector<double> ratios;
+  for (const LandmarkId id : before.landmarks) {
+    if (id == kNoId || !map_after.HasLandmark(id)) continue;
+    ratios.push_back(
+        (map_after.landmark(id).position - after).norm() /
+        (map_before.landmark(id).position - before.world_from_camera.translation).norm());
+  }
+  if (ratios.empty()) return 1.0;
+  const auto middle = ratios.begin() + ratios.size() / 2;
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return *middle;
+}
+
+}  // namespace
+
+std::vector<Similarity3> CloseLoop(const Loop& loop, Map* map) {
+  const std::vector<KeyframeId> ids = map->KeyframeIds();
+  std::vector<int> node_of(map->keyframe_end(), -1);
+  PoseGraph graph;
+  for (const KeyframeId id : ids) {
+    node_of[id] = static_cast<int>(graph.world_from_node.size());
+    graph.world_from_node.push_back(AsSimilarity(map->keyframe(id).world_from_camera));
+  }
+  graph.fixed.assign(ids.size(), 0);
+  graph.fixed.front() = 1;
+  graph.unit = map->MedianRange(map->LivingKeyframe(loop.revisits.back().keyframe));
+  const std::vector<Similarity3> before = graph.world_from_node;
+  const auto link = [&](int a, int b, double weight) {
+    graph.edges.push_back({a, b, before[a].Inverse() * before[b], weight});
+  };
+  // The chain of keyframes holds what shares little with the rest.
+  for (size_t i = 1; i < ids.size(); ++i) {
+    link(static_cast<int>(i) - 1, static_cast<int>(i), 1.0);
+  }
+  for (const CovisibilityEdge& edge : FindCovisibilityEdges(*map, kHeldShared)) {
+    link(node_of[edge.first], node_of[edge.second], edge.shared);
+  }
+  const size_t num_old_edges = graph.edges.size();
+  for (const Revisit& revisit : loop.revisits) {
+    if (!map->HasKeyframe(revisit.keyframe) || !map->HasKeyframe(revisit.place)) continue;
+    graph.edges.push_back({node_of[revisit.place], node_of[revisit.keyframe],
+                           revisit.place_from_keyframe, kRevisitWeight * revisit.shared});
+  }
+  if (graph.edges.size() == num_old_edges || !SolvePoseGraph(&graph)) return {};
+
+  std::vector<Similarity3> corrections(map->keyframe_end());
+  for (const KeyframeId id : ids) {
+    corrections[id] = graph.world_from_node[node_of[id]] * before[node_of[id]].Inverse();
+  }
+  FillRemoved(*map, &corrections);
+  map->Deform(corrections);
+  FuseEnds(loop.revisits, map);
+  return corrections;
+}
+
+Map JoinMaps(const Loop& loop, Map present, Map finished, Similarity3* correction) {
+  *correction = CorrectionBy(loop.revisits.back(), present, finished);
+  present.Transform(*correction);
+  const KeyframeId shift = finished.keyframe_end();
+  finished.Append(present);
+  std::vector<Revisit> revisits = loop.revisits;
+  for (Revisit& revisit : revisits) revisit.keyframe += shift;
+  FuseEnds(revisits, &finished);
+  return finished;
+}
+
+std::vector<Similarity3> AdoptAdjustment(const Map& before, const Map& adjusted, Map* map) {
+  std::vector<Similarity3> corrections(map->keyframe_end());
+  KeyframeId latest = kNoId;  // that was adjusted and is still there
+  for (const KeyframeId id : before.KeyframeIds()) {
+    const Keyframe& old = before.keyframe(id);
+    const Rigid3& then = old.world_from_camera;
+    const Rigid3& now = adjusted.keyframe(id).world_from_camera;
+    Similarity3& correction = corrections[id];
+    correction.scale = ScaleOfChange(old, before, adjusted);
+    correction.rotation = (now.rotation * then.rotation.conjugate()).normalized();
+    correction.translation =
+        now.translation - correction.scale * (correction.rotation * then.translation);
+    if (map->HasKeyframe(id)) latest = id;
+  }
+  for (KeyframeId id = before.keyframe_end(); id < map->keyframe_end(); ++id) {
+    if (!map->HasKeyframe(id)) continue;
+    KeyframeId leader = latest;
+    for (const Map::Covisible& near : map->FindCovisible(map->keyframe(id).landmarks, 1, id)) {
+      if (near.keyframe >= before.keyframe_end()) continue;
+      leader = near.keyframe;
+      break;
+    }
+    if (leader != kNoId) corrections[id] = corrections[leader];
+  }
+  FillRemoved(*map, &corrections);
+
+  // Landmarks that were adjusted go exactly there, apart from what has moved them since.
+  struct Target {
+    LandmarkId id;
+    Eigen::Vector3d position;
+  };
+  std::vector<Target> targets;
+  for (LandmarkId id = 0; id < before.landmark_end(); ++id) {
+    if (!before.HasLandmark(id) || !adjusted.HasLandmark(id) || !map->HasLandmark(id)) continue;
+    const std::vector<Observation>& seen = map->landmark(id).observations;
+    if (seen.empty()) continue;
+    const Similarity3& c = corrections[seen[seen.size() / 2].keyframe];
+    targets.push_back({id, adjusted.landmark(id).position +
+                               c.scale * (c.rotation * (map->landmark(id).position -
+                                                        before.landmark(id).position))});
+  }
+  map->Deform(corrections);
+  for (const Target& target : targets) map->landmark(target.id).position = target.position;
+  return corrections;
+}
+
+}  // namespace orb360
