@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <iostream>
@@ -22,6 +23,7 @@
 #include "nn/base/check.h"
 #include "slam/depth/depth_completer.h"
 #include "slam/io/full_sphere.h"
+#include "slam/io/map_file.h"
 #include "slam/io/number_text.h"
 #include "slam/io/range_store.h"
 #include "slam/io/sequence.h"
@@ -40,6 +42,10 @@ struct RunOptions {
   int threads = 0;           // 0: one for each core
   double camera_height = 0;  // metres; 0: as the configuration or the input says
   std::string resize;
+  std::string map_in;
+  std::string map_out;
+  bool localizes = false;
+  std::string loops = "on";
   SequenceOptions sequence;
   std::string weights = "none";
   bool saves_sparse = false;
@@ -137,6 +143,13 @@ nlohmann::json DescribeScale(const Reconstruction& reconstruction, const ScaleOp
           {"value", options.height()}};
 }
 
+/// Pairs of the frame that came back and the frame of the place.
+nlohmann::json FramesOf(const std::vector<ClosedLoop>& loops) {
+  nlohmann::json pairs = nlohmann::json::array();
+  for (const ClosedLoop& loop : loops) pairs.push_back({loop.frame, loop.place});
+  return pairs;
+}
+
 nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& record,
                          const std::optional<DenseOutput>& dense, const RunOptions& options,
                          const ScaleOptions& scale, double masked_share, int threads) {
@@ -147,6 +160,11 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
       {"tracked", reconstruction.frames.size()},
       {"lost", reconstruction.lost},
       {"maps", reconstruction.maps.size()},
+      {"loops", reconstruction.loops.size()},
+      {"loop_frames", FramesOf(reconstruction.loops)},
+      {"relocalizations", reconstruction.relocalized},
+      {"merges", reconstruction.joints.size()},
+      {"merge_frames", FramesOf(reconstruction.joints)},
       {"initialized_at", nullptr},
       {"keyframes", reconstruction.keyframes.size()},
       {"landmarks", reconstruction.landmarks.size()},
@@ -185,16 +203,38 @@ void PrintResult(const nlohmann::json& summary, const std::filesystem::path& fol
       << folder.string() << std::endl;
 }
 
+/// The map that a run is to begin in, for pictures of this width; none for "".
+std::optional<StoredMap> ReadMapFor(int width, const std::string& path) {
+  if (path.empty()) return std::nullopt;
+  StoredMap stored = ReadMap(path);
+  if (stored.width == width) return stored;
+  throw UserError(path + ": was made from pictures " + std::to_string(stored.width) +
+                  " pixels wide, and these have " + std::to_string(width) + "; use --resize " +
+                  std::to_string(stored.width) + "x" + std::to_string(stored.width / 2));
+}
+
+/// Of several maps, which nothing relates, the largest is kept.
+void WriteLargestMap(const std::string& path, int width, const Rigid3& file_world_from_map,
+                     const System& system) {
+  const std::vector<Map>& maps = system.maps();
+  const auto largest = std::ranges::max_element(maps, {}, &Map::num_keyframes);
+  if (largest == maps.end()) return;
+  WriteMap(path, {width, file_world_from_map, system.grounds()[largest - maps.begin()], *largest});
+}
+
 int Run(const RunOptions& options) {
   Options system_options;
   if (!options.config.empty()) MakeConfigSchema(&system_options).Load(options.config);
   SequenceOptions sequence_options = options.sequence;
   sequence_options.resize = ParseSize(options.resize);
+  if (options.loops == "off") system_options.loop.enabled = false;
   const std::unique_ptr<Sequence> sequence = OpenInput(options.input, sequence_options);
   double& camera_height = system_options.scale.camera_height;
   if (options.camera_height > 0) camera_height = options.camera_height;
   if (camera_height == 0) camera_height = sequence->camera_height().value_or(0);
+  std::optional<StoredMap> stored = ReadMapFor(sequence->image_size().width, options.map_in);
   RunOutput output(options.out);
+  if (stored) output.SetWorld(stored->file_world_from_map);
   const int threads = SetThreads(options.threads);
   const cv::Mat mask = ChooseMask(options.mask, options.input, sequence_options, *sequence);
   const double masked_share = ExcludedShare(mask);
@@ -214,13 +254,17 @@ int Run(const RunOptions& options) {
       depth->Put(frame_index, dense);
     });
   }
+  if (stored) system.StartIn(std::move(stored->map), stored->ground, options.localizes);
   RunRecord record = ProcessFrames(sequence.get(), &system, &output, options.is_quiet);
   const Reconstruction reconstruction = system.Finish();
   const std::optional<DenseOutput> dense =
       depth ? FuseDepth(reconstruction, *depth, options, output, &record) : std::nullopt;
   const nlohmann::json summary = Summarize(reconstruction, record, dense, options,
                                            system_options.scale, masked_share, threads);
-  output.Finish(reconstruction, summary, dense);
+  const Rigid3 file_world_from_map = output.Finish(reconstruction, summary, dense);
+  if (!options.map_out.empty()) {
+    WriteLargestMap(options.map_out, size.width, file_world_from_map, system);
+  }
   if (options.saves_sparse) {
     WriteSparseKeyframes(output.folder() / "sparse", system.maps(),
                          OpenInput(options.input, sequence_options).get());
@@ -235,7 +279,8 @@ int Run(const RunOptions& options) {
   }
   if (reconstruction.frames.empty()) {
     throw UserError(options.input + ": no pose was found in its " + std::to_string(record.frames) +
-                    " frames; the camera must move and see some texture");
+                    (options.localizes ? " frames: the camera is nowhere in " + options.map_in
+                                       : " frames; the camera must move and see some texture"));
   }
   return EXIT_SUCCESS;
 }
@@ -292,6 +337,24 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
       ->check(CLI::Range(0.01, 100.0))
       ->type_name("M");
   command->add_option("--resize", options->resize, "Scale every image first")->type_name("WxH");
+  CLI::Option* map_in =
+      command->add_option("--map-in", options->map_in, "Begin in a map that --map-out has written")
+          ->type_name("FILE");
+  CLI::Option* map_out = command
+                             ->add_option("--map-out", options->map_out,
+                                          "Keep the map, the largest of several, for later runs")
+                             ->type_name("FILE");
+  command
+      ->add_flag("--localize", options->localizes,
+                 "Only locate the camera in the map; the map stays as it is")
+      ->needs(map_in)
+      ->excludes(map_out);
+  command
+      ->add_option("--loops", options->loops,
+                   "Recognise places: close loops, join maps, find the camera after a loss")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->type_name("on|off")
+      ->capture_default_str();
   command->add_flag("--save-sparse", options->saves_sparse,
                     "Also write each keyframe with its sparse depth to DIR/sparse (HDF5)");
   command->add_flag(

@@ -22,10 +22,13 @@ bool Create(const std::filesystem::path& folder) {
   return is_new;
 }
 
+/// Without those of earlier runs, whose indices are negative.
 std::vector<StampedPose> ToStamped(const std::vector<FramePose>& frames) {
   std::vector<StampedPose> poses;
   poses.reserve(frames.size());
-  for (const FramePose& frame : frames) poses.push_back({frame.timestamp, frame.world_from_camera});
+  for (const FramePose& frame : frames) {
+    if (frame.index >= 0) poses.push_back({frame.timestamp, frame.world_from_camera});
+  }
   return poses;
 }
 
@@ -65,14 +68,19 @@ RunOutput::~RunOutput() {
 }
 
 void RunOutput::Append(double timestamp, const Rigid3& map_from_camera) {
-  if (!file_world_from_map_) file_world_from_map_ = FileWorldFromMap(map_from_camera);
+  if (!file_world_from_map_) {
+    file_world_from_map_ = given_world_ ? *given_world_ : FileWorldFromMap(map_from_camera);
+  }
   journal_.Append({timestamp, *file_world_from_map_ * map_from_camera});
+}
+
+Rigid3 RunOutput::WorldOf(const Reconstruction& reconstruction) const {
+  return given_world_ ? *given_world_ : FinalFileWorldFromMap(reconstruction);
 }
 
 DenseOutput RunOutput::WriteDense(const Reconstruction& reconstruction, const RangeStore& store,
                                   bool saves_depth) const {
-  const std::vector<DenseView> views =
-      MakeDenseViews(reconstruction, FinalFileWorldFromMap(reconstruction));
+  const std::vector<DenseView> views = MakeDenseViews(reconstruction, WorldOf(reconstruction));
   if (saves_depth) SaveDepth(folder_, store, views);
   DenseCloudOptions options;
   if (!reconstruction.maps.empty() && !reconstruction.maps.front().is_metric) {
@@ -81,9 +89,9 @@ DenseOutput RunOutput::WriteDense(const Reconstruction& reconstruction, const Ra
   return WriteDenseOutput(folder_, store, views, options);
 }
 
-void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,
-                       const std::optional<DenseOutput>& dense) {
-  const Rigid3 file_world_from_map = FinalFileWorldFromMap(reconstruction);
+Rigid3 RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,
+                         const std::optional<DenseOutput>& dense) {
+  const Rigid3 file_world_from_map = WorldOf(reconstruction);
   std::vector<ColoredPoint> cloud;
   cloud.reserve(reconstruction.landmarks.size());
   for (const CloudPoint& point : reconstruction.landmarks) {
@@ -103,6 +111,7 @@ void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::jso
   WriteRunReport(folder_, reconstruction, summary, map_svg,
                  dense ? dense->pictures : DensePictures());
   std::filesystem::remove(folder_ / kJournalName);
+  return file_world_from_map;
 }
 
 }  // namespace orb360

@@ -26,9 +26,11 @@ std::filesystem::path SampleName(int frame_index) {
 
 void WriteSparseKeyframes(const std::filesystem::path& folder, const std::vector<Map>& maps,
                           Sequence* sequence) {
-  std::map<int, KeyframeOfMap> keyframes;  // by frame index; a frame is in one map only
+  // By frame index; a frame is in one map only. Negative ones are of earlier runs.
+  std::map<int, KeyframeOfMap> keyframes;
   for (const Map& map : maps) {
     for (const KeyframeId id : map.KeyframeIds()) {
+      if (map.keyframe(id).frame_index < 0) continue;
       keyframes.insert({map.keyframe(id).frame_index, {&map, id}});
     }
   }

@@ -14,6 +14,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "slam/io/atomic_file.h"
+#include "slam/io/map_file.h"
 #include "slam/io/ply.h"
 #include "slam/io/sparse_file.h"
 #include "slam/io/trajectory.h"
@@ -340,6 +342,43 @@ TEST_F(RunTest, SaveSparseWritesEveryKeyframeWithItsPicture) {
     ++files;
   }
   EXPECT_EQ(files, Summary()["keyframes"]);
+}
+
+TEST_F(RunTest, AMapIsKeptAndTheNextRunIsLocatedInItsWorld) {
+  WriteRoom();
+  const std::string map = folder_ / "room.map";
+  ASSERT_EQ(Run({"--map-out", map}).status, 0);
+  const std::vector<StampedPose> made = ReadTrajectory(OutFile("trajectory.txt"));
+  const nlohmann::json first = Summary();
+  const ProgramResult result = Run({"--map-in", map, "--localize"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  const std::vector<StampedPose> located = ReadTrajectory(OutFile("trajectory.txt"));
+  ASSERT_EQ(made.size(), static_cast<size_t>(kFrames));
+  ASSERT_EQ(located.size(), made.size());
+  const auto place = [](const StampedPose& pose) { return pose.world_from_camera.translation; };
+  const double length = (place(made.back()) - place(made.front())).norm();
+  for (size_t i = 0; i < made.size(); ++i) {
+    EXPECT_LT((place(located[i]) - place(made[i])).norm(), 0.02 * length) << i;
+  }
+  EXPECT_EQ(Summary()["maps"], 1);
+  EXPECT_EQ(Summary()["relocalizations"], 1);
+  EXPECT_EQ(Summary()["keyframes"], first["keyframes"]);
+  // Going on in it adds to it instead.
+  ASSERT_EQ(Run({"--map-in", map, "--map-out", map}).status, 0);
+  EXPECT_EQ(Summary()["maps"], 1);
+  EXPECT_GE(ReadMap(map).map.num_keyframes(), first["keyframes"]);
+}
+
+TEST_F(RunTest, AMapThatDoesNotFitIsRefused) {
+  WriteBlanks();
+  const std::string path = folder_ / "room.map";
+  WriteFileAtomically(path, "a picture");
+  EXPECT_THAT(Refusal({"--map-in", path}), HasSubstr("is not a map of orb360"));
+  Map map;
+  map.AddKeyframe(0, 0.0, {}, std::make_shared<Features>());
+  WriteMap(path, {512, {}, {}, map});
+  EXPECT_THAT(Refusal({"--map-in", path}),
+              AllOf(HasSubstr("512 pixels wide"), HasSubstr("--resize 512x256")));
 }
 
 TEST_F(RunTest, ResizeGivesASmallerSphereAndOnlyASphere) {
