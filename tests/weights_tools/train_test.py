@@ -198,6 +198,19 @@ class TrainTest(unittest.TestCase):
         (stage,) = provenance["earlier"]
         self.assertEqual((stage["network"], stage["steps_done"]), ("propagation", 3))
 
+    def test_a_training_goes_on_from_a_network_file(self) -> None:
+        self.run_training("first", until=1)
+        network, provenance, width = trained(self.folder / "first/checkpoint.pt")
+        path = self.folder / "network.h5"
+        export(path, network, provenance, width=width)
+        settings = train.Settings(batch=1)
+        training = train.Training(settings, [self.shard], self.folder / "on", CPU, [path])
+        expected = network.weights()
+        for name, values in training.network.weights().items():
+            torch.testing.assert_close(values, expected[name], rtol=1e-4, atol=1e-6)
+        (stage,) = training.stages
+        self.assertEqual((stage["steps_done"], stage["shards"]), (1, ["street.npz"]))
+
     def test_the_mean_of_weights_follows_them(self) -> None:
         folder = self.folder / "mean"
         settings = train.Settings("propagation", 2, batch=1, warm_up=1, rate=1e-2)

@@ -85,18 +85,23 @@ class Training:
             self._resume()
 
     def _start_from(self, path: Path) -> None:
-        """Takes the layers that another training has in common with this one."""
-        state = torch.load(path, map_location=self.device)
-        other = checkpoint_network(state)
-        if state["settings"]["batch_normalization"] and self.settings.batch_normalization:
-            self.network.load_state_dict(other.state_dict())
+        """Takes the layers that another training, or a network file, has in common with this one."""
+        if path.suffix == ".h5":
+            weights, stages = _read_network_file(path)
         else:
-            own, weights = self.network.weights(), other.weights()
-            common = {name: values for name, values in weights.items() if name in own}
-            self.network.load({name: v.detach() for name, v in {**own, **common}.items()})
-        digest = hashlib.sha256(path.read_bytes()).hexdigest()
-        self.stages += [{**stage, "for": path.name} for stage in state["stages"]]
-        self.stages.append({**_stage(state), "checkpoint": digest})
+            state = torch.load(path, map_location=self.device)
+            other = checkpoint_network(state)
+            digest = hashlib.sha256(path.read_bytes()).hexdigest()
+            stages = [*state["stages"], {**_stage(state), "checkpoint": digest}]
+            if state["settings"]["batch_normalization"] and self.settings.batch_normalization:
+                self.network.load_state_dict(other.state_dict())
+                self.stages += stages
+                return
+            weights = other.weights()
+        self.stages += stages
+        own = self.network.weights()
+        common = {name: values for name, values in weights.items() if name in own}
+        self.network.load({name: values.detach() for name, values in {**own, **common}.items()})
 
     def _resume(self) -> None:
         state = torch.load(self._path, map_location=self.device)
@@ -163,6 +168,16 @@ class Training:
         return {name: value.item() for name, value in terms.items()}
 
 
+def _read_network_file(path: Path) -> tuple[dict[str, torch.Tensor], list[dict[str, Any]]]:
+    """Weights and the stages of their training."""
+    from weights_tools import network_file  # needs h5py, which training does without otherwise
+
+    graph, weights = network_file.read(path)
+    last = dict(graph.provenance)
+    stages = [*last.pop("earlier", []), last]
+    return {name: torch.from_numpy(values).float() for name, values in weights.items()}, stages
+
+
 def checkpoint_network(state: dict[str, Any]) -> Network:
     """The mean network that a checkpoint holds."""
     settings = state["settings"]
@@ -226,7 +241,7 @@ def main() -> None:
     parser.add_argument("--device", default="cpu", help="as PyTorch names it (default: cpu)")
     parser.add_argument("--threads", type=int, help="of the CPU (default: as PyTorch likes)")
     parser.add_argument("--start", type=Path, nargs="*", default=[],
-                        help="checkpoints to take layers from, the last one first")  # fmt: skip
+                        help="checkpoints or network files to take layers from, in this order")  # fmt: skip
     parser.add_argument("--network", choices=list(NETWORKS), default=Settings.network)
     for field in fields(Settings):
         option = f"--{field.name.replace('_', '-')}"
