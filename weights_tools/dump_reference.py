@@ -27,11 +27,15 @@ _LARGEST = 1024
 
 
 def dump(reference: Reference, folder: Path, outputs_only: bool = False) -> Path:
-    """Writes a file. What the network computes on the way is kept for the first case, if at all."""
+    """Writes a file. What the network computes on the way is kept for the first case, or, with
+    `outputs_only`, only what the nodes of the outputs read: errors are measured by its norm."""
     graph = reference.graph
     weights = {name: values.astype(reference.dtype) for name, values in reference.weights.items()}
     network = network_file.NetworkFile(graph, weights)
-    whole = {port["name"] for port in graph.inputs} | {port["tensor"] for port in graph.outputs}
+    outputs = {port["tensor"] for port in graph.outputs}
+    whole = {port["name"] for port in graph.inputs} | outputs
+    if outputs_only:
+        whole |= {name for node in graph.nodes if outputs & set(node.outputs) for name in node.inputs}
     copies = {name for node in graph.nodes if node.op in _COPIES for name in node.outputs}
 
     def channels(name: str, values: np.ndarray) -> int:

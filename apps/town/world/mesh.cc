@@ -5,6 +5,12 @@
 #include <numbers>
 
 namespace orb360::town {
+namespace {
+
+// Square metres. Smaller faces are left out: they have no direction and are not seen.
+constexpr float kSmallestArea = 1e-8F;
+
+}  // namespace
 
 std::array<uint8_t, 4> EncodeTint(const Rgba& tint) {
   const auto channel = [](float x) {
@@ -50,7 +56,7 @@ void MeshBuilder::AddTriangle(MaterialId material, uint32_t a, uint32_t b, uint3
   const Vector3f ab = mesh_.positions[b] - mesh_.positions[a];
   const Vector3f ac = mesh_.positions[c] - mesh_.positions[a];
   const float area = ab.cross(ac).norm();
-  if (area < 1e-8F) return;
+  if (area < kSmallestArea) return;
   const Vertex& va = mesh_.vertices[a];
   const Vertex& vb = mesh_.vertices[b];
   const Vertex& vc = mesh_.vertices[c];
@@ -60,7 +66,9 @@ void MeshBuilder::AddTriangle(MaterialId material, uint32_t a, uint32_t b, uint3
 
 void MeshBuilder::AddQuad(MaterialId material, const std::array<Vector3f, 4>& corners,
                           const std::array<Vector2f, 4>& uv) {
-  const Vector3f normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]).normalized();
+  const Vector3f across = (corners[2] - corners[0]).cross(corners[3] - corners[1]);
+  if (across.norm() < kSmallestArea) return;
+  const Vector3f normal = across.normalized();
   std::array<uint32_t, 4> index{};
   for (size_t i = 0; i < 4; ++i) index[i] = AddVertex(corners[i], normal, uv[i].x(), uv[i].y());
   AddTriangle(material, index[0], index[1], index[2]);
@@ -107,7 +115,7 @@ void MeshBuilder::AddGroundPolygon(MaterialId material, const std::vector<Vector
   for (size_t i = 2; i < corners.size(); ++i) {
     normal += (corners[i - 1] - corners[0]).cross(corners[i] - corners[0]);
   }
-  if (normal.norm() < 1e-8F) return;
+  if (normal.norm() < kSmallestArea) return;
   normal.normalize();
   std::vector<uint32_t> index;
   for (const Vector3f& p : corners)

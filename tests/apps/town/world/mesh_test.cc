@@ -49,6 +49,17 @@ TEST(MeshBuilder, BoxesAreClosedButForTheirBack) {
   EXPECT_LT((sum - kPanel.out).norm(), 1e-5F);
 }
 
+TEST(MeshBuilder, AFaceWithoutAreaLeavesNoVertexWithoutADirection) {
+  const Materials materials = PlainMaterials();
+  MeshBuilder builder(materials);
+  const Vector3f a(0, 0, 0);
+  const Vector3f b(1, 0, 0);
+  builder.AddFace(0, a, b, b, a);
+  builder.AddGroundPolygon(0, {a, b, 2 * b});
+  EXPECT_TRUE(builder.mesh().positions.empty());
+  EXPECT_TRUE(builder.mesh().triangles.empty());
+}
+
 TEST(Mesh, PartitionBringsCutoutsToTheEnd) {
   const Materials materials = PlainMaterials();
   MeshBuilder builder(materials);
