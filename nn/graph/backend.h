@@ -53,8 +53,9 @@ class Backend {
   virtual ~Backend() = default;
 
   virtual NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const = 0;
-  /// For pictures of that size.
-  virtual Step MakeStep(const Graph& graph, const FusedNode& node, int height, int width) const = 0;
+  /// One for each node, for pictures of that size; empty ones for concatenations and slices.
+  virtual std::vector<Step> MakeSteps(const Graph& graph, std::span<const FusedNode> nodes,
+                                      int height, int width) const = 0;
   /// Copies `count` channels of the only input to the only output, between any formats.
   virtual Step MakeCopy(int from_first, int to_first, int count) const = 0;
 };

@@ -96,8 +96,8 @@ class RunMaker {
   }
   Step::Run operator()(const ConvolutionOp&) const { return NotHere(); }
   Step::Run operator()(const NormalizedConvolutionOp&) const { return NotHere(); }
-  Step::Run operator()(const ConcatenateOp&) const { return NotHere(); }
-  Step::Run operator()(const SliceOp&) const { return NotHere(); }
+  Step::Run operator()(const ConcatenateOp&) const { return {}; }
+  Step::Run operator()(const SliceOp&) const { return {}; }
 
  private:
   const Weight& weight(std::size_t i) const {
@@ -182,6 +182,19 @@ Step MakeConvolution(const Graph& graph, const FusedNode& fused, DataType precis
           kernel->ScratchBytes(threads)};
 }
 
+Step MakeStep(const Graph& graph, const FusedNode& fused, int height, int width, DataType precision,
+              int threads) {
+  if (std::holds_alternative<NormalizedConvolutionOp>(fused.node.operation)) {
+    const auto output = static_cast<std::size_t>(fused.node.outputs.front());
+    const Shape shape = ShapeFor(graph.tensors[output], height, width);
+    return MakeChain(graph, fused, shape.width, threads);
+  }
+  if (std::holds_alternative<ConvolutionOp>(fused.node.operation)) {
+    return MakeConvolution(graph, fused, precision, threads);
+  }
+  return {std::visit(RunMaker(graph, fused, threads), fused.node.operation)};
+}
+
 }  // namespace
 
 CpuBackend::CpuBackend(int threads, DataType precision) : threads_(threads), precision_(precision) {
@@ -194,16 +207,14 @@ NodeNeeds CpuBackend::NeedsOf(const Graph& graph, const FusedNode& node) const {
   return CpuNeedsOf(graph, node, precision_);
 }
 
-Step CpuBackend::MakeStep(const Graph& graph, const FusedNode& fused, int height, int width) const {
-  if (std::holds_alternative<NormalizedConvolutionOp>(fused.node.operation)) {
-    const auto output = static_cast<std::size_t>(fused.node.outputs.front());
-    const Shape shape = ShapeFor(graph.tensors[output], height, width);
-    return MakeChain(graph, fused, shape.width, threads_);
+std::vector<Step> CpuBackend::MakeSteps(const Graph& graph, std::span<const FusedNode> nodes,
+                                        int height, int width) const {
+  std::vector<Step> steps(nodes.size());
+#pragma omp parallel for num_threads(threads_) schedule(dynamic)
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    steps[i] = MakeStep(graph, nodes[i], height, width, precision_, threads_);
   }
-  if (std::holds_alternative<ConvolutionOp>(fused.node.operation)) {
-    return MakeConvolution(graph, fused, precision_, threads_);
-  }
-  return {std::visit(RunMaker(graph, fused, threads_), fused.node.operation)};
+  return steps;
 }
 
 Step CpuBackend::MakeCopy(int from_first, int to_first, int count) const {

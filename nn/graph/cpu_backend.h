@@ -12,7 +12,8 @@ class CpuBackend : public Backend {
   explicit CpuBackend(int threads, DataType precision = DataType::kFloat);
 
   NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const override;
-  Step MakeStep(const Graph& graph, const FusedNode& node, int height, int width) const override;
+  std::vector<Step> MakeSteps(const Graph& graph, std::span<const FusedNode> nodes, int height,
+                              int width) const override;
   Step MakeCopy(int from_first, int to_first, int count) const override;
 
  private:

@@ -25,6 +25,7 @@ class Lowering {
         nodes_(nodes),
         needs_(CollectNeeds(graph, nodes, backend)),
         formats_(ChooseFormats(graph, nodes, needs_)),
+        steps_(backend.MakeSteps(graph, nodes, height, width)),
         copies_(graph.tensors.size()) {
     lowered_.value_of_tensor.assign(graph.tensors.size(), -1);
   }
@@ -38,7 +39,7 @@ class Lowering {
       } else if (const auto* slice = std::get_if<SliceOp>(&node.operation)) {
         AddSlice(node, *slice);
       } else {
-        AddNode(nodes_[i], needs_[i]);
+        AddNode(node, needs_[i], std::move(steps_[i]));
       }
     }
     for (const Graph::Output& output : graph_.outputs) {
@@ -89,11 +90,9 @@ class Lowering {
     return copy;
   }
 
-  void AddNode(const FusedNode& fused, const NodeNeeds& needs) {
-    const Node& node = fused.node;
+  void AddNode(const Node& node, const NodeNeeds& needs, Step step) {
     const Format of_result = formats_[Index(node.outputs.front())];
-    Instruction instruction{
-        node.name, backend_.MakeStep(graph_, fused, height_, width_), {}, {}, needs.replaceable};
+    Instruction instruction{node.name, std::move(step), {}, {}, needs.replaceable};
     for (std::size_t i = 0; i < node.inputs.size(); ++i) {
       instruction.inputs.push_back(ForInput(node.inputs[i], needs.inputs[i], of_result));
     }
@@ -142,6 +141,7 @@ class Lowering {
   const std::span<const FusedNode> nodes_;
   const std::vector<NodeNeeds> needs_;
   const std::vector<Format> formats_;
+  std::vector<Step> steps_;               // by node
   std::vector<std::vector<int>> copies_;  // by tensor: its values in other formats
   Lowered lowered_;
 };

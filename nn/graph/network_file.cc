@@ -91,8 +91,9 @@ std::vector<int> ReadShape(hid_t set, const std::string& name) {
   return shape;
 }
 
-/// `room`: how many numbers are still accepted.
-Weight ReadWeight(hid_t group, const std::string& name, std::int64_t room) {
+/// `room`: how many numbers are still accepted. `halves`: memory for one after the other.
+Weight ReadWeight(hid_t group, const std::string& name, std::int64_t room,
+                  std::vector<std::uint16_t>* halves) {
   const Hdf5Handle set = OpenOwnDataset(group, name);
   Weight weight{name, ReadShape(set.get(), name), {}};
   std::int64_t count = 1;
@@ -107,9 +108,9 @@ Weight ReadWeight(hid_t group, const std::string& name, std::int64_t room) {
     is_read = H5Dread(set.get(), H5T_IEEE_F32LE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
                       weight.values.data()) >= 0;
   } else if (H5Tequal(type.get(), HalfType().get()) > 0) {
-    std::vector<std::uint16_t> halves(weight.values.size());
-    is_read = H5Dread(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, halves.data()) >= 0;
-    std::ranges::transform(halves, weight.values.begin(), WidenHalf);
+    halves->resize(weight.values.size());
+    is_read = H5Dread(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, halves->data()) >= 0;
+    std::ranges::transform(*halves, weight.values.begin(), WidenHalf);
   } else {
     throw UserError("weights " + Quoted(name) +
                     " should be little-endian IEEE floats of 16 or 32 bits");
@@ -133,8 +134,9 @@ std::vector<Weight> ReadWeights(hid_t file) {
     throw UserError("its weights cannot be listed");
   }
   std::int64_t room = limits::kWeights;
+  std::vector<std::uint16_t> halves;
   for (const std::string& name : names) {
-    weights.push_back(ReadWeight(group.get(), name, room));
+    weights.push_back(ReadWeight(group.get(), name, room, &halves));
     room -= static_cast<std::int64_t>(weights.back().values.size());
   }
   return weights;

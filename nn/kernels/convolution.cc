@@ -39,7 +39,8 @@ AlignedVector<float> PackDirect(const ConvolutionSpec& spec, std::span<const flo
   const int taps = spec.kernel * spec.kernel;
   AlignedVector<float> packed;
   const int blocks_in_all = std::accumulate(groups.begin(), groups.end(), 0);
-  packed.reserve(static_cast<std::size_t>(blocks_in_all) * kBlock * taps * spec.in_channels);
+  packed.resize(static_cast<std::size_t>(blocks_in_all) * kBlock * taps * spec.in_channels);
+  float* next = packed.data();
   int first_out = 0;
   for (const int blocks : groups) {
     for (int first_in = 0; first_in < spec.in_channels; first_in += kBlock) {
@@ -47,7 +48,7 @@ AlignedVector<float> PackDirect(const ConvolutionSpec& spec, std::span<const flo
         for (int i = first_in; i < std::min(first_in + kBlock, spec.in_channels); ++i) {
           for (int o = first_out; o < first_out + blocks * kBlock; ++o) {
             const std::size_t filter = static_cast<std::size_t>(o) * spec.in_channels + i;
-            packed.push_back(o < spec.out_channels ? weight[filter * taps + tap] : 0);
+            *next++ = o < spec.out_channels ? weight[filter * taps + tap] : 0;
           }
         }
       }

@@ -314,6 +314,8 @@ AlignedVector<float> PackWinograd(std::span<const float> weight, int out_channel
   float* group = packed.data();
   for (const int blocks : groups) {
     const int width = blocks * kBlock;
+    // Of one input channel: gathered first, since rows of the whole lie too far apart for a cache.
+    std::vector<float> products(static_cast<std::size_t>(kProducts) * width);
     for (int i = 0; i < in_channels; ++i) {
       for (int o = 0; o < width && blocks_before * kBlock + o < out_channels; ++o) {
         const float* filter =
@@ -329,9 +331,13 @@ AlignedVector<float> PackWinograd(std::span<const float> weight, int out_channel
         for (int product = 0; product < kProducts; ++product) {
           const double* row = rows[product / kIn];
           const double* column = transform[product % kIn];
-          group[(static_cast<std::ptrdiff_t>(product) * in_channels + i) * width + o] =
+          products[product * width + o] =
               static_cast<float>(row[0] * column[0] + row[1] * column[1] + row[2] * column[2]);
         }
+      }
+      for (int product = 0; product < kProducts; ++product) {
+        std::copy_n(products.data() + product * width, width,
+                    group + (static_cast<std::ptrdiff_t>(product) * in_channels + i) * width);
       }
     }
     group += static_cast<std::ptrdiff_t>(kProducts) * in_channels * width;

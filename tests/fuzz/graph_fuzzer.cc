@@ -24,7 +24,10 @@ class NoKernels : public Backend {
   NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const override {
     return CpuNeedsOf(graph, node, precision_);
   }
-  Step MakeStep(const Graph&, const FusedNode&, int, int) const override { return {}; }
+  std::vector<Step> MakeSteps(const Graph&, std::span<const FusedNode> nodes, int,
+                              int) const override {
+    return std::vector<Step>(nodes.size());
+  }
   Step MakeCopy(int, int, int) const override { return {}; }
 
  private:
