@@ -21,7 +21,9 @@
 #include "apps/orb360/sparse_output.h"
 #include "apps/orb360/stage_times.h"
 #include "nn/base/check.h"
+#include "nn/models/default_weights.h"
 #include "slam/depth/depth_completer.h"
+#include "slam/io/atomic_file.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/map_file.h"
 #include "slam/io/number_text.h"
@@ -47,7 +49,7 @@ struct RunOptions {
   bool localizes = false;
   std::string loops = "on";
   SequenceOptions sequence;
-  std::string weights = "none";
+  std::string weights;
   bool saves_sparse = false;
   bool saves_depth = false;
   bool is_quiet = false;
@@ -125,6 +127,7 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction, const
                                      RunRecord* record) {
   const auto start = std::chrono::steady_clock::now();
   std::optional<DenseOutput> dense;
+  if (reconstruction.depth_scales.empty()) return dense;  // nothing could be completed
   try {
     dense = output.WriteDense(reconstruction, depth, options.saves_depth);
   } catch (const UserError&) {
@@ -222,6 +225,17 @@ void WriteLargestMap(const std::string& path, int width, const Rigid3& file_worl
   WriteMap(path, {width, file_world_from_map, system.grounds()[largest - maps.begin()], *largest});
 }
 
+/// What was left open, and what cannot be done, before any work.
+RunOptions Settle(RunOptions options) {
+  if (options.localizes) options.weights = "none";  // no keyframe is made that could be completed
+  if (options.weights.empty()) options.weights = nn::DefaultWeights().string();
+  if (options.saves_depth && options.weights == "none") {
+    throw UserError("--save-depth: without a network there is no dense depth; leave it out");
+  }
+  if (!options.map_out.empty()) AtomicFile{options.map_out};  // throws where it cannot be written
+  return options;
+}
+
 int Run(const RunOptions& options) {
   Options system_options;
   if (!options.config.empty()) MakeConfigSchema(&system_options).Load(options.config);
@@ -304,9 +318,9 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
       ->type_name("FILE");
   command
       ->add_option("--weights", options->weights,
-                   "Network for the dense depth of keyframes, and a dense cloud; or none")
-      ->type_name("none|FILE")
-      ->capture_default_str();
+                   "Network for the dense depth of keyframes and the dense cloud (default: the one "
+                   "that comes with orb360); or none, for landmarks alone")
+      ->type_name("none|FILE");
   command
       ->add_option("--mask", options->mask,
                    "What to leave out: auto finds what moves with the camera; or none; or an image "
@@ -361,7 +375,7 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
       "--save-depth", options->saves_depth,
       "Also write each keyframe's dense depth to DIR/depth (16-bit PNG, metres * 256)");
   command->add_flag("--quiet", options->is_quiet, "Show no progress");
-  command->callback([options, chosen] { *chosen = [options] { return Run(*options); }; });
+  command->callback([options, chosen] { *chosen = [options] { return Run(Settle(*options)); }; });
 }
 
 }  // namespace orb360

@@ -28,6 +28,10 @@ const Descriptor& MostTypical(std::span<const Descriptor> descriptors) {
   return descriptors[best];
 }
 
+void ScaleRanges(double factor, Keyframe* keyframe) {
+  for (RangePrior& prior : keyframe->range_priors) prior.range *= static_cast<float>(factor);
+}
+
 }  // namespace
 
 double RangeAtLevelZero(double range, int level) {
@@ -215,6 +219,7 @@ void Map::Transform(const Similarity3& target_from_world) {
   for (std::optional<Keyframe>& keyframe : keyframes_) {
     if (keyframe) {
       keyframe->world_from_camera = TransformPose(target_from_world, keyframe->world_from_camera);
+      ScaleRanges(target_from_world.scale, &*keyframe);
     }
   }
   for (Successor& successor : successors_) {
@@ -242,6 +247,7 @@ void Map::Deform(std::span<const Similarity3> corrections) {
     if (keyframes_[id]) {
       Rigid3& pose = keyframes_[id]->world_from_camera;
       pose = TransformPose(corrections[id], pose);
+      ScaleRanges(corrections[id].scale, &*keyframes_[id]);
     } else {
       successors_[id].successor_from_camera.translation *= corrections[id].scale;
     }

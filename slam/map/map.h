@@ -25,13 +25,24 @@ struct Observation {
   int feature;
 };
 
+/// What is known of a feature's range without any landmark: from completed depth.
+struct RangePrior {
+  float range = 0;  // along the bearing, world units
+  float sigma = 0;  // standard deviation of ln(range); 0 where nothing is known
+};
+
 struct Keyframe {
   KeyframeId id = kNoId;
   int frame_index = 0;
   double timestamp = 0;  // s
   Rigid3 world_from_camera;
   std::shared_ptr<const Features> features;
-  std::vector<LandmarkId> landmarks;  // by feature; kNoId where it sees none
+  std::vector<LandmarkId> landmarks;     // by feature; kNoId where it sees none
+  std::vector<RangePrior> range_priors;  // by feature; empty where its depth is not completed
+
+  RangePrior PriorOf(int feature) const {
+    return range_priors.empty() ? RangePrior{} : range_priors[feature];
+  }
 };
 
 struct Landmark {
@@ -117,7 +128,7 @@ class Map {
   /// Median distance of a keyframe's landmarks from it; 0 if it has none.
   double MedianRange(KeyframeId id) const;
 
-  /// Applies target_from_world to every pose and landmark: a change of gauge.
+  /// Applies target_from_world to every pose, landmark and range: a change of gauge.
   void Transform(const Similarity3& target_from_world);
   /// Bends the map: `corrections` holds, by keyframe id, what moves the world around that keyframe
   /// (entries of removed ones are those of the keyframe that stands for them). A landmark goes with

@@ -11,12 +11,16 @@
 #include "slam/optimization/bearing_cost.h"
 #include "slam/optimization/bearing_residual.h"
 #include "slam/optimization/height_cost.h"
+#include "slam/optimization/range_cost.h"
 
 namespace orb360 {
 namespace {
 
 // Where the loss changes from squares to lengths; the reason is told at BundleOptions::robust.
 constexpr double kHuberSigmas = 1.0;
+// Of ranges that are known roughly: networks are wrong altogether more often than corners are, and
+// what is wrong by far should not count at all.
+constexpr double kCauchySigmas = 1.0;
 
 }  // namespace
 
@@ -33,6 +37,7 @@ BundleReport SolveBundle(const BundleOptions& options, BundleProblem* bundle) {
   std::vector<Eigen::Vector3d> points = bundle->points;
 
   ceres::HuberLoss loss(kHuberSigmas);
+  ceres::CauchyLoss range_loss(kCauchySigmas);
   ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>> manifold;
   ceres::Problem::Options problem_options;
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -41,6 +46,7 @@ BundleReport SolveBundle(const BundleOptions& options, BundleProblem* bundle) {
   problem_options.disable_all_safety_checks = true;
   std::deque<BearingCost> costs;  // cost functions cannot move
   std::deque<HeightCost> height_costs;
+  std::deque<RangeCost> range_costs;
   ceres::Problem problem(problem_options);
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   for (size_t i = 0; i < poses.size(); ++i) {
@@ -61,6 +67,11 @@ BundleReport SolveBundle(const BundleOptions& options, BundleProblem* bundle) {
     height_costs.emplace_back(h.normal, h.height, h.sigma);
     problem.AddResidualBlock(&height_costs.back(), nullptr, poses[h.pose].data(),
                              points[h.point].data());
+  }
+  for (const BundleProblem::Range& r : bundle->ranges) {
+    range_costs.emplace_back(r.range, r.sigma);
+    problem.AddResidualBlock(&range_costs.back(), &range_loss, poses[r.pose].data(),
+                             points[r.point].data());
   }
 
   ceres::Solver::Options solver_options;

@@ -25,11 +25,19 @@ struct BundleProblem {
     double height;
     double sigma;  // share of the height
   };
+  /// A range that is known roughly, from completed depth. See RangeCost.
+  struct Range {
+    int pose;
+    int point;
+    double range;
+    double sigma;  // of its logarithm
+  };
   std::vector<Rigid3> world_from_camera;
   std::vector<uint8_t> pose_fixed;  // by pose; at least one, or the gauge is free
   std::vector<Eigen::Vector3d> points;
   std::vector<Observation> observations;
   std::vector<Height> heights;
+  std::vector<Range> ranges;
 };
 
 struct BundleOptions {

@@ -12,6 +12,8 @@ namespace {
 // Where the plane below is at another height than this share allows, it is not the ground: a
 // kerb's, a roof's.
 constexpr double kMaxHeightError = 0.1;
+// All ranges of a keyframe together are worth as many measurements.
+constexpr double kIndependentRanges = 20.0;
 
 // Adds what the ground says of the keyframe with index `pose` and of the points around it.
 void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem* problem) {
@@ -26,6 +28,30 @@ void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem
   const double shared = sigma * std::sqrt(static_cast<double>(plane->points.size()));
   for (const int point : plane->points) {
     problem->heights.push_back({pose, point, plane->normal, ground.camera_height, shared});
+  }
+}
+
+// Ranges of one picture are wrong together: what they have in common is taken off, so that they say
+// how the landmarks lie to each other and not how large the world is, and all together they are as
+// certain as a few measurements.
+void LevelRanges(BundleProblem* problem) {
+  std::vector<std::vector<size_t>> of_pose(problem->world_from_camera.size());
+  for (size_t i = 0; i < problem->ranges.size(); ++i) of_pose[problem->ranges[i].pose].push_back(i);
+  for (size_t pose = 0; pose < of_pose.size(); ++pose) {
+    if (of_pose[pose].empty()) continue;
+    const Eigen::Vector3d& center = problem->world_from_camera[pose].translation;
+    std::vector<double> ratios;
+    for (const size_t i : of_pose[pose]) {
+      const BundleProblem::Range& range = problem->ranges[i];
+      ratios.push_back((problem->points[range.point] - center).norm() / range.range);
+    }
+    const auto middle = ratios.begin() + ratios.size() / 2;
+    std::nth_element(ratios.begin(), middle, ratios.end());
+    const double factor = std::sqrt(std::max(1.0, ratios.size() / kIndependentRanges));
+    for (const size_t i : of_pose[pose]) {
+      problem->ranges[i].range *= *middle;
+      problem->ranges[i].sigma *= factor;
+    }
   }
 }
 
@@ -55,12 +81,17 @@ void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixe
     problem.points.push_back(landmark.position);
     for (const Observation& o : landmark.observations) {
       if (pose_of[o.keyframe] < 0) continue;
-      const Features& features = *map->keyframe(o.keyframe).features;
-      problem.observations.push_back({pose_of[o.keyframe], point, features.bearings[o.feature],
-                                      features.keypoints[o.feature].sigma});
+      const Keyframe& keyframe = map->keyframe(o.keyframe);
+      const int pose = pose_of[o.keyframe];
+      problem.observations.push_back({pose, point, keyframe.features->bearings[o.feature],
+                                      keyframe.features->keypoints[o.feature].sigma});
+      if (const RangePrior prior = keyframe.PriorOf(o.feature); prior.sigma > 0) {
+        problem.ranges.push_back({pose, point, prior.range, prior.sigma});
+      }
       sources.push_back({id, o.keyframe});
     }
   }
+  LevelRanges(&problem);
   for (size_t i = 0; ground && i < moving.size(); ++i) {
     AddHeights(static_cast<int>(i), *ground, height_sigma, &problem);
   }

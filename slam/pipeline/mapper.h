@@ -15,9 +15,10 @@ struct MapperOptions {
   /// A keyframe goes when this share of its landmarks is seen by three others at least as well.
   double redundant_share = 0.9;
   /// Landmarks younger than this many keyframes are on probation: seen again by then, and found in
-  /// a quarter of the frames that should show them, or removed.
-  int probation_keyframes = 3;
-  double min_found_share = 0.25;
+  /// this share of the frames that should show them, or removed. What is hidden half of the time,
+  /// behind leaves and posts, is worth keeping.
+  int probation_keyframes = 5;
+  double min_found_share = 0.1;
 };
 
 /// Takes a tracked frame into the map as a keyframe: its observations, culling of doubtful

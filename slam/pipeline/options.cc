@@ -76,6 +76,8 @@ ConfigSchema MakeConfigSchema(Options* options) {
              "largest parallax of a new landmark, radians", 0.1, 1.5);
   schema.Add("triangulation.max_scale_ratio", &triangulation.max_scale_ratio,
              "largest disagreement between ranges and feature scales, a factor", 1.0, 10.0);
+  schema.Add("triangulation.max_range_sigmas", &triangulation.max_range_sigmas,
+             "farthest range from what completed depth says, standard deviations", 0.5, 100.0);
 
   MapperOptions& mapper = options->mapper;
   schema.Add("bundle.max_keyframes", &mapper.bundle.max_keyframes,
@@ -120,6 +122,8 @@ ConfigSchema MakeConfigSchema(Options* options) {
              "every so many keyframes get dense depth", 1, 1000);
   schema.Add("depth.min_points", &depth.min_points,
              "landmarks that a keyframe must show to be completed", 1, 100000);
+  schema.Add("depth.adoption_frames", &depth.adoption_frames,
+             "frames after which the depth of a keyframe is used in mapping", 1, 1000);
 
   LoopOptions& loop = options->loop;
   schema.Add("loop.enabled", &loop.enabled,

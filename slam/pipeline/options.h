@@ -54,6 +54,8 @@ struct DepthOptions {
   int every_keyframes = 1;
   /// With fewer points there is nothing to complete.
   int min_points = 50;
+  /// Frames after which the depth of a keyframe is used in mapping; it is completed meanwhile.
+  int adoption_frames = 4;
 };
 
 /// Every setting of the system, by part.

@@ -36,6 +36,26 @@ struct EpipolarMatch {
   int distance = NearestTwo::kNone;
 };
 
+// Removes the candidates of keyframe 2 whose depth is known to be another one than the match would
+// have: fewer rivals, and fewer wrong matches.
+void RemoveByRange(const EpipolarArc& arc, double baseline, const Keyframe& keyframe2,
+                   double max_sigmas, std::vector<int>* candidates) {
+  if (keyframe2.range_priors.empty()) return;
+  const Features& features2 = *keyframe2.features;
+  // The angle at camera 1 between the point and camera 2.
+  const double sine1 = arc.infinity.cross(arc.epipole).norm();
+  std::erase_if(*candidates, [&](int f2) {
+    const RangePrior& prior = keyframe2.range_priors[f2];
+    if (prior.sigma == 0) return false;
+    const double parallax = AngleBetween(arc.infinity, features2.bearings[f2]);
+    const double noise = std::sqrt(arc.variance + std::pow(features2.keypoints[f2].sigma, 2));
+    // By the law of sines; its error is that of the parallax.
+    const double range = baseline * sine1 / std::max(std::sin(parallax), noise);
+    const double sigma = std::hypot(prior.sigma, noise / std::max(parallax, noise));
+    return std::abs(std::log(range / prior.range)) > max_sigmas * sigma;
+  });
+}
+
 // Best match in keyframe 2 for each free feature of keyframe 1.
 std::vector<EpipolarMatch> MatchEpipolar(const Keyframe& keyframe1, const FreeFeatures& free1,
                                          const Keyframe& keyframe2, const FreeFeatures& free2,
@@ -61,6 +81,8 @@ std::vector<EpipolarMatch> MatchEpipolar(const Keyframe& keyframe1, const FreeFe
     arc.variance = sigma1 * sigma1;
     FindOnArc(free2.columns, arc, &candidates);
     for (int& candidate : candidates) candidate = free2.index[candidate];
+    RemoveByRange(arc, camera1_from_camera2.translation.norm(), keyframe2, options.max_range_sigmas,
+                  &candidates);
     const NearestTwo nearest =
         FindNearestTwo(features1.descriptors[f1], features2.descriptors, candidates);
     if (nearest.best_distance > options.max_distance) continue;

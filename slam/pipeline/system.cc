@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "nn/base/check.h"
+#include "slam/depth/range_prior.h"
 #include "slam/pipeline/ground.h"
 #include "slam/pipeline/initializer.h"
 #include "slam/pipeline/mapper.h"
@@ -85,6 +86,7 @@ FrameReport System::Process(const Frame& frame) {
   ++num_processed_;
   const Clock::time_point adoption = Clock::now();
   if (job_ && MustAdopt()) AdoptMapping();
+  if (completion_ && !job_ && num_processed_ >= completion_->adopt_at) AdoptCompletion();
   if (bundle_ && !job_ && num_processed_ >= bundle_->adopt_at) AdoptBundle();
   report.timing_ms["adoption"] = MillisecondsSince(adoption);
 
@@ -126,10 +128,11 @@ FrameReport System::Process(const Frame& frame) {
 
 // Threads waiting for one that has no core cost more than they bring: each job has one.
 int System::FreeThreads() const {
-  const auto is_running = [](const auto& job) {
-    return job.valid() && job.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+  const auto is_running = [](const auto& future) {
+    return future.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
   };
-  const bool is_mapping = (job_ && is_running(job_->result)) || is_running(completion_);
+  const bool is_mapping =
+      (job_ && is_running(job_->result)) || (completion_ && is_running(completion_->priors));
   const bool is_adjusting = bundle_ && is_running(bundle_->adjusted);
   return std::max(1, num_threads_ - is_mapping - is_adjusting);
 }
@@ -411,12 +414,14 @@ bool System::MustAdopt() const {
 
 void System::AdoptMapping() {
   MappingResult result = job_->result.get();
-  if (!job_->color.empty()) {
-    StartCompletion(job_->frame.index, job_->color, std::move(result.sparse));
-  }
+  const MappingJob job = std::move(*job_);
   job_.reset();
   map_ = std::move(result.map);
   loops_ = std::move(result.loops);
+  if (completion_ && !job.color.empty()) AdoptCompletion();
+  if (!job.color.empty()) {
+    StartCompletion(job.frame, result.reference, job.color, std::move(result.sparse));
+  }
   if (result.joined_map) AdoptJoinedMap(result);
   CountMap();
   // What was tracked meanwhile moves along with the keyframe.
@@ -430,15 +435,33 @@ void System::AdoptMapping() {
   if (result.closed) FollowCorrection(result);
 }
 
-void System::StartCompletion(int frame_index, const cv::Mat& color,
+void System::StartCompletion(const TrackedFrame& frame, KeyframeId id, const cv::Mat& color,
                              std::vector<SparsePoint> points) {
-  if (completion_.valid()) completion_.get();
   if (static_cast<int>(points.size()) < options_.depth.min_points) return;
-  depth_scales_[frame_index] = 1;
-  completion_ = std::async(std::launch::async, [this, frame_index, color, p = std::move(points)] {
-    depth_sink_(frame_index,
-                completer_->Complete(color, RenderSparseDepth(p, completer_->camera())));
-  });
+  depth_scales_[frame.index] = 1;
+  auto complete = [this, index = frame.index, features = frame.features,
+                   landmarks = map_.keyframe(id).landmarks, color, points = std::move(points)] {
+    DenseDepth depth = completer_->Complete(color, RenderSparseDepth(points, completer_->camera()));
+    std::vector<RangePrior> priors = SampleRangePriors(depth, *features, landmarks);
+    depth_sink_(index, std::move(depth));
+    return priors;
+  };
+  completion_ = CompletionJob{std::async(std::launch::async, std::move(complete)), frame.index,
+                              num_processed_ + options_.depth.adoption_frames};
+}
+
+void System::AdoptCompletion() {
+  std::vector<RangePrior> priors = completion_->priors.get();
+  const int frame_index = completion_->frame_index;
+  completion_.reset();
+  // It may have been removed, or be in another map by now.
+  for (KeyframeId id = map_.keyframe_end() - 1; id >= 0; --id) {
+    if (!map_.HasKeyframe(id) || map_.keyframe(id).frame_index != frame_index) continue;
+    const auto scale = static_cast<float>(depth_scales_.at(frame_index));
+    for (RangePrior& prior : priors) prior.range *= scale;
+    map_.keyframe(id).range_priors = std::move(priors);
+    return;
+  }
 }
 
 void System::FollowGround(const KnownGround& ground) {
@@ -504,7 +527,7 @@ void System::UpdateLocalMap() {
 
 Reconstruction System::Finish() {
   if (job_) AdoptMapping();
-  if (completion_.valid()) completion_.get();
+  if (completion_) AdoptCompletion();
   if (bundle_) AdoptBundle();
   if (closed_loops_.size() + joints_.size() > 0) {
     StartBundle();  // what came after the last loop takes part as well

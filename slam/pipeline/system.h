@@ -99,6 +99,12 @@ class System {
     cv::Mat color;       // its picture, where it is to be completed
     int adopt_at;        // value of num_processed_ at which it is due
   };
+  /// The completion of a keyframe's depth: what it says of its features.
+  struct CompletionJob {
+    std::future<std::vector<RangePrior>> priors;
+    int frame_index;
+    int adopt_at;
+  };
   /// Bundle adjustment of a copy of the map.
   struct BundleJob {
     std::future<Map> adjusted;
@@ -119,7 +125,9 @@ class System {
   void StartMapping();
   bool MustAdopt() const;
   void AdoptMapping();
-  void StartCompletion(int frame_index, const cv::Mat& color, std::vector<SparsePoint> points);
+  void StartCompletion(const TrackedFrame& frame, KeyframeId id, const cv::Mat& color,
+                       std::vector<SparsePoint> points);
+  void AdoptCompletion();
   void FollowGround(const KnownGround& ground);
   void Rescale(double factor);
   void FinishMap();
@@ -156,7 +164,7 @@ class System {
 
   DepthCompleter* completer_ = nullptr;  // null: no dense depth
   DepthSink depth_sink_;
-  std::future<void> completion_;        // of at most one keyframe at a time
+  std::optional<CompletionJob> completion_;
   std::map<int, double> depth_scales_;  // see Reconstruction
   cv::Mat image_;                       // of the frame in Process
 

@@ -27,6 +27,7 @@ namespace orb360 {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
@@ -44,9 +45,13 @@ class RunTest : public testing::Test {
   std::string Input() const { return folder_ / "input"; }
   std::string Out() const { return folder_ / "out"; }
 
+  /// Without a network, which takes its time, unless one is asked for.
   ProgramResult Run(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments = {"run", Input(), "--out", Out(), "--threads", "1"};
     arguments.insert(arguments.end(), more.begin(), more.end());
+    if (std::ranges::find(more, "--weights") == more.end()) {
+      arguments.insert(arguments.end(), {"--weights", "none"});
+    }
     return RunOrb360(arguments);
   }
 
@@ -116,7 +121,10 @@ TEST_F(RunTest, AFolderOfGreyImagesIsTrackedAndEverythingIsWritten) {
 TEST_F(RunTest, TheSameInputGivesTheSameBytesWithOneAndTwoThreads) {
   WriteRoom();
   EXPECT_EQ(Run().status, 0);
-  EXPECT_EQ(RunOrb360({"run", Input(), "--out", folder_ / "two", "--threads", "2"}).status, 0);
+  EXPECT_EQ(
+      RunOrb360({"run", Input(), "--out", folder_ / "two", "--threads", "2", "--weights", "none"})
+          .status,
+      0);
   for (const char* name : {"trajectory.txt", "keyframes.txt", "cloud.ply", "map.svg"}) {
     EXPECT_EQ(ReadText(OutFile(name)), ReadText(folder_ / "two" / name)) << name;
   }
@@ -168,6 +176,25 @@ TEST_F(RunTest, WithANetworkTheCloudIsDenseAndTheSameForAnyNumberOfThreads) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "two" / "depth"));
 }
 
+TEST_F(RunTest, TheNetworkThatComesWithItIsUsedUnlessNoneIsWanted) {
+  WriteRoom();
+  const ProgramResult result = RunOrb360({"run", Input(), "--out", Out(), "--threads", "1"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(Summary()["weights"].get<std::string>(), EndsWith("depth_completion.h5"));
+  EXPECT_TRUE(std::filesystem::exists(OutFile("landmarks.ply")));
+}
+
+TEST_F(RunTest, DepthThatIsNotMadeCannotBeSaved) {
+  WriteBlanks();
+  EXPECT_THAT(Refusal({"--save-depth", "--weights", "none"}), HasSubstr("--save-depth"));
+}
+
+TEST_F(RunTest, AMapThatCannotBeWrittenIsRefusedBeforeAnyWork) {
+  WriteBlanks();
+  const std::string path = folder_ / "absent" / "room.map";
+  EXPECT_THAT(Refusal({"--map-out", path}), AllOf(HasSubstr(path), HasSubstr("cannot be written")));
+}
+
 TEST_F(RunTest, RefusesWhatIsNoNetwork) {
   WriteRoom();
   EXPECT_THAT(Refusal({"--weights", Image(0)}), HasSubstr("is not a network of orb360"));
@@ -187,9 +214,10 @@ TEST_F(RunTest, SixteenBitImagesGiveTheTrajectoryOfEightBitOnes) {
   EXPECT_EQ(Run().status, 0);
   for (cv::Mat& image : images) image.convertTo(image, CV_16U, 257.0);
   WriteFolder(folder_ / "deep", images);
-  EXPECT_EQ(
-      RunOrb360({"run", folder_ / "deep", "--out", folder_ / "deep_out", "--threads", "1"}).status,
-      0);
+  EXPECT_EQ(RunOrb360({"run", folder_ / "deep", "--out", folder_ / "deep_out", "--threads", "1",
+                       "--weights", "none"})
+                .status,
+            0);
   EXPECT_EQ(ReadText(OutFile("trajectory.txt")), ReadText(folder_ / "deep_out" / "trajectory.txt"));
 }
 
@@ -409,7 +437,7 @@ TEST_F(RunTest, QuietShowsNothing) {
 TEST_F(RunTest, AFullDiskEndsInOneLineAndKeepsWhatFits) {
   WriteRoom();
   const ProgramResult result =
-      Program({"run", Input(), "--out", Out(), "--threads", "1"}, 8000).Wait();
+      Program({"run", Input(), "--out", Out(), "--threads", "1", "--weights", "none"}, 8000).Wait();
   EXPECT_EQ(result.status, 1);
   EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("cloud.ply"), HasSubstr("free some space")));
   EXPECT_EQ(PosesIn("trajectory.txt"), static_cast<size_t>(kFrames));
@@ -432,8 +460,8 @@ class InterruptedRunTest : public RunTest {
 
   /// Starts a run and returns once the first pose is known.
   std::unique_ptr<Program> Start() const {
-    auto program = std::make_unique<Program>(
-        std::vector<std::string>{"run", Input(), "--out", Out(), "--threads", "1"});
+    auto program = std::make_unique<Program>(std::vector<std::string>{
+        "run", Input(), "--out", Out(), "--threads", "1", "--weights", "none"});
     EXPECT_TRUE(program->WaitForOutput("first map made"));
     return program;
   }
@@ -469,8 +497,8 @@ TEST_F(InterruptedRunTest, AKilledRunLeavesTheJournal) {
 }
 
 TEST_F(RunTest, RendersATownWhileTrackingIt) {
-  const ProgramResult result = RunOrb360(
-      {"run", "town:Loop", "--out", Out(), "--resize", "512x256", "--max-frames", "15", "--quiet"});
+  const ProgramResult result = RunOrb360({"run", "town:Loop", "--out", Out(), "--resize", "512x256",
+                                          "--max-frames", "15", "--quiet", "--weights", "none"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(Summary()["frames"], 15);
   EXPECT_EQ(Summary()["input"], "town:Loop");

@@ -88,8 +88,12 @@ TEST(Map, AChangeOfGaugeChangesNoImage) {
   Map map = SmallMap();
   const Map before = map;
   map.RemoveKeyframe(3, 2);
+  map.keyframe(1).range_priors = {{2.0F, 0.1F}};
   const Similarity3 gauge{2.5, ExpSo3({0.3, -0.2, 1.0}), {4, 5, 6}};
   map.Transform(gauge);
+  EXPECT_FLOAT_EQ(map.keyframe(1).PriorOf(0).range, 5.0F);
+  EXPECT_FLOAT_EQ(map.keyframe(1).PriorOf(0).sigma, 0.1F);
+  EXPECT_EQ(map.keyframe(0).PriorOf(0).sigma, 0);  // not completed
   for (KeyframeId k = 0; k < 4; ++k) {
     EXPECT_LT((map.PoseOf(k).translation - gauge * before.PoseOf(k).translation).norm(), 1e-12);
     for (LandmarkId l = 0; l < 30; ++l) {
@@ -104,6 +108,7 @@ TEST(Map, AChangeOfGaugeChangesNoImage) {
 TEST(Map, BendingMovesLandmarksWithTheKeyframeInTheMiddle) {
   Map map = SmallMap();
   map.RemoveKeyframe(3, 2);
+  for (const KeyframeId id : {0, 1}) map.keyframe(id).range_priors = {{2.0F, 0.1F}};
   const Map before = map;
   const Similarity3 moved{1.5, ExpSo3({0, 0, 0.2}), {1, 0, 0}};
   // Every landmark is seen from 0, 1 and 2.
@@ -111,6 +116,8 @@ TEST(Map, BendingMovesLandmarksWithTheKeyframeInTheMiddle) {
   map.Deform(corrections);
   map.CheckConsistency();
   EXPECT_EQ((map.PoseOf(0).translation - before.PoseOf(0).translation).norm(), 0.0);
+  EXPECT_FLOAT_EQ(map.keyframe(0).PriorOf(0).range, 2.0F);
+  EXPECT_FLOAT_EQ(map.keyframe(1).PriorOf(0).range, 3.0F);
   for (LandmarkId id = 0; id < 30; ++id) {
     const Eigen::Vector3d was = before.PoseOf(1).Inverse() * before.landmark(id).position;
     const Eigen::Vector3d is = map.PoseOf(1).Inverse() * map.landmark(id).position;

@@ -105,6 +105,40 @@ TEST(LocalBundleAdjustment, RemovesObservationsThatAreWrong) {
   EXPECT_EQ(map.landmark(20).observations.size(), 4u);
 }
 
+// Two keyframes close to each other, whose parallax says little of how far points are.
+TEST(LocalBundleAdjustment, RoughRangesHelpWithPointsOfLittleParallax) {
+  SyntheticScene scene(300, 6.0, 20.0);
+  const std::vector<Rigid3> poses = Walk(4, {-0.08, 0.02, 0.0});
+  Map plain = scene.MakeMap(poses, 300);
+  for (LandmarkId id = 0; id < plain.landmark_end(); ++id) {
+    plain.landmark(id).position *= scene.random.Uniform(0.8, 1.25);
+  }
+  // All ranges are too long by a half, and each by a few per cent in addition.
+  Map with_ranges = plain;
+  for (const KeyframeId id : with_ranges.KeyframeIds()) {
+    Keyframe& keyframe = with_ranges.keyframe(id);
+    for (const SyntheticScene::Point& point : scene.points) {
+      const double range = (point.position - keyframe.world_from_camera.translation).norm();
+      keyframe.range_priors.push_back(
+          {static_cast<float>(1.5 * range * scene.random.Uniform(0.96, 1.04)), 0.05F});
+    }
+  }
+  const auto median_error = [&](Map* map) {
+    AdjustLocally(3, {.max_iterations = 30}, {}, map);
+    std::vector<double> errors;
+    for (LandmarkId id = 0; id < map->landmark_end(); ++id) {
+      if (!map->HasLandmark(id)) continue;
+      errors.push_back(
+          std::abs(std::log(map->landmark(id).position.norm() / scene.points[id].position.norm())));
+    }
+    EXPECT_GT(errors.size(), 250u);
+    std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
+    return errors[errors.size() / 2];
+  };
+  const double without = median_error(&plain);
+  EXPECT_LT(median_error(&with_ranges), 0.8 * without);
+}
+
 TEST(LocalBundleAdjustment, GlobalAdjustmentBringsTheWholeMapToRest) {
   SyntheticScene scene(200);
   const std::vector<Rigid3> poses = Walk(5, {-0.3, 0.1, 0.0});

@@ -84,5 +84,54 @@ TEST(PanoramicTriangulation, RefusesMatchesThatBreakTheEpipolarGeometry) {
   EXPECT_LT(TriangulateNewLandmarks(1, {}, &moved).size(), 8u);
 }
 
+// Priors of keyframe 0 for the points that have no landmark: `factor` times the true range.
+void SetPriors(const SyntheticScene& scene, double factor, Map* map) {
+  Keyframe& keyframe = map->keyframe(0);
+  for (const SyntheticScene::Point& point : scene.points) {
+    const double range = (point.position - keyframe.world_from_camera.translation).norm();
+    keyframe.range_priors.push_back({static_cast<float>(factor * range), 0.1F});
+  }
+}
+
+TEST(PanoramicTriangulation, RefusesMatchesWhereTheRangeIsKnownToBeAnother) {
+  SyntheticScene scene(400);
+  const Map map = scene.MakeMap(Walk(2, {-0.8, 0.3, 0.1}), 50);
+  const auto created_with = [&](double factor) {
+    Map with_priors = map;
+    SetPriors(scene, factor, &with_priors);
+    return TriangulateNewLandmarks(1, {}, &with_priors).size();
+  };
+  Map plain = map;
+  const size_t without = TriangulateNewLandmarks(1, {}, &plain).size();
+  ASSERT_GT(without, 150u);
+  EXPECT_GT(created_with(1.0), 0.97 * static_cast<double>(without));
+  EXPECT_GT(created_with(1.1), 0.97 * static_cast<double>(without));
+  EXPECT_LT(created_with(2.0), 0.1 * static_cast<double>(without));
+}
+
+TEST(PanoramicTriangulation, TellsRepeatedPatchesApartWhereTheRangeIsKnown) {
+  SyntheticScene scene(400);
+  const std::vector<Rigid3> poses = Walk(2, {-0.8, 0.3, 0.1});
+  // Every other point looks like the one before it and is a match for it by epipolar geometry, as
+  // if it were 8 m away; it is 20 m away.
+  for (int i = 50; i < 400; i += 2) {
+    const Eigen::Vector3d ray = scene.random.Bearing();
+    SyntheticScene::Point& point = scene.points[i];
+    point.position = poses[1].translation + 4 * ray;
+    point.max_range = 6;
+    const Eigen::Vector3d seeming = poses[1].translation + 8 * ray;
+    scene.points[i + 1] = {
+        poses[0].translation + 20 * (seeming - poses[0].translation).normalized(), point.descriptor,
+        30};
+  }
+  Map map = scene.MakeMap(poses, 50, /*noise=*/0.0);
+  Map with_priors = map;
+  SetPriors(scene, 1.0, &with_priors);
+  const size_t ambiguous = TriangulateNewLandmarks(1, {}, &map).size();
+  const size_t told_apart = TriangulateNewLandmarks(1, {}, &with_priors).size();
+  EXPECT_GT(told_apart, 100u);
+  EXPECT_GT(told_apart, ambiguous + 50);
+}
+
 }  // namespace
 }  // namespace orb360

@@ -1,0 +1,55 @@
+#include "slam/depth/range_prior.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "nn/base/check.h"
+#include "slam/geometry/camera.h"
+
+namespace orb360 {
+namespace {
+
+// Largest ratio of the ranges of neighbouring pixels on one surface; a road far away reaches 1.2.
+constexpr float kEdgeRatio = 1.25F;
+// Of ln(range): what knows no more than that narrows nothing down.
+constexpr double kLargestError = 0.5;
+// Pictures of one place err alike, which the confidence of one does not tell.
+constexpr double kLeastSigma = 0.05;
+
+RangePrior PriorAt(const DenseDepth& depth, int row, int column) {
+  float nearest = depth.range.at<float>(row, column);
+  float farthest = nearest;
+  for (int y = std::max(row - 1, 0); y <= std::min(row + 1, depth.range.rows - 1); ++y) {
+    for (int x = column - 1; x <= column + 1; ++x) {
+      const int wrapped = (x + depth.range.cols) % depth.range.cols;
+      nearest = std::min(nearest, depth.range.at<float>(y, wrapped));
+      farthest = std::max(farthest, depth.range.at<float>(y, wrapped));
+    }
+  }
+  const double confidence = depth.confidence.at<float>(row, column);
+  const double error = 1 / std::max(confidence, 1e-6) - 1;
+  if (!(nearest > 0) || farthest > kEdgeRatio * nearest || error > kLargestError) return {};
+  // Of Laplace's distribution, whose mean absolute error the confidence stands for.
+  const double sigma = std::max(std::numbers::sqrt2 * error, kLeastSigma);
+  return {depth.range.at<float>(row, column), static_cast<float>(sigma)};
+}
+
+}  // namespace
+
+std::vector<RangePrior> SampleRangePriors(const DenseDepth& depth, const Features& features,
+                                          std::span<const LandmarkId> landmarks) {
+  ORB360_CHECK(std::ssize(landmarks) == features.size(), landmarks.size(), features.size());
+  const EquirectangularCamera camera(depth.range.cols, depth.range.rows);
+  std::vector<RangePrior> priors(landmarks.size());
+  for (size_t f = 0; f < landmarks.size(); ++f) {
+    if (landmarks[f] != kNoId) continue;
+    const Eigen::Vector2d pixel = camera.Project(features.bearings[f]);
+    const int column = static_cast<int>(pixel.x()) % camera.width();
+    const int row = std::min(static_cast<int>(pixel.y()), camera.height() - 1);
+    priors[f] = PriorAt(depth, row, column);
+  }
+  return priors;
+}
+
+}  // namespace orb360
