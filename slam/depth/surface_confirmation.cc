@@ -41,6 +41,14 @@ int ColumnStep(float cosine_of_latitude) {
   return std::max(1, static_cast<int>(std::lround(1.0f / std::max(cosine_of_latitude, 1e-3f))));
 }
 
+/// A column beyond the seam. Loops: division takes longer than everything else around it, and is
+/// needed nowhere but at the poles.
+int WrapColumn(int column, int width) {
+  while (column < 0) column += width;
+  while (column >= width) column -= width;
+  return column;
+}
+
 /// What another keyframe says of a point.
 struct Opinion {
   enum { kNone, kSupports, kContradicts } verdict = kNone;
@@ -121,7 +129,7 @@ float DepthView::Nearest(int row, int column) const {
   float least = range(row, column);
   for (int y = std::max(0, row - 1); y <= std::min(height() - 1, row + 1); ++y) {
     for (const int x : {column - 1, column, column + 1}) {
-      least = std::min(least, range(y, (x + width()) % width()));
+      least = std::min(least, range(y, WrapColumn(x, width())));
     }
   }
   return least;
@@ -143,12 +151,12 @@ DepthView::Sample DepthView::At(const Eigen::Vector3f& bearing) const {
   const auto range_at = [this](int row, int column) {
     const bool is_beyond = row < 0 || row >= height();
     const int x = column + (is_beyond ? width() / 2 : 0);
-    return range(std::clamp(row, 0, height() - 1), (x + width()) % width());
+    return range(std::clamp(row, 0, height() - 1), WrapColumn(x, width()));
   };
   const float corners[4] = {range_at(top, left), range_at(top, left + 1), range_at(top + 1, left),
                             range_at(top + 1, left + 1)};
   const int row = std::clamp(bottom_share < 0.5f ? top : top + 1, 0, height() - 1);
-  const int column = (right_share < 0.5f ? left + width() : left + 1) % width();
+  const int column = WrapColumn(right_share < 0.5f ? left : left + 1, width());
   Sample sample{range(row, column), error(row, column), row, column};
   const auto [least, most] = std::minmax({corners[0], corners[1], corners[2], corners[3]});
   if (least > 0 && most < kEdgeRatio * least) {
@@ -169,7 +177,7 @@ Eigen::Vector3f DepthView::Normal(int row, int column) const {
        ++y) {
     const int step = ColumnStep(latitudes_[static_cast<size_t>(y)].x());
     for (int i = -kPlaneReach; i <= kPlaneReach; ++i) {
-      const int x = ((column + i * step) % width() + width()) % width();
+      const int x = WrapColumn(column + i * step, width());
       const float other = range(y, x);
       if (!(other > 0)) continue;
       const float inverse = centre / other;  // In units of the centre's, for the sake of rounding.
@@ -204,14 +212,24 @@ std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
                          other_from_view.translation.cast<float>()});
   }
   const float pixel_angle = std::numbers::pi_v<float> / static_cast<float>(view.height());
+  // A point keeps at least this share of its own error: others may be better than it by the one
+  // factor (in variance), and all together better than the best by the other.
+  const auto least_gain = static_cast<float>(1 / std::sqrt(std::max(options.redundant_ratio, 1.0) *
+                                                           std::max(options.max_independent, 1.0)));
+  const float max_own_error = static_cast<float>(sampling.max_error) / least_gain;
+  const float max_conflict =
+      static_cast<float>(options.max_conflict_share) * static_cast<float>(witnesses.size());
 
   // The point of a pixel, where it is confirmed.
   const auto confirm = [&](int row, int column, const Eigen::Vector3f& bearing,
                            float range) -> std::optional<ConfirmedPoint> {
+    const float largest_error = range * view.error(row, column);
+    if (largest_error * kMinIncidence > max_own_error) return std::nullopt;
     const Eigen::Vector3f normal = view.Normal(row, column);
     if (normal.isZero()) return std::nullopt;
     const float incidence = std::max(-normal.dot(bearing), kMinIncidence);
-    const float own_error = range * view.error(row, column) * incidence;
+    const float own_error = largest_error * incidence;
+    if (own_error > max_own_error) return std::nullopt;
     const float own_information = 1.0f / (own_error * own_error);
     float information = own_information;
     float best = information;
@@ -220,7 +238,9 @@ std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
     int conflict = 0;
     for (const Witness& witness : witnesses) {
       const Opinion opinion = Ask(witness, range * bearing, normal, own_error * own_error, options);
-      if (opinion.verdict == Opinion::kContradicts) ++conflict;
+      if (opinion.verdict == Opinion::kContradicts && ++conflict > max_conflict) {
+        return std::nullopt;
+      }
       if (opinion.verdict != Opinion::kSupports) continue;
       if (opinion.information > options.redundant_ratio * own_information) return std::nullopt;
       ++support;

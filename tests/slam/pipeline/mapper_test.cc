@@ -40,7 +40,7 @@ TEST(Mapper, DropsLandmarksThatAreRarelyFound) {
   Map map = scene.MakeMap(Walk(3, {-0.4, 0.1, 0.0}), 300);
   const LandmarkId doubtful = 17;
   map.landmark(doubtful).visible = 20;
-  map.landmark(doubtful).found = 2;
+  map.landmark(doubtful).found = 1;
   const Rigid3 pose = Walk(4, {-0.4, 0.1, 0.0})[3];
   TrackedFrame frame = FrameSeeing(scene, scene.See(pose), pose, 300);
   frame.landmarks[doubtful] = kNoId;
