@@ -13,7 +13,7 @@ namespace {
 // kerb's, a roof's.
 constexpr double kMaxHeightError = 0.1;
 // All ranges of a keyframe together are worth as many measurements.
-constexpr double kIndependentRanges = 20.0;
+constexpr double kIndependentRanges = 5.0;
 
 // Adds what the ground says of the keyframe with index `pose` and of the points around it.
 void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem* problem) {

@@ -4,6 +4,24 @@
 
 namespace orb360 {
 
+std::vector<ProvisionalPoint> MakeProvisionalPoints(const Keyframe& keyframe) {
+  std::vector<ProvisionalPoint> points;
+  const Features& features = *keyframe.features;
+  for (int f = 0; f < features.size(); ++f) {
+    const RangePrior prior = keyframe.PriorOf(f);
+    if (prior.sigma == 0 || keyframe.landmarks[f] != kNoId) continue;
+    const Keypoint& keypoint = features.keypoints[f];
+    const Eigen::Vector3d direction = keyframe.world_from_camera.rotation * features.bearings[f];
+    const Eigen::Vector3d position =
+        keyframe.world_from_camera.translation + prior.range * direction;
+    points.push_back({{kNoId, position, direction, RangeAtLevelZero(prior.range, keypoint.level),
+                       features.descriptors[f]},
+                      keypoint.sigma,
+                      prior.sigma});
+  }
+  return points;
+}
+
 const LocalLandmark* LocalMap::Find(LandmarkId id) const {
   const auto place =
       std::lower_bound(landmarks.begin(), landmarks.end(), id,
@@ -37,6 +55,7 @@ LocalMap MakeLocalMap(const Map& map, KeyframeId reference, int num_keyframes) {
     if (id != kNoId) local.reference_matches += map.landmark(id).observations.size() >= 3;
   }
   local.median_range = map.MedianRange(reference);
+  local.provisional = MakeProvisionalPoints(center);
   return local;
 }
 

@@ -22,7 +22,7 @@ struct TriangulationOptions {
   /// Ratio of ranges over ratio of feature scales that a match of the same patch may have.
   double max_scale_ratio = 1.3;
   /// Ranges farther from what completed depth says than this many standard deviations are wrong.
-  double max_range_sigmas = 3.0;
+  double max_range_sigmas = 4.0;
   int max_distance = 50;  // differing bits
   double ratio = 0.85;
 };

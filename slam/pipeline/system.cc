@@ -460,6 +460,7 @@ void System::AdoptCompletion() {
     const auto scale = static_cast<float>(depth_scales_.at(frame_index));
     for (RangePrior& prior : priors) prior.range *= scale;
     map_.keyframe(id).range_priors = std::move(priors);
+    if (id == local_.reference) local_.provisional = MakeProvisionalPoints(map_.keyframe(id));
     return;
   }
 }

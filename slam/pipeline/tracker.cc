@@ -1,7 +1,10 @@
 #include "slam/pipeline/tracker.h"
 
+#include <cmath>
+
 #include "slam/features/matching.h"
 #include "slam/geometry/absolute_pose.h"
+#include "slam/geometry/triangulation.h"
 #include "slam/optimization/pose_refinement.h"
 #include "slam/pipeline/frame_motion.h"
 #include "slam/pipeline/projection_search.h"
@@ -42,6 +45,38 @@ PoseFit FitPose(const Features& features, const Rigid3& initial,
   return fit;
 }
 
+// The pose once more, with what the reference keyframe's completed depth adds. `fit` holds the
+// landmarks' inliers from a list.
+Rigid3 RefineWithProvisional(const Features& features, const PoseFit& fit, const LocalMap& local,
+                             const ProjectionSearchOptions& search) {
+  const Rigid3& start = fit.pose.world_from_camera;
+  if (local.provisional.empty()) return start;
+  std::vector<PoseObservation> observations;
+  std::vector<uint8_t> taken(features.size(), 0);
+  for (size_t i = 0; i < fit.feature.size(); ++i) {
+    const int f = fit.feature[i];
+    taken[f] = 1;
+    observations.push_back({local.landmarks[fit.landmark[i]].position, features.bearings[f],
+                            features.keypoints[f].sigma});
+  }
+  std::vector<LocalLandmark> points;
+  points.reserve(local.provisional.size());
+  for (const ProvisionalPoint& point : local.provisional) points.push_back(point.appearance);
+  const ProjectionMatches matches = SearchByProjection(features, start, points, taken, search);
+  for (int f = 0; f < features.size(); ++f) {
+    const int p = matches.landmark_of_feature[f];
+    if (p < 0) continue;
+    // What the range may be wrong by is seen from here under the parallax.
+    const double parallax = ParallaxAngle(points[p].position, start.translation,
+                                          local.world_from_reference.translation);
+    const double moved = parallax * local.provisional[p].range_sigma;
+    const double sigma = std::hypot(features.keypoints[f].sigma,
+                                    static_cast<double>(local.provisional[p].bearing_sigma), moved);
+    observations.push_back({points[p].position, features.bearings[f], sigma});
+  }
+  return RefinePose(start, observations).world_from_camera;
+}
+
 struct LocalFit {
   TrackResult result;
   double inlier_share = 0;  // of the matches with the local map
@@ -57,7 +92,7 @@ std::optional<LocalFit> TrackLocalMap(const Features& features, const Rigid3& in
       SearchByProjection(features, initial, local.landmarks, {}, search);
   const PoseFit fit = FitPose(features, initial, local.landmarks, matches.landmark_of_feature);
   if (fit.pose.num_inliers < options.min_inliers) return std::nullopt;
-  TrackResult result{fit.pose.world_from_camera,
+  TrackResult result{RefineWithProvisional(features, fit, local, search),
                      std::vector<LandmarkId>(features.size(), kNoId),
                      fit.pose.num_inliers,
                      {}};

@@ -57,5 +57,25 @@ TEST_F(LocalMapTest, CountsTheReferencesLandmarksThatTwoOthersSee) {
   EXPECT_EQ(MakeLocalMap(map_, 0, 10).reference_matches, 4);
 }
 
+TEST_F(LocalMapTest, FeaturesOfTheReferenceWithoutALandmarkAreProvisionalPoints) {
+  EXPECT_TRUE(MakeLocalMap(map_, 0, 10).provisional.empty());
+  Keyframe& reference = map_.keyframe(0);
+  reference.range_priors.assign(reference.landmarks.size(), {});
+  int known = 0;
+  for (size_t f = 0; f < reference.landmarks.size(); f += 2) {
+    reference.range_priors[f] = {4.0F, 0.1F};
+    known += reference.landmarks[f] == kNoId;
+  }
+  const LocalMap local = MakeLocalMap(map_, 0, 10);
+  ASSERT_GT(known, 0);
+  EXPECT_EQ(local.provisional.size(), static_cast<size_t>(known));
+  for (const ProvisionalPoint& point : local.provisional) {
+    const Eigen::Vector3d way = point.appearance.position - reference.world_from_camera.translation;
+    EXPECT_NEAR(way.norm(), 4.0, 1e-6);
+    EXPECT_EQ(point.appearance.id, kNoId);
+    EXPECT_FLOAT_EQ(point.range_sigma, 0.1F);
+  }
+}
+
 }  // namespace
 }  // namespace orb360

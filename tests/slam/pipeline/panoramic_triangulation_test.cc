@@ -89,7 +89,7 @@ void SetPriors(const SyntheticScene& scene, double factor, Map* map) {
   Keyframe& keyframe = map->keyframe(0);
   for (const SyntheticScene::Point& point : scene.points) {
     const double range = (point.position - keyframe.world_from_camera.translation).norm();
-    keyframe.range_priors.push_back({static_cast<float>(factor * range), 0.1F});
+    keyframe.range_priors.push_back({static_cast<float>(factor * range), 0.05F});
   }
 }
 

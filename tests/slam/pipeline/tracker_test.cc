@@ -31,6 +31,36 @@ void ExpectNear(const Rigid3& found, const Rigid3& truth) {
   EXPECT_LT((found.translation - truth.translation).norm(), 0.01);
 }
 
+// A map of few landmarks, and what is known roughly of the ranges of the other features.
+TEST_F(TrackerTest, RoughRangesOfOtherFeaturesMakeThePoseBetter) {
+  double plain_error = 0;
+  double provisional_error = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    Map map = scene_.MakeMap(Walk(3, {-0.3, 0.1, 0.0}), 45);
+    TrackedFrame last{.features = map.keyframe(2).features,
+                      .world_from_camera = map.keyframe(2).world_from_camera,
+                      .landmarks = map.keyframe(2).landmarks};
+    const auto features = scene_.See(truth_);
+    const auto error = [&] {
+      const auto result = TrackFromPrediction(*features, last.world_from_camera, last,
+                                              MakeLocalMap(map, 2, 10), scene_.sigma, {});
+      EXPECT_TRUE(result.has_value());
+      // Only landmarks are counted.
+      EXPECT_LE(result->num_inliers, 45);
+      return result ? (result->world_from_camera.translation - truth_.translation).norm() : 1.0;
+    };
+    plain_error += error();
+    Keyframe& reference = map.keyframe(2);
+    for (const SyntheticScene::Point& point : scene_.points) {
+      const double range = (point.position - reference.world_from_camera.translation).norm();
+      const double noisy = range * std::exp(0.1 * scene_.random.Uniform(-1.7, 1.7));
+      reference.range_priors.push_back({static_cast<float>(noisy), 0.1F});
+    }
+    provisional_error += error();
+  }
+  EXPECT_LT(provisional_error, 0.8 * plain_error);
+}
+
 TEST_F(TrackerTest, FindsThePoseAndItsLandmarksFromARoughPrediction) {
   const auto features = scene_.See(truth_);
   const auto result =
