@@ -47,8 +47,13 @@ KeyframeId Map::AddKeyframe(int frame_index, double timestamp, const Rigid3& wor
   ORB360_CHECK(features != nullptr);
   const KeyframeId id = keyframe_end();
   const int num_features = features->size();
-  keyframes_.push_back(Keyframe{id, frame_index, timestamp, world_from_camera, std::move(features),
-                                std::vector<LandmarkId>(num_features, kNoId)});
+  keyframes_.push_back(Keyframe{id,
+                                frame_index,
+                                timestamp,
+                                world_from_camera,
+                                std::move(features),
+                                std::vector<LandmarkId>(num_features, kNoId),
+                                {}});
   successors_.emplace_back();
   ++num_keyframes_;
   return id;
