@@ -232,7 +232,6 @@ RunOptions Settle(RunOptions options) {
   if (options.saves_depth && options.weights == "none") {
     throw UserError("--save-depth: without a network there is no dense depth; leave it out");
   }
-  if (!options.map_out.empty()) AtomicFile{options.map_out};  // throws where it cannot be written
   return options;
 }
 
@@ -249,6 +248,8 @@ int Run(const RunOptions& options) {
   std::optional<StoredMap> stored = ReadMapFor(sequence->image_size().width, options.map_in);
   RunOutput output(options.out);
   if (stored) output.SetWorld(stored->file_world_from_map);
+  // Throws now where the map could not be written in the end; it may lie in the output's folder.
+  if (!options.map_out.empty()) AtomicFile{options.map_out};
   const int threads = SetThreads(options.threads);
   const cv::Mat mask = ChooseMask(options.mask, options.input, sequence_options, *sequence);
   const double masked_share = ExcludedShare(mask);
@@ -261,18 +262,26 @@ int Run(const RunOptions& options) {
   System system(EquirectangularCamera(size.width, size.height), system_options, mask);
   std::optional<DepthCompleter> completer;
   std::optional<RangeStore> depth;
+  std::exception_ptr depth_failure;  // a full disk takes the cloud, not the trajectory
   if (options.weights != "none") {
     completer.emplace(options.weights, DepthCompleterOptions{.threads = threads});
     depth.emplace(output.folder() / "depth.tmp");
-    system.CompleteKeyframes(&*completer, [&depth](int frame_index, const DenseDepth& dense) {
-      depth->Put(frame_index, dense);
+    system.CompleteKeyframes(&*completer, [&](int frame_index, const DenseDepth& dense) {
+      if (depth_failure) return;
+      try {
+        depth->Put(frame_index, dense);
+      } catch (const UserError&) {
+        depth_failure = std::current_exception();
+      }
     });
   }
   if (stored) system.StartIn(std::move(stored->map), stored->ground, options.localizes);
   RunRecord record = ProcessFrames(sequence.get(), &system, &output, options.is_quiet);
   const Reconstruction reconstruction = system.Finish();
+  if (depth_failure && !record.failure) record.failure = depth_failure;
+  const bool is_complete = depth && !depth_failure;
   const std::optional<DenseOutput> dense =
-      depth ? FuseDepth(reconstruction, *depth, options, output, &record) : std::nullopt;
+      is_complete ? FuseDepth(reconstruction, *depth, options, output, &record) : std::nullopt;
   const nlohmann::json summary = Summarize(reconstruction, record, dense, options,
                                            system_options.scale, masked_share, threads);
   const Rigid3 file_world_from_map = output.Finish(reconstruction, summary, dense);

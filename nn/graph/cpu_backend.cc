@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -210,10 +211,17 @@ NodeNeeds CpuBackend::NeedsOf(const Graph& graph, const FusedNode& node) const {
 std::vector<Step> CpuBackend::MakeSteps(const Graph& graph, std::span<const FusedNode> nodes,
                                         int height, int width) const {
   std::vector<Step> steps(nodes.size());
+  std::exception_ptr failure;  // such as too little memory; it must not leave a parallel loop
 #pragma omp parallel for num_threads(threads_) schedule(dynamic)
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    steps[i] = MakeStep(graph, nodes[i], height, width, precision_, threads_);
+    try {
+      steps[i] = MakeStep(graph, nodes[i], height, width, precision_, threads_);
+    } catch (...) {
+#pragma omp critical
+      failure = std::current_exception();
+    }
   }
+  if (failure) std::rethrow_exception(failure);
   return steps;
 }
 

@@ -217,8 +217,7 @@ std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
   const auto least_gain = static_cast<float>(1 / std::sqrt(std::max(options.redundant_ratio, 1.0) *
                                                            std::max(options.max_independent, 1.0)));
   const float max_own_error = static_cast<float>(sampling.max_error) / least_gain;
-  const float max_conflict =
-      static_cast<float>(options.max_conflict_share) * static_cast<float>(witnesses.size());
+  const double max_conflict = options.max_conflict_share * static_cast<double>(witnesses.size());
 
   // The point of a pixel, where it is confirmed.
   const auto confirm = [&](int row, int column, const Eigen::Vector3f& bearing,

@@ -12,7 +12,8 @@ namespace {
 // Where the plane below is at another height than this share allows, it is not the ground: a
 // kerb's, a roof's.
 constexpr double kMaxHeightError = 0.1;
-// All ranges of a keyframe together are worth as many measurements.
+// All ranges of a keyframe together are worth as many measurements: about as many surfaces stand
+// around a camera, and on one of them a network is right or wrong as a whole.
 constexpr double kIndependentRanges = 5.0;
 
 // Adds what the ground says of the keyframe with index `pose` and of the points around it.

@@ -451,9 +451,10 @@ void System::StartCompletion(const TrackedFrame& frame, KeyframeId id, const cv:
 }
 
 void System::AdoptCompletion() {
-  std::vector<RangePrior> priors = completion_->priors.get();
-  const int frame_index = completion_->frame_index;
+  CompletionJob job = std::move(*completion_);
   completion_.reset();
+  std::vector<RangePrior> priors = job.priors.get();  // throws what the sink has thrown
+  const int frame_index = job.frame_index;
   // It may have been removed, or be in another map by now.
   for (KeyframeId id = map_.keyframe_end() - 1; id >= 0; --id) {
     if (!map_.HasKeyframe(id) || map_.keyframe(id).frame_index != frame_index) continue;

@@ -195,6 +195,13 @@ TEST_F(RunTest, AMapThatCannotBeWrittenIsRefusedBeforeAnyWork) {
   EXPECT_THAT(Refusal({"--map-out", path}), AllOf(HasSubstr(path), HasSubstr("cannot be written")));
 }
 
+TEST_F(RunTest, AMapMayLieInTheFolderOfTheResults) {
+  WriteRoom();
+  const ProgramResult result = Run({"--map-out", OutFile("room.map")});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_GT(ReadMap(OutFile("room.map")).map.num_keyframes(), 1);
+}
+
 TEST_F(RunTest, RefusesWhatIsNoNetwork) {
   WriteRoom();
   EXPECT_THAT(Refusal({"--weights", Image(0)}), HasSubstr("is not a network of orb360"));
@@ -442,6 +449,19 @@ TEST_F(RunTest, AFullDiskEndsInOneLineAndKeepsWhatFits) {
   EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("cloud.ply"), HasSubstr("free some space")));
   EXPECT_EQ(PosesIn("trajectory.txt"), static_cast<size_t>(kFrames));
   EXPECT_FALSE(std::filesystem::exists(OutFile("cloud.ply.tmp")));
+}
+
+TEST_F(RunTest, AFullDiskTakesTheCloudAndNotTheTrajectory) {
+  WriteRoom();
+  WriteMeanNetwork(folder_ / "net.h5");
+  const ProgramResult result =
+      Program({"run", Input(), "--out", Out(), "--threads", "1", "--weights", folder_ / "net.h5"},
+              8000)
+          .Wait();
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("free some space")));
+  EXPECT_EQ(PosesIn("trajectory.txt"), static_cast<size_t>(kFrames));
+  EXPECT_FALSE(std::filesystem::exists(OutFile("depth.tmp")));
 }
 
 /// A run long enough to be disturbed: the same walk to and fro.
