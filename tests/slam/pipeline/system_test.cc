@@ -150,7 +150,10 @@ std::filesystem::path WritePropagation(const TempFolder& folder) {
   net.NormalizedConvolution("mean", "points", "points.1", 1, 1, 3);
   net.weights[1].values = {0};
   net.Output("log_depth", "mean");
-  net.Output("confidence", "mean.1");
+  // Sure of what has a point near.
+  net.Node("near", "affine", {"mean.1"}, {{"scale", 1e6}, {"offset", 0.0}});
+  net.Node("sure", "clamp", {"near"}, {{"minimum", 0.0}, {"maximum", 0.9}});
+  net.Output("confidence", "sure");
   net.Output("scale", "points.2");
   const std::filesystem::path path = folder / "propagation.h5";
   net.Write(path);
@@ -160,6 +163,7 @@ std::filesystem::path WritePropagation(const TempFolder& folder) {
 struct Completed {
   Reconstruction result;
   std::vector<std::pair<int, DenseDepth>> depths;  // by frame index, in the order they came
+  std::vector<Map> maps;
 };
 
 Completed TrackAndComplete(const BoxRoom& room, const std::vector<double>& frames) {
@@ -174,13 +178,14 @@ Completed TrackAndComplete(const BoxRoom& room, const std::vector<double>& frame
     system.Process(MakeFrame(static_cast<int>(i), room.Render(kCamera, TruePose(frames[i]))));
   }
   completed.result = system.Finish();
+  completed.maps = system.maps();
   return completed;
 }
 
 TEST(SystemSlow, CompletesKeyframesInMetresBesideTracking) {
   const BoxRoom room = Hall();
   const std::vector<double> frames = Count(60);
-  const auto [result, depths] = TrackAndComplete(room, frames);
+  const auto [result, depths, maps] = TrackAndComplete(room, frames);
   ASSERT_EQ(result.frames.size(), Track(room, frames).frames.size());
   ASSERT_GE(depths.size(), 5u);
   const EquirectangularCamera camera(256, 128);
@@ -205,6 +210,29 @@ TEST(SystemSlow, CompletesKeyframesInMetresBesideTracking) {
     std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
     EXPECT_LT(errors[errors.size() / 2], 0.05) << frame_index;
   }
+}
+
+TEST(SystemSlow, KeyframesKnowTheRangesOfFeaturesWithoutALandmark) {
+  const BoxRoom room = Hall();
+  const Completed completed = TrackAndComplete(room, Count(60));
+  ASSERT_EQ(completed.maps.size(), 1u);
+  const Map& map = completed.maps.front();
+  std::vector<double> errors;
+  for (const KeyframeId id : map.KeyframeIds()) {
+    const Keyframe& keyframe = map.keyframe(id);
+    const Rigid3 pose = TruePose(keyframe.frame_index);
+    for (int f = 0; f < keyframe.features->size(); ++f) {
+      const RangePrior prior = keyframe.PriorOf(f);
+      if (prior.sigma == 0) continue;
+      const double truth =
+          room.Range(pose.translation, pose.rotation * keyframe.features->bearings[f]);
+      // In metres like the map, though some were made before it was.
+      errors.push_back(std::abs(std::log(prior.range / truth)));
+    }
+  }
+  ASSERT_GT(errors.size(), 100u);
+  std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
+  EXPECT_LT(errors[errors.size() / 2], 0.1);
 }
 
 TEST(SystemSlow, CompletesTheSameForAnyNumberOfThreads) {
