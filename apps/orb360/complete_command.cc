@@ -14,11 +14,12 @@
 
 #include "apps/orb360/commands.h"
 #include "nn/base/check.h"
-#include "nn/graph/network_file.h"
 #include "nn/models/default_weights.h"
-#include "nn/models/depth_completion.h"
+#include "slam/depth/dense_ground.h"
+#include "slam/depth/depth_completer.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/depth_image.h"
+#include "slam/io/full_sphere.h"
 #include "slam/io/image_file.h"
 #include "slam/io/sparse_file.h"
 
@@ -60,10 +61,6 @@ cv::Mat ReadPicture(const std::string& path) {
   return loaded.image;
 }
 
-std::string ToText(const cv::Size& size) {
-  return std::to_string(size.width) + "x" + std::to_string(size.height);
-}
-
 /// "DIR/NAME_WHAT.png" for "DIR/NAME.png".
 std::filesystem::path Beside(const std::filesystem::path& depth, const char* what) {
   std::filesystem::path name = depth.stem();
@@ -82,43 +79,32 @@ void WriteShareImage(const std::filesystem::path& path, const cv::Mat& share) {
   WriteFileAtomically(path, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
-template <typename T>
-std::span<const T> PixelsOf(const cv::Mat& image) {
-  ORB360_CHECK(image.isContinuous());
-  return {image.ptr<T>(), image.total() * static_cast<std::size_t>(image.channels())};
-}
-
 /// The network, made ready for pictures of one size after the other.
 class Completer {
  public:
-  explicit Completer(const CompleteOptions& options)
-      : graph_(nn::ReadNetwork(options.weights)), options_(options) {}
+  explicit Completer(const CompleteOptions& options) : options_(options) {}
 
-  nn::DensePicture Complete(const cv::Mat& image, const SparseDepth& sparse) {
-    const nn::PictureSize size{image.rows, image.cols};
-    if (!model_ || model_->size() != size) Prepare(size);
-    cv::Mat rgb;
-    cv::cvtColor(image, rgb, cv::COLOR_BGR2RGB);
-    return model_->Complete({PixelsOf<unsigned char>(rgb), PixelsOf<float>(sparse.range),
-                             PixelsOf<float>(sparse.confidence)},
-                            &*workspace_);
+  DenseDepth Complete(const cv::Mat& image, const SparseDepth& sparse) {
+    if (!completer_ || completer_->camera().width() != image.cols ||
+        completer_->camera().height() != image.rows) {
+      Prepare(image.size());
+    }
+    return completer_->Complete(image, sparse);
   }
 
  private:
-  void Prepare(nn::PictureSize size) {
+  void Prepare(cv::Size size) {
     const int threads = options_.threads > 0
                             ? options_.threads
                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    const auto precision = options_.uses_bfloat16 ? nn::DataType::kBFloat16 : nn::DataType::kFloat;
-    workspace_.reset();
-    model_.emplace(graph_, size, nn::ExecutorOptions{.threads = threads, .precision = precision});
-    workspace_.emplace(*model_);
+    completer_.reset();
+    completer_.emplace(options_.weights,
+                       DepthCompleterOptions{
+                           .size = size, .threads = threads, .bfloat16 = options_.uses_bfloat16});
   }
 
-  nn::Graph graph_;
-  CompleteOptions options_;
-  std::optional<nn::DepthCompletion> model_;
-  std::optional<nn::DepthCompletion::Workspace> workspace_;
+  const CompleteOptions options_;
+  std::optional<DepthCompleter> completer_;
 };
 
 /// Completes one sparse input and writes the result to `out`; gives what is told about it.
@@ -131,22 +117,31 @@ nlohmann::json CompleteOne(const CompleteOptions& options, const std::filesystem
   const cv::Mat image = options.image.empty() ? sparse.image : ReadPicture(options.image);
   const cv::Size size = image.size();
   if (sparse.depth.range.size() != size) {
-    throw UserError(sparse_path.string() + ": is " + ToText(sparse.depth.range.size()) +
-                    ", but the image is " + ToText(size) + "; both must have one size");
+    throw UserError(sparse_path.string() + ": is " + ToString(sparse.depth.range.size()) +
+                    ", but the image is " + ToString(size) + "; both must have one size");
   }
-  nn::DensePicture dense = completer->Complete(image, sparse.depth);
-  const auto write_share = [&](const char* what, std::vector<float>* share) {
+  if (options.image.empty()) {
+    RequireFullSphere(sparse_path.string(), size);
+  } else {
+    RequireFullSphere(options.image, size);
+  }
+  const DenseDepth dense = completer->Complete(image, sparse.depth);
+  const auto write_share = [&](const char* what, const cv::Mat& share) {
     const std::filesystem::path path = Beside(out, what);
-    WriteShareImage(path, cv::Mat(size, CV_32F, share->data()));
+    WriteShareImage(path, share);
     return path.string();
   };
-  WriteDepthImage(out, cv::Mat(size, CV_32F, dense.depth.data()));
+  WriteDepthImage(out, dense.range);
   nlohmann::json result = {{"sparse", sparse_path.string()},
                            {"depth", out.string()},
-                           {"confidence", write_share("_confidence", &dense.confidence)}};
-  if (!dense.ground.empty()) result["ground"] = write_share("_ground", &dense.ground);
-  if (dense.log_metric_scale) {
-    result["camera_heights_per_unit"] = std::exp(*dense.log_metric_scale) / dense.scale;
+                           {"confidence", write_share("_confidence", dense.confidence)}};
+  if (!dense.ground.empty()) result["ground"] = write_share("_ground", dense.ground);
+  if (dense.log_camera_height) {
+    result["camera_height_guess"] = std::exp(*dense.log_camera_height);
+  }
+  if (const auto ground = FindGround(dense, Eigen::Vector3d::UnitZ(), {})) {
+    result["camera_height"] = std::exp(ground->log_height);
+    result["camera_height_log_sigma"] = ground->sigma;
   }
   return result;
 }
@@ -220,9 +215,10 @@ void AddCompleteCommand(CLI::App* app, Command* chosen) {
                    "NAME_confidence.png and the probability of the ground as NAME_ground.png, both "
                    "times 65535; for a folder, a folder")
       ->required();
-  command->add_flag("--json", options->json,
-                    "Print what was written, and the heights of the camera that the network takes "
-                    "a unit of the depth for");
+  command->add_flag(
+      "--json", options->json,
+      "Print what was written, and the height of the camera over the ground: from the "
+      "plane through the depth there, and as the network guesses it");
   command->add_option("--threads", options->threads, "0: as many as the machine has")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();

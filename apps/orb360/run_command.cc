@@ -264,7 +264,9 @@ int Run(const RunOptions& options) {
   std::optional<RangeStore> depth;
   std::exception_ptr depth_failure;  // a full disk takes the cloud, not the trajectory
   if (options.weights != "none") {
-    completer.emplace(options.weights, DepthCompleterOptions{.threads = threads});
+    const int rows = system_options.depth.height;
+    completer.emplace(options.weights,
+                      DepthCompleterOptions{.size = {2 * rows, rows}, .threads = threads});
     depth.emplace(output.folder() / "depth.tmp");
     system.CompleteKeyframes(&*completer, [&](int frame_index, const DenseDepth& dense) {
       if (depth_failure) return;

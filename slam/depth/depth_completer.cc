@@ -1,5 +1,6 @@
 #include "slam/depth/depth_completer.h"
 
+#include <cmath>
 #include <span>
 
 #include <opencv2/imgproc.hpp>
@@ -25,7 +26,7 @@ std::span<const T> PixelsOf(const cv::Mat& image) {
 
 struct DepthCompleter::Network {
   Network(const std::filesystem::path& weights, const DepthCompleterOptions& options)
-      : model(nn::ReadNetwork(weights), {.height = options.width / 2, .width = options.width},
+      : model(nn::ReadNetwork(weights), {options.size.height, options.size.width},
               HowToRun(options)),
         workspace(model) {}
 
@@ -35,7 +36,7 @@ struct DepthCompleter::Network {
 
 DepthCompleter::DepthCompleter(const std::filesystem::path& weights,
                                const DepthCompleterOptions& options)
-    : camera_(options.width, options.width / 2),
+    : camera_(options.size.width, options.size.height),
       network_(std::make_unique<Network>(weights, options)) {}
 
 DepthCompleter::~DepthCompleter() = default;
@@ -50,8 +51,13 @@ DenseDepth DepthCompleter::Complete(const cv::Mat& color, const SparseDepth& spa
       network_->model.Complete({PixelsOf<unsigned char>(rgb), PixelsOf<float>(sparse.range),
                                 PixelsOf<float>(sparse.confidence)},
                                &network_->workspace);
-  return {cv::Mat(size, CV_32F, dense.depth.data()).clone(),
-          cv::Mat(size, CV_32F, dense.confidence.data()).clone(), color};
+  DenseDepth depth{cv::Mat(size, CV_32F, dense.depth.data()).clone(),
+                   cv::Mat(size, CV_32F, dense.confidence.data()).clone(), color};
+  if (!dense.ground.empty()) depth.ground = cv::Mat(size, CV_32F, dense.ground.data()).clone();
+  if (dense.log_metric_scale) {
+    depth.log_camera_height = std::log(dense.scale) - *dense.log_metric_scale;
+  }
+  return depth;
 }
 
 }  // namespace orb360

@@ -12,8 +12,8 @@
 namespace orb360 {
 
 struct DepthCompleterOptions {
-  /// Width of the pictures that are completed, pixels; they are half as high.
-  int width = 1024;
+  /// Of the pictures that are completed; each shows a full sphere.
+  cv::Size size{1024, 512};
   int threads = 1;
   /// Convolutions in bfloat16: faster, less exact. UserError where the processor cannot.
   bool bfloat16 = false;

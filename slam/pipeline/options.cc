@@ -118,6 +118,9 @@ ConfigSchema MakeConfigSchema(Options* options) {
              1.0);
 
   DepthOptions& depth = options->depth;
+  schema.Add("depth.height", &depth.height,
+             "height of the pictures that get dense depth, pixels; they are twice as wide", 32,
+             4096);
   schema.Add("depth.every_keyframes", &depth.every_keyframes,
              "every so many keyframes get dense depth", 1, 1000);
   schema.Add("depth.min_points", &depth.min_points,

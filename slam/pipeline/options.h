@@ -1,5 +1,6 @@
 #pragma once
 
+#include "slam/depth/dense_ground.h"
 #include "slam/depth/sparse_depth.h"
 #include "slam/features/orb_extractor.h"
 #include "slam/io/config.h"
@@ -50,6 +51,9 @@ struct ScaleOptions {
 
 struct DepthOptions {
   SparseDepthOptions sparse;
+  DenseGroundOptions ground;
+  /// Of the pictures that are completed, pixels; they are twice as wide.
+  int height = 512;
   /// Every so many keyframes are completed.
   int every_keyframes = 1;
   /// With fewer points there is nothing to complete.

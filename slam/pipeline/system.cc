@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include <omp.h>
 #include <opencv2/imgproc.hpp>
 
 #include "nn/base/check.h"
-#include "slam/depth/range_prior.h"
 #include "slam/pipeline/ground.h"
 #include "slam/pipeline/initializer.h"
 #include "slam/pipeline/mapper.h"
@@ -65,8 +65,7 @@ System::System(const EquirectangularCamera& camera, const Options& options, cons
 System::~System() = default;
 
 void System::CompleteKeyframes(DepthCompleter* completer, DepthSink sink) {
-  completer_ = completer;
-  depth_sink_ = std::move(sink);
+  depth_.emplace(completer, std::move(sink), options_);
 }
 
 FrameReport System::Process(const Frame& frame) {
@@ -86,8 +85,9 @@ FrameReport System::Process(const Frame& frame) {
   ++num_processed_;
   const Clock::time_point adoption = Clock::now();
   if (job_ && MustAdopt()) AdoptMapping();
-  if (completion_ && !job_ && num_processed_ >= completion_->adopt_at) AdoptCompletion();
+  if (depth_ && !job_ && depth_->IsDue(num_processed_)) AdoptCompletion();
   if (bundle_ && !job_ && num_processed_ >= bundle_->adopt_at) AdoptBundle();
+  if (!job_) LookForDenseGround();
   report.timing_ms["adoption"] = MillisecondsSince(adoption);
 
   const Clock::time_point tracking = Clock::now();
@@ -131,8 +131,7 @@ int System::FreeThreads() const {
   const auto is_running = [](const auto& future) {
     return future.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
   };
-  const bool is_mapping =
-      (job_ && is_running(job_->result)) || (completion_ && is_running(completion_->priors));
+  const bool is_mapping = (job_ && is_running(job_->result)) || (depth_ && depth_->IsRunning());
   const bool is_adjusting = bundle_ && is_running(bundle_->adjusted);
   return std::max(1, num_threads_ - is_mapping - is_adjusting);
 }
@@ -377,8 +376,8 @@ void System::StartMapping() {
   for (LandmarkId& id : keyframe.landmarks) id = map_.Resolve(id);
   std::optional<EquirectangularCamera> completed;  // the picture to be completed
   cv::Mat color;
-  if (completer_ != nullptr && map_.keyframe_end() % options_.depth.every_keyframes == 0) {
-    completed = completer_->camera();
+  if (depth_ && depth_->Wants(map_.keyframe_end())) {
+    completed = depth_->camera();
     cv::resize(image_, color, {completed->width(), completed->height()}, 0, 0, cv::INTER_AREA);
   }
   // The map moves into the job and comes back with its result; finished maps stay as they are while
@@ -418,9 +417,10 @@ void System::AdoptMapping() {
   job_.reset();
   map_ = std::move(result.map);
   loops_ = std::move(result.loops);
-  if (completion_ && !job.color.empty()) AdoptCompletion();
   if (!job.color.empty()) {
-    StartCompletion(job.frame, result.reference, job.color, std::move(result.sparse));
+    if (depth_->is_pending()) AdoptCompletion();
+    depth_->Start(map_.keyframe(result.reference), job.color, std::move(result.sparse),
+                  num_processed_);
   }
   if (result.joined_map) AdoptJoinedMap(result);
   CountMap();
@@ -435,33 +435,18 @@ void System::AdoptMapping() {
   if (result.closed) FollowCorrection(result);
 }
 
-void System::StartCompletion(const TrackedFrame& frame, KeyframeId id, const cv::Mat& color,
-                             std::vector<SparsePoint> points) {
-  if (static_cast<int>(points.size()) < options_.depth.min_points) return;
-  depth_scales_[frame.index] = 1;
-  auto complete = [this, index = frame.index, features = frame.features,
-                   landmarks = map_.keyframe(id).landmarks, color, points = std::move(points)] {
-    DenseDepth depth = completer_->Complete(color, RenderSparseDepth(points, completer_->camera()));
-    std::vector<RangePrior> priors = SampleRangePriors(depth, *features, landmarks);
-    depth_sink_(index, std::move(depth));
-    return priors;
-  };
-  completion_ = CompletionJob{std::async(std::launch::async, std::move(complete)), frame.index,
-                              num_processed_ + options_.depth.adoption_frames};
-}
-
 void System::AdoptCompletion() {
-  CompletionJob job = std::move(*completion_);
-  completion_.reset();
-  std::vector<RangePrior> priors = job.priors.get();  // throws what the sink has thrown
-  const int frame_index = job.frame_index;
+  KeyframeDepth::Completed completed = depth_->Take();
   // It may have been removed, or be in another map by now.
   for (KeyframeId id = map_.keyframe_end() - 1; id >= 0; --id) {
-    if (!map_.HasKeyframe(id) || map_.keyframe(id).frame_index != frame_index) continue;
-    const auto scale = static_cast<float>(depth_scales_.at(frame_index));
-    for (RangePrior& prior : priors) prior.range *= scale;
-    map_.keyframe(id).range_priors = std::move(priors);
-    if (id == local_.reference) local_.provisional = MakeProvisionalPoints(map_.keyframe(id));
+    if (!map_.HasKeyframe(id) || map_.keyframe(id).frame_index != completed.frame_index) continue;
+    Keyframe& keyframe = map_.keyframe(id);
+    keyframe.range_priors = std::move(completed.priors);
+    if (id == local_.reference) local_.provisional = MakeProvisionalPoints(keyframe);
+    if (!ground_ && completed.ground) {
+      completed.ground->up = keyframe.world_from_camera.rotation * completed.ground->up;
+      dense_grounds_.push_back(*completed.ground);
+    }
     return;
   }
 }
@@ -469,6 +454,19 @@ void System::AdoptCompletion() {
 void System::FollowGround(const KnownGround& ground) {
   if (!ground_) Rescale(options_.scale.height() / ground.camera_height);
   ground_ = {ground.up, options_.scale.height()};
+}
+
+// Where too few landmarks lie on the ground (a smooth floor, a hand before it), what dense depth
+// shows of it is better than no metres at all.
+void System::LookForDenseGround() {
+  constexpr size_t kEnough = 10;      // keyframes
+  constexpr double kMaxSigma = 0.05;  // of the logarithm of the height
+  if (ground_ || !options_.scale.from_ground || dense_grounds_.size() < kEnough) return;
+  const DenseGround fused = FuseGrounds(dense_grounds_).value();
+  if (fused.sigma > kMaxSigma) return;
+  FollowGround({fused.up, std::exp(fused.log_height)});
+  local_ =
+      MakeLocalMap(map_, map_.LivingKeyframe(local_.reference), options_.keyframe.local_keyframes);
 }
 
 // A change of gauge of the present map and of all that is relative to it; the place where the map
@@ -489,8 +487,7 @@ void System::Rescale(double factor) {
 
 void System::ScalePlacement(int frame_index, double factor, Placement* placement) {
   placement->reference_from_camera.translation *= factor;
-  const auto depth = depth_scales_.find(frame_index);
-  if (depth != depth_scales_.end()) depth->second *= factor;
+  if (depth_) depth_->Rescale(frame_index, factor);
 }
 
 void System::FinishMap() {
@@ -498,6 +495,7 @@ void System::FinishMap() {
   grounds_.push_back(ground_);
   map_ = Map();
   ground_.reset();
+  dense_grounds_.clear();
 }
 
 void System::CountMap() {
@@ -529,7 +527,7 @@ void System::UpdateLocalMap() {
 
 Reconstruction System::Finish() {
   if (job_) AdoptMapping();
-  if (completion_) AdoptCompletion();
+  if (depth_ && depth_->is_pending()) AdoptCompletion();
   if (bundle_) AdoptBundle();
   if (closed_loops_.size() + joints_.size() > 0) {
     StartBundle();  // what came after the last loop takes part as well
@@ -544,7 +542,7 @@ Reconstruction System::Finish() {
   // Better the ground of another place than none.
   if (!result.up && !grounds_.empty() && grounds_.front()) result.up = grounds_.front()->up;
   result.initialized_at = initialized_at_;
-  result.depth_scales = depth_scales_;
+  if (depth_) result.depth_scales = depth_->scales();
   result.lost = num_lost_;
   result.relocalized = num_relocalized_;
   result.loops = closed_loops_;

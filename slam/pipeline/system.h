@@ -1,7 +1,6 @@
 #pragma once
 
 #include <deque>
-#include <functional>
 #include <future>
 #include <map>
 #include <memory>
@@ -11,10 +10,10 @@
 
 #include <opencv2/core.hpp>
 
-#include "slam/depth/depth_completer.h"
 #include "slam/features/orb_extractor.h"
 #include "slam/io/frame_source.h"
 #include "slam/map/map.h"
+#include "slam/pipeline/keyframe_depth.h"
 #include "slam/pipeline/local_map.h"
 #include "slam/pipeline/loop_detector.h"
 #include "slam/pipeline/options.h"
@@ -58,10 +57,8 @@ class System {
   /// type than 8-bit BGR.
   FrameReport Process(const Frame& frame);
 
-  /// Has keyframes completed, from now on, beside tracking. `sink` gets each one's frame index and
-  /// depth, in the order of the keyframes, one at a time, on other threads; `completer` must
-  /// outlive the system.
-  using DepthSink = std::function<void(int frame_index, DenseDepth depth)>;
+  /// Has keyframes completed, from now on, beside tracking. `sink` gets their depth in the order of
+  /// the keyframes, one at a time, on other threads; `completer` must outlive the system.
   void CompleteKeyframes(DepthCompleter* completer, DepthSink sink);
 
   /// Waits for mapping and returns everything computed. The system takes no further frames.
@@ -99,12 +96,6 @@ class System {
     cv::Mat color;       // its picture, where it is to be completed
     int adopt_at;        // value of num_processed_ at which it is due
   };
-  /// The completion of a keyframe's depth: what it says of its features.
-  struct CompletionJob {
-    std::future<std::vector<RangePrior>> priors;
-    int frame_index;
-    int adopt_at;
-  };
   /// Bundle adjustment of a copy of the map.
   struct BundleJob {
     std::future<Map> adjusted;
@@ -125,10 +116,9 @@ class System {
   void StartMapping();
   bool MustAdopt() const;
   void AdoptMapping();
-  void StartCompletion(const TrackedFrame& frame, KeyframeId id, const cv::Mat& color,
-                       std::vector<SparsePoint> points);
   void AdoptCompletion();
   void FollowGround(const KnownGround& ground);
+  void LookForDenseGround();
   void Rescale(double factor);
   void FinishMap();
   void StartLoopCorrection();
@@ -162,11 +152,10 @@ class System {
   int lost_since_ = 0;
   std::optional<int> initialized_at_;  // frame index
 
-  DepthCompleter* completer_ = nullptr;  // null: no dense depth
-  DepthSink depth_sink_;
-  std::optional<CompletionJob> completion_;
-  std::map<int, double> depth_scales_;  // see Reconstruction
-  cv::Mat image_;                       // of the frame in Process
+  std::optional<KeyframeDepth> depth_;
+  /// What dense depth shows of the ground under the present map, as long as that is not known.
+  std::vector<DenseGround> dense_grounds_;
+  cv::Mat image_;  // of the frame in Process
 
   std::vector<Map> finished_maps_;     // before the jobs, which look at it until they end
   Map map_;                            // empty while a job has it

@@ -93,6 +93,7 @@ void System::AdoptJoinedMap(const MappingResult& result) {
 void System::FollowCorrection(const MappingResult& result) {
   (result.joined_map ? joints_ : closed_loops_).push_back(*result.closed);
   if (ground_) ground_->up = result.correction.rotation * ground_->up;
+  dense_grounds_.clear();  // their unit may have been another
   StartBundle();
 }
 
@@ -101,6 +102,7 @@ void System::SwitchToMap(int finished) {
   CountSightings(&map_);
   std::swap(map_, finished_maps_[finished]);
   std::swap(ground_, grounds_[finished]);
+  dense_grounds_.clear();
   const int present = static_cast<int>(finished_maps_.size());
   std::vector<int> number_of(present + 1);
   std::iota(number_of.begin(), number_of.end(), 0);

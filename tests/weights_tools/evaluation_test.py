@@ -17,10 +17,8 @@ from weights_tools import network_file, networks
 from weights_tools.evaluation import evaluate_depth, pictures
 from weights_tools.evaluation.classical import interpolate
 from weights_tools.evaluation.depth_errors import DepthErrors
-from weights_tools.evaluation.ground_plane import distance_of_ground
 from weights_tools.export import export, untrained
 from weights_tools.network import Network
-from weights_tools.training.sphere import bearings
 from weights_tools.training.train import Settings
 
 
@@ -96,26 +94,6 @@ class ClassicalTest(unittest.TestCase):
             self.assertTrue((estimate == 1).all())
 
 
-class GroundPlaneTest(unittest.TestCase):
-    def test_finds_a_tilted_plane_among_outliers(self) -> None:
-        height, width, distance = 128, 256, 1.7
-        normal = np.array([0.08, -0.05, 1.0])
-        normal /= np.linalg.norm(normal)
-        u, v = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
-        down = -bearings(u, v, height, width) @ normal
-        random = np.random.RandomState(0)
-        depth = distance / np.maximum(down, 0.03) * np.exp(0.05 * random.standard_normal(u.shape))
-        wrong = random.uniform(size=u.shape) < 0.2
-        depth[wrong] *= random.uniform(0.3, 0.8, wrong.sum())  # things on the road
-        found = distance_of_ground(depth, np.full(u.shape, 0.9), (down > 0.05).astype(float))
-        self.assertIsNotNone(found)
-        self.assertAlmostEqual(found / distance, 1, delta=0.01)
-
-    def test_hardly_any_ground_gives_none(self) -> None:
-        ones = np.ones((64, 128))
-        self.assertIsNone(distance_of_ground(ones, ones, 0 * ones))
-
-
 class EvaluationTest(unittest.TestCase):
     def setUp(self) -> None:
         folder = tempfile.TemporaryDirectory()
@@ -129,7 +107,6 @@ class EvaluationTest(unittest.TestCase):
         cv2.imwrite(str(self.folder / "street.png"), np.where(street == 0, 30000, street))
         sure = np.where(drives.street() > 0, 60000, 20000).astype(np.uint16)
         cv2.imwrite(str(self.folder / "sure.png"), sure)
-        cv2.imwrite(str(self.folder / "ground.png"), drives.road().astype(np.uint16) * 65535)
         path = self.folder / "orb360"
         path.write_text(
             f"""#!/usr/bin/python3
@@ -139,7 +116,7 @@ assert sys.argv[1] == "complete" and sys.argv[-1] == "--json"
 assert pathlib.Path(options["--weights"]).exists()
 here = {str(self.folder)!r}
 print(json.dumps([dict(sparse=str(f), depth=here + "/street.png", confidence=here + "/sure.png",
-    ground=here + "/ground.png", camera_heights_per_unit={1.1 / drives.CAMERA_HEIGHT})
+    camera_height={drives.CAMERA_HEIGHT / 1.2}, camera_height_guess={drives.CAMERA_HEIGHT / 1.1})
     for f in sorted(pathlib.Path(options["--sparse"]).glob("*.h5"))]))
 """
         )

@@ -28,7 +28,6 @@ from weights_tools import network_file
 from weights_tools.evaluation import pictures
 from weights_tools.evaluation.classical import interpolate
 from weights_tools.evaluation.depth_errors import LATITUDE_BANDS, RANGE_ENDS, DepthErrors
-from weights_tools.evaluation.ground_plane import distance_of_ground
 from weights_tools.training import shards
 from weights_tools.training.make_dataset import DriveSpec, Programs, circuit_spec, render
 from weights_tools.training.shards import Frame
@@ -279,10 +278,8 @@ class Evaluation:
 
 def _add_scale(scale: Scale, entry: dict[str, Any], frame: Frame) -> None:
     """The input is in metres: the true scale is 1."""
-    planes = (read_share(entry[name]) for name in ("confidence", "ground"))
-    distance = distance_of_ground(read_depth(entry["depth"]), *planes)
-    scale.plane.append(np.log(frame.camera_height / distance) if distance else np.nan)
-    scale.guard.append(np.log(frame.camera_height * entry["camera_heights_per_unit"]))
+    for estimates, name in ((scale.plane, "camera_height"), (scale.guard, "camera_height_guess")):
+        estimates.append(np.log(frame.camera_height / entry.get(name, np.nan)))
 
 
 def calibration_table(result: Result) -> np.ndarray:

@@ -116,7 +116,7 @@ TEST_F(CompleteTest, CompletesAFolderAndTellsWhatItWrote) {
     const cv::Mat ground = cv::imread(told[i]["ground"].get<std::string>(), cv::IMREAD_UNCHANGED);
     EXPECT_EQ(cv::countNonZero(ground != 65535 / 5), 0);
     // The median of the points is a height of the camera.
-    EXPECT_NEAR(told[i]["camera_heights_per_unit"].get<double>(), 1 / expected[i], 1e-6);
+    EXPECT_NEAR(told[i]["camera_height_guess"].get<double>(), expected[i], 1e-6);
   }
   EXPECT_TRUE(std::filesystem::exists(Path("dense/a_confidence.png")));
   EXPECT_TRUE(std::filesystem::exists(Path("dense/b.png")));

@@ -11,8 +11,9 @@
 
 namespace orb360 {
 
-Program::Program(const std::vector<std::string>& arguments, size_t most_file_bytes) {
-  std::string path = std::string(ORB360_BINARY_DIR) + "/orb360";
+Program::Program(const std::vector<std::string>& arguments, size_t most_file_bytes,
+                 const std::string& name) {
+  std::string path = std::string(ORB360_BINARY_DIR) + "/" + name;
   std::vector<std::string> words = arguments;
   std::vector<char*> argv = {path.data()};
   for (std::string& word : words) argv.push_back(word.data());

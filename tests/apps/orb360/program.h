@@ -16,12 +16,13 @@ struct ProgramResult {
   std::string err;
 };
 
-/// The orb360 that was built, running with the given arguments.
+/// A program that was built, running with the given arguments.
 class Program {
  public:
   /// `most_file_bytes`: no file may grow beyond, which looks to the program like a full disk; 0:
   /// no limit.
-  explicit Program(const std::vector<std::string>& arguments, size_t most_file_bytes = 0);
+  explicit Program(const std::vector<std::string>& arguments, size_t most_file_bytes = 0,
+                   const std::string& name = "orb360");
   /// Kills it if it still runs.
   ~Program();
   Program(const Program&) = delete;
@@ -43,6 +44,9 @@ class Program {
 
 inline ProgramResult RunOrb360(const std::vector<std::string>& arguments) {
   return Program(arguments).Wait();
+}
+inline ProgramResult RunTown(const std::vector<std::string>& arguments) {
+  return Program(arguments, 0, "town").Wait();
 }
 
 }  // namespace orb360

@@ -168,7 +168,7 @@ struct Completed {
 
 Completed TrackAndComplete(const BoxRoom& room, const std::vector<double>& frames) {
   const TempFolder folder;
-  DepthCompleter completer(WritePropagation(folder), {.width = 256});
+  DepthCompleter completer(WritePropagation(folder), {.size = {256, 128}});
   System system(kCamera, SmallOptions(), {});
   Completed completed;
   system.CompleteKeyframes(&completer, [&](int frame_index, DenseDepth depth) {

@@ -1,0 +1,69 @@
+// The whole job on a rendered drive, with the network that comes with the program.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "slam/io/atomic_file.h"
+#include "tests/apps/orb360/program.h"
+
+namespace orb360 {
+namespace {
+
+class TownDriveSlow : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TempFolder;
+    ASSERT_EQ(RunTown({"render", "--town", "Loop", "--width", "640", "--frames", "100",
+                       "--depth-every", "10", "--out", Drive()})
+                  .status,
+              0);
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+  static std::string Drive() { return *folder_ / "drive"; }
+
+  /// What `evaluate --json` tells of a run with these options.
+  static nlohmann::json Track(const std::vector<std::string>& options) {
+    const std::string out = *folder_ / "out";
+    std::vector<std::string> arguments = {"run", Drive(), "--quiet", "--out", out};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProgramResult run = RunOrb360(arguments);
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(nlohmann::json::parse(ReadText(out + "/summary.json"))["scale"]["source"],
+              "camera height");
+    return nlohmann::json::parse(RunOrb360({"evaluate", Drive(), out, "--json"}).out);
+  }
+
+  static TempFolder* folder_;
+};
+
+TempFolder* TownDriveSlow::folder_ = nullptr;
+
+TEST_F(TownDriveSlow, IsTrackedInMetresAndItsCloudLiesOnTheStreet) {
+  const nlohmann::json errors = Track({"--mask", "none"});
+  EXPECT_EQ(errors["tracked_share"], 1);
+  EXPECT_NEAR(errors["scale_factor"].get<double>(), 1, 0.02);
+  EXPECT_LT(errors["ate_rmse_sim3"], 0.1);
+  EXPECT_GT(errors["cloud"]["accuracy_25cm"], 0.5);
+  EXPECT_GT(errors["cloud"]["completeness_25cm"], 0.5);
+}
+
+TEST_F(TownDriveSlow, IsInMetresByDenseDepthWhereNoLandmarkLiesOnTheGround) {
+  cv::Mat mask(320, 640, CV_8U, cv::Scalar(255));
+  mask.rowRange(172, 320) = 0;
+  const std::string path = *folder_ / "mask.png";
+  cv::imwrite(path, mask);
+  const nlohmann::json errors = Track({"--mask", path});
+  EXPECT_EQ(errors["tracked_share"], 1);
+  EXPECT_NEAR(errors["scale_factor"].get<double>(), 1, 0.05);
+}
+
+}  // namespace
+}  // namespace orb360
