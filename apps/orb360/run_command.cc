@@ -10,7 +10,6 @@
 
 #include <omp.h>
 #include <opencv2/core/utility.hpp>
-#include <sys/resource.h>
 
 #include "apps/orb360/commands.h"
 #include "apps/orb360/input.h"
@@ -18,8 +17,8 @@
 #include "apps/orb360/mask.h"
 #include "apps/orb360/progress.h"
 #include "apps/orb360/run_output.h"
+#include "apps/orb360/run_summary.h"
 #include "apps/orb360/sparse_output.h"
-#include "apps/orb360/stage_times.h"
 #include "nn/base/check.h"
 #include "nn/models/default_weights.h"
 #include "slam/depth/depth_completer.h"
@@ -31,7 +30,6 @@
 #include "slam/io/sequence.h"
 #include "slam/pipeline/options.h"
 #include "slam/pipeline/system.h"
-#include "slam/version.h"
 
 namespace orb360 {
 namespace {
@@ -55,16 +53,6 @@ struct RunOptions {
   bool is_quiet = false;
 };
 
-/// What the loop over the frames leaves behind.
-struct RunRecord {
-  int frames = 0;
-  double seconds = 0.0;
-  double fusion_seconds = 0.0;  // of the dense cloud
-  StageTimes times;
-  std::vector<std::string> warnings;
-  std::exception_ptr failure;  // of the input or the disk, in the middle
-};
-
 /// The size that --resize asks for; empty for "".
 cv::Size ParseSize(const std::string& text) {
   if (text.empty()) return {};
@@ -83,12 +71,6 @@ int SetThreads(int wanted) {
   omp_set_num_threads(threads);
   cv::setNumThreads(threads);
   return threads;
-}
-
-double PeakMemoryMb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // KiB on Linux
 }
 
 /// Tracks frame by frame to the end, an interrupt, or a failure of input or disk.
@@ -136,74 +118,6 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction, const
   record->fusion_seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return dense;
-}
-
-/// Where metres come from. Of several maps the first counts: the others continue it.
-nlohmann::json DescribeScale(const Reconstruction& reconstruction, const ScaleOptions& options) {
-  const bool is_metric = !reconstruction.maps.empty() && reconstruction.maps.front().is_metric;
-  if (!is_metric) return {{"source", "none"}, {"value", nullptr}};
-  return {{"source", options.camera_height > 0 ? "camera height" : "assumed camera height"},
-          {"value", options.height()}};
-}
-
-/// Pairs of the frame that came back and the frame of the place.
-nlohmann::json FramesOf(const std::vector<ClosedLoop>& loops) {
-  nlohmann::json pairs = nlohmann::json::array();
-  for (const ClosedLoop& loop : loops) pairs.push_back({loop.frame, loop.place});
-  return pairs;
-}
-
-nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& record,
-                         const std::optional<DenseOutput>& dense, const RunOptions& options,
-                         const ScaleOptions& scale, double masked_share, int threads) {
-  nlohmann::json summary = {
-      {"version", Version()},
-      {"input", options.input},
-      {"frames", record.frames},
-      {"tracked", reconstruction.frames.size()},
-      {"lost", reconstruction.lost},
-      {"maps", reconstruction.maps.size()},
-      {"loops", reconstruction.loops.size()},
-      {"loop_frames", FramesOf(reconstruction.loops)},
-      {"relocalizations", reconstruction.relocalized},
-      {"merges", reconstruction.joints.size()},
-      {"merge_frames", FramesOf(reconstruction.joints)},
-      {"initialized_at", nullptr},
-      {"keyframes", reconstruction.keyframes.size()},
-      {"landmarks", reconstruction.landmarks.size()},
-      {"features_per_keyframe", reconstruction.features_per_keyframe},
-      {"scale", DescribeScale(reconstruction, scale)},
-      {"timing_ms", record.times.Summary()},
-      {"seconds", record.seconds},
-      {"frames_per_second", record.frames / std::max(record.seconds, 1e-9)},
-      {"peak_memory_mb", PeakMemoryMb()},
-      {"mask", options.mask},
-      {"masked_share", masked_share},
-      {"levelled", reconstruction.up.has_value()},
-      {"threads", threads},
-      {"weights", options.weights},
-      {"interrupted", CaughtInterrupt() != 0 || record.failure != nullptr},
-      {"warnings", record.warnings},
-  };
-  if (reconstruction.initialized_at) summary["initialized_at"] = *reconstruction.initialized_at;
-  if (dense) {
-    summary["cloud"] = {{"points", dense->cloud.points},
-                        {"keyframes", dense->cloud.fusion.views},
-                        {"voxel_size", dense->cloud.fusion.voxel_size},
-                        {"seconds", record.fusion_seconds}};
-  }
-  return summary;
-}
-
-void PrintResult(const nlohmann::json& summary, const std::filesystem::path& folder) {
-  std::cout
-      << summary["tracked"] << " of " << summary["frames"] << " frames tracked in "
-      << summary["maps"] << (summary["maps"] == 1 ? " map, " : " maps, ") << summary["keyframes"]
-      << " keyframes, " << summary["landmarks"] << " landmarks, "
-      << std::lround(summary["frames_per_second"].get<double>())
-      << " frames a second\nwrote trajectory.txt, keyframes.txt, cloud.ply, map.svg, summary.json "
-         "and report/report.html to "
-      << folder.string() << std::endl;
 }
 
 /// The map that a run is to begin in, for pictures of this width; none for "".
@@ -284,8 +198,9 @@ int Run(const RunOptions& options) {
   const bool is_complete = depth && !depth_failure;
   const std::optional<DenseOutput> dense =
       is_complete ? FuseDepth(reconstruction, *depth, options, output, &record) : std::nullopt;
-  const nlohmann::json summary = Summarize(reconstruction, record, dense, options,
-                                           system_options.scale, masked_share, threads);
+  const nlohmann::json summary = Summarize(
+      reconstruction, record, dense,
+      {options.input, options.mask, masked_share, options.weights, system_options.scale, threads});
   const Rigid3 file_world_from_map = output.Finish(reconstruction, summary, dense);
   if (!options.map_out.empty()) {
     WriteLargestMap(options.map_out, size.width, file_world_from_map, system);

@@ -1,0 +1,91 @@
+#include "apps/orb360/run_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include <sys/resource.h>
+
+#include "apps/orb360/interrupt.h"
+#include "slam/version.h"
+
+namespace orb360 {
+namespace {
+
+double PeakMemoryMb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // KiB on Linux
+}
+
+/// Where metres come from. Of several maps the first counts: the others continue it.
+nlohmann::json DescribeScale(const Reconstruction& reconstruction, const ScaleOptions& options) {
+  const bool is_metric = !reconstruction.maps.empty() && reconstruction.maps.front().is_metric;
+  if (!is_metric) return {{"source", "none"}, {"value", nullptr}};
+  return {{"source", options.camera_height > 0 ? "camera height" : "assumed camera height"},
+          {"value", options.height()}};
+}
+
+/// Pairs of the frame that came back and the frame of the place.
+nlohmann::json FramesOf(const std::vector<ClosedLoop>& loops) {
+  nlohmann::json pairs = nlohmann::json::array();
+  for (const ClosedLoop& loop : loops) pairs.push_back({loop.frame, loop.place});
+  return pairs;
+}
+
+}  // namespace
+
+nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& record,
+                         const std::optional<DenseOutput>& dense,
+                         const RunDescription& description) {
+  nlohmann::json summary = {
+      {"version", Version()},
+      {"input", description.input},
+      {"frames", record.frames},
+      {"tracked", reconstruction.frames.size()},
+      {"lost", reconstruction.lost},
+      {"maps", reconstruction.maps.size()},
+      {"loops", reconstruction.loops.size()},
+      {"loop_frames", FramesOf(reconstruction.loops)},
+      {"relocalizations", reconstruction.relocalized},
+      {"merges", reconstruction.joints.size()},
+      {"merge_frames", FramesOf(reconstruction.joints)},
+      {"initialized_at", nullptr},
+      {"keyframes", reconstruction.keyframes.size()},
+      {"landmarks", reconstruction.landmarks.size()},
+      {"features_per_keyframe", reconstruction.features_per_keyframe},
+      {"scale", DescribeScale(reconstruction, description.scale)},
+      {"timing_ms", record.times.Summary()},
+      {"seconds", record.seconds},
+      {"frames_per_second", record.frames / std::max(record.seconds, 1e-9)},
+      {"peak_memory_mb", PeakMemoryMb()},
+      {"mask", description.mask},
+      {"masked_share", description.masked_share},
+      {"levelled", reconstruction.up.has_value()},
+      {"threads", description.threads},
+      {"weights", description.weights},
+      {"interrupted", CaughtInterrupt() != 0 || record.failure != nullptr},
+      {"warnings", record.warnings},
+  };
+  if (reconstruction.initialized_at) summary["initialized_at"] = *reconstruction.initialized_at;
+  if (dense) {
+    summary["cloud"] = {{"points", dense->cloud.points},
+                        {"keyframes", dense->cloud.fusion.views},
+                        {"voxel_size", dense->cloud.fusion.voxel_size},
+                        {"seconds", record.fusion_seconds}};
+  }
+  return summary;
+}
+
+void PrintResult(const nlohmann::json& summary, const std::filesystem::path& folder) {
+  std::cout
+      << summary["tracked"] << " of " << summary["frames"] << " frames tracked in "
+      << summary["maps"] << (summary["maps"] == 1 ? " map, " : " maps, ") << summary["keyframes"]
+      << " keyframes, " << summary["landmarks"] << " landmarks, "
+      << std::lround(summary["frames_per_second"].get<double>())
+      << " frames a second\nwrote trajectory.txt, keyframes.txt, cloud.ply, map.svg, summary.json "
+         "and report/report.html to "
+      << folder.string() << std::endl;
+}
+
+}  // namespace orb360
