@@ -12,9 +12,9 @@
 
 #include "nn/base/check.h"
 #include "slam/geometry/alignment.h"
-#include "tests/nn/graph/network_builder.h"
 #include "tests/slam/io/temp_folder.h"
 #include "tests/slam/pipeline/box_room.h"
+#include "tests/slam/pipeline/propagation_network.h"
 
 namespace orb360 {
 namespace {
@@ -139,25 +139,6 @@ TEST(SystemSlow, GivesTheSameBytesForAnyNumberOfThreadsAndEveryTime) {
   ExpectSame(two, one);
   ExpectSame(two, three);
   ExpectSame(two, Track(room, frames));
-}
-
-// Spreads depth to the pixels around each point, and the median everywhere else.
-std::filesystem::path WritePropagation(const TempFolder& folder) {
-  nn::NetworkBuilder net(8);
-  net.Input("depth", 1);
-  net.Input("confidence", 1);
-  net.Node("points", "median_log", {"depth", "confidence"}, nlohmann::json::object(), 3);
-  net.NormalizedConvolution("mean", "points", "points.1", 1, 1, 3);
-  net.weights[1].values = {0};
-  net.Output("log_depth", "mean");
-  // Sure of what has a point near.
-  net.Node("near", "affine", {"mean.1"}, {{"scale", 1e6}, {"offset", 0.0}});
-  net.Node("sure", "clamp", {"near"}, {{"minimum", 0.0}, {"maximum", 0.9}});
-  net.Output("confidence", "sure");
-  net.Output("scale", "points.2");
-  const std::filesystem::path path = folder / "propagation.h5";
-  net.Write(path);
-  return path;
 }
 
 struct Completed {

@@ -1,0 +1,113 @@
+#include "slam/pipeline/keyframe_depth.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "nn/base/check.h"
+#include "tests/slam/pipeline/propagation_network.h"
+
+namespace orb360 {
+namespace {
+
+constexpr double kHeight = 4;  // of the camera over a level ground
+constexpr int kFrame = 30;
+
+class KeyframeDepthTest : public testing::Test {
+ protected:
+  KeyframeDepthTest() {
+    options_.depth.every_keyframes = 2;
+    options_.depth.adoption_frames = 5;
+    // One feature without a landmark, looking down and ahead.
+    auto features = std::make_shared<Features>();
+    features->bearings.push_back(Eigen::Vector3d(-1, 0, -1).normalized());
+    features->keypoints.push_back(
+        {completer_.camera().Project(features->bearings[0]).cast<float>(), 0, 0.001F, 0, 50});
+    keyframe_.frame_index = kFrame;
+    keyframe_.features = features;
+    keyframe_.landmarks = {kNoId};
+  }
+
+  /// The ground at every pixel below the horizon, and a wall around at ten heights.
+  std::vector<SparsePoint> Points() const {
+    const EquirectangularCamera& camera = completer_.camera();
+    std::vector<SparsePoint> points;
+    for (int y = 0; y < camera.height(); ++y) {
+      for (int x = 0; x < camera.width(); ++x) {
+        const Eigen::Vector2d pixel(x + 0.5, y + 0.5);
+        const double down = -camera.Bearing(pixel).z();
+        const double range = std::min(10 * kHeight, kHeight / std::max(down, 1e-3));
+        points.push_back({static_cast<LandmarkId>(points.size()), pixel, range, 1.0});
+      }
+    }
+    return points;
+  }
+  cv::Mat Picture() const { return {64, 128, CV_8UC3, cv::Scalar::all(90)}; }
+  KeyframeDepth Make() {
+    return {&completer_, [this](int frame, DenseDepth depth) { sunk_.emplace_back(frame, depth); },
+            options_};
+  }
+
+  TempFolder folder_;
+  DepthCompleter completer_{WritePropagation(folder_), {.size = {128, 64}}};
+  Options options_;
+  Keyframe keyframe_;
+  std::vector<std::pair<int, DenseDepth>> sunk_;
+};
+
+TEST_F(KeyframeDepthTest, TellsTheRangesOfFeaturesAndTheGroundWhenDue) {
+  KeyframeDepth depth = Make();
+  EXPECT_TRUE(depth.Wants(0));
+  EXPECT_FALSE(depth.Wants(1));
+  EXPECT_FALSE(depth.is_pending());
+  depth.Start(keyframe_, Picture(), Points(), 100);
+  EXPECT_TRUE(depth.is_pending());
+  EXPECT_FALSE(depth.IsDue(104));
+  EXPECT_TRUE(depth.IsDue(105));
+  const KeyframeDepth::Completed completed = depth.Take();
+  EXPECT_FALSE(depth.is_pending());
+  EXPECT_FALSE(depth.IsRunning());
+  EXPECT_EQ(completed.frame_index, kFrame);
+  ASSERT_EQ(completed.priors.size(), 1u);
+  EXPECT_NEAR(completed.priors[0].range, kHeight * std::sqrt(2.0), 0.1);
+  EXPECT_GT(completed.priors[0].sigma, 0);
+  ASSERT_TRUE(completed.ground.has_value());
+  EXPECT_NEAR(completed.ground->log_height, std::log(kHeight), 0.02);
+  EXPECT_GT(completed.ground->up.z(), 0.999);
+  ASSERT_EQ(sunk_.size(), 1u);
+  EXPECT_EQ(sunk_[0].first, kFrame);
+}
+
+TEST_F(KeyframeDepthTest, FollowsChangesOfTheUnit) {
+  KeyframeDepth depth = Make();
+  depth.Start(keyframe_, Picture(), Points(), 0);
+  depth.Rescale(kFrame, 0.5);
+  depth.Rescale(kFrame + 1, 7);  // has no depth
+  const KeyframeDepth::Completed completed = depth.Take();
+  EXPECT_NEAR(completed.priors[0].range, 0.5 * kHeight * std::sqrt(2.0), 0.05);
+  EXPECT_NEAR(completed.ground->log_height, std::log(0.5 * kHeight), 0.02);
+  depth.Rescale(kFrame, 3);
+  EXPECT_EQ(depth.scales(), (std::map<int, double>{{kFrame, 1.5}}));
+}
+
+TEST_F(KeyframeDepthTest, LeavesOutAKeyframeWithTooFewPoints) {
+  KeyframeDepth depth = Make();
+  std::vector<SparsePoint> points = Points();
+  points.resize(static_cast<size_t>(options_.depth.min_points) - 1);
+  depth.Start(keyframe_, Picture(), points, 0);
+  EXPECT_FALSE(depth.is_pending());
+  EXPECT_TRUE(depth.scales().empty());
+}
+
+TEST_F(KeyframeDepthTest, PassesOnWhatTheSinkThrows) {
+  KeyframeDepth depth(
+      &completer_, [](int, const DenseDepth&) { throw UserError("the disk is full"); }, options_);
+  depth.Start(keyframe_, Picture(), Points(), 0);
+  EXPECT_THROW(depth.Take(), UserError);
+  EXPECT_FALSE(depth.is_pending());
+}
+
+}  // namespace
+}  // namespace orb360
