@@ -29,8 +29,9 @@ struct Options {
   std::string onnxruntime;
   int threads = 2;
   int runs = 20;
-  double seconds = 0.5;  // for a layer, if more than `runs` fit
-  bool best = false;     // minima instead of medians
+  double seconds = 0.5;  // for a layer and round, if more than `runs` fit
+  int rounds = 2;
+  bool best = false;  // minima instead of medians
   bool avx2 = false;
   bool json = false;
 };
@@ -129,6 +130,13 @@ Result Measure(const std::string& network, const Layer& layer, int panorama_heig
   return result;
 }
 
+/// Over all libraries: what else the machine does makes it larger.
+double TotalMilliseconds(const Result& result) {
+  double sum = 0;
+  for (const auto& [name, time] : result.milliseconds) sum += time;
+  return sum;
+}
+
 void PrintTable(const std::vector<Result>& results) {
   std::printf("%-16s %-18s %5s %9s %8s %8s %8s %9s %6s %8s %8s\n", "network", "layer", "rows",
               "MMAC", "orb360", "oneDNN", "ORT", "GFLOP/s", "peak", "/oneDNN", "/ORT");
@@ -186,7 +194,10 @@ int Main(int argc, char** argv) {
   app.add_option("--onnxruntime", options.onnxruntime, "path of libonnxruntime.so");
   app.add_option("--threads", options.threads)->check(CLI::PositiveNumber);
   app.add_option("--runs", options.runs, "at least")->check(CLI::PositiveNumber);
-  app.add_option("--seconds", options.seconds, "for a layer, at least");
+  app.add_option("--seconds", options.seconds, "for a layer and round, at least");
+  app.add_option("--rounds", options.rounds,
+                 "over all layers; of each layer the one that was quieter for all libraries counts")
+      ->check(CLI::PositiveNumber);
   app.add_flag("--best", options.best, "minima instead of medians, for a busy machine");
   app.add_flag("--avx2", options.avx2, "without AVX-512; oneDNN too, but not ONNX Runtime");
   app.add_flag("--json", options.json, "print only the summary, as JSON");
@@ -196,13 +207,23 @@ int Main(int argc, char** argv) {
     dnnl::set_max_cpu_isa(dnnl::cpu_isa::avx2);
   }
   std::vector<Result> results;
-  for (const LayerList& list : {kCompletionLayers, kEncoderDecoderLayers, kMultiStreamLayers}) {
-    if (std::count(options.networks.begin(), options.networks.end(), list.network) == 0) continue;
-    for (const int height : options.heights) {
-      for (const Layer& layer : list.layers) {
-        if (layer.name.find(options.layer) == std::string::npos) continue;
-        results.push_back(Measure(list.network, layer, height, options));
-        if (!options.json) std::cerr << '.' << std::flush;
+  for (int round = 0; round < options.rounds; ++round) {
+    std::size_t next = 0;
+    const auto measure = [&](const LayerList& list, const Layer& layer, int height) {
+      if (layer.name.find(options.layer) == std::string::npos) return;
+      Result result = Measure(list.network, layer, height, options);
+      if (next == results.size()) {
+        results.push_back(std::move(result));
+      } else if (TotalMilliseconds(result) < TotalMilliseconds(results[next])) {
+        results[next] = std::move(result);
+      }
+      ++next;
+      if (!options.json) std::cerr << '.' << std::flush;
+    };
+    for (const LayerList& list : {kCompletionLayers, kEncoderDecoderLayers, kMultiStreamLayers}) {
+      if (std::count(options.networks.begin(), options.networks.end(), list.network) == 0) continue;
+      for (const int height : options.heights) {
+        for (const Layer& layer : list.layers) measure(list, layer, height);
       }
     }
   }
