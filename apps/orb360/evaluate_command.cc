@@ -12,6 +12,7 @@
 #include "nn/base/check.h"
 #include "slam/evaluation/cloud_folder.h"
 #include "slam/evaluation/depth_folder.h"
+#include "slam/evaluation/revisit.h"
 #include "slam/evaluation/trajectory_error.h"
 #include "slam/evaluation/trajectory_plot.h"
 #include "slam/io/atomic_file.h"
@@ -55,6 +56,18 @@ void AddRunFigures(const std::filesystem::path& estimate, double paired_share,
   (*report)["features_per_keyframe"] = summary.value("features_per_keyframe", 0.0);
 }
 
+/// The loops that the run has closed beside those of the ground truth, by the run's own account.
+void AddLoopErrors(const EvaluateOptions& options, const std::vector<StampedPose>& truth,
+                   nlohmann::json* report) {
+  const nlohmann::json summary = RunSummary(options.estimate);
+  if (!summary.is_object() || !summary.contains("loop_times")) return;
+  std::vector<LoopTimes> loops;
+  for (const nlohmann::json& pair : summary["loop_times"]) {
+    loops.push_back({pair.at(0).get<double>(), pair.at(1).get<double>()});
+  }
+  (*report)["loops"] = ToJson(CompareLoops(truth, loops));
+}
+
 /// Depth errors, where both folders have depth images of the same frames.
 void AddDepthErrors(const std::filesystem::path& truth, const std::filesystem::path& estimate,
                     nlohmann::json* report) {
@@ -92,6 +105,7 @@ int Evaluate(const EvaluateOptions& options) {
   nlohmann::json report = ToJson(*errors);
   AddRunFigures(options.estimate,
                 static_cast<double>(pairs.size()) / static_cast<double>(truth.size()), &report);
+  AddLoopErrors(options, truth, &report);
   AddDepthErrors(options.groundtruth, options.estimate, &report);
   AddCloudErrors(options, truth, pairs, &report);
   if (!options.plot.empty()) {

@@ -37,6 +37,13 @@ constexpr Row kRows[] = {
     {"rpe_frame_rot_deg", "  rotation", "deg", 5},
 };
 
+/// Of the loops.
+constexpr Row kLoopRows[] = {
+    {"revisits", "places that the camera comes back to", "", 0},
+    {"closed", "  loops closed there", "", 0},
+    {"wrong", "  wrong loops", "", 0},
+};
+
 /// Of the cloud.
 constexpr Row kCloudRows[] = {
     {"points", "cloud, points compared", "", 0},
@@ -161,9 +168,14 @@ nlohmann::json ToJson(const CloudErrors& errors) {
           {"completeness_25cm", errors.completeness[1]}};
 }
 
+nlohmann::json ToJson(const LoopErrors& errors) {
+  return {{"revisits", errors.revisits}, {"closed", errors.closed}, {"wrong", errors.wrong}};
+}
+
 void PrintReport(const nlohmann::json& report, std::ostream& out) {
   out << std::fixed;
   PrintRows(kRows, report, out);
+  if (report.contains("loops")) PrintRows(kLoopRows, report["loops"], out);
   if (report.contains("cloud")) PrintRows(kCloudRows, report["cloud"], out);
   if (report.contains("depth")) PrintDepth(report["depth"], out);
 }

@@ -6,6 +6,7 @@
 
 #include "slam/evaluation/cloud_error.h"
 #include "slam/evaluation/depth_folder.h"
+#include "slam/evaluation/revisit.h"
 #include "slam/evaluation/trajectory_error.h"
 
 namespace orb360 {
@@ -19,6 +20,9 @@ nlohmann::json ToJson(const DepthFolderErrors& depth);
 /// The part under its key "cloud": shares of points near the surface (accuracy) and of the surface
 /// near points (completeness), at two distances.
 nlohmann::json ToJson(const CloudErrors& errors);
+
+/// The part under its key "loops".
+nlohmann::json ToJson(const LoopErrors& errors);
 
 /// A report as a table for people.
 void PrintReport(const nlohmann::json& report, std::ostream& out);

@@ -33,6 +33,20 @@ nlohmann::json FramesOf(const std::vector<ClosedLoop>& loops) {
   return pairs;
 }
 
+/// The same in seconds.
+nlohmann::json TimesOf(const std::vector<ClosedLoop>& loops, const std::vector<FramePose>& frames) {
+  const auto time_of = [&](int index) {
+    return std::ranges::lower_bound(frames, index, {}, &FramePose::index)->timestamp;
+  };
+  nlohmann::json pairs = nlohmann::json::array();
+  for (const ClosedLoop& loop : loops) {
+    // A place of a map made earlier is no frame of this run.
+    if (loop.place < frames.front().index) continue;
+    pairs.push_back({time_of(loop.frame), time_of(loop.place)});
+  }
+  return pairs;
+}
+
 }  // namespace
 
 nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& record,
@@ -47,6 +61,7 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
       {"maps", reconstruction.maps.size()},
       {"loops", reconstruction.loops.size()},
       {"loop_frames", FramesOf(reconstruction.loops)},
+      {"loop_times", TimesOf(reconstruction.loops, reconstruction.frames)},
       {"relocalizations", reconstruction.relocalized},
       {"merges", reconstruction.joints.size()},
       {"merge_frames", FramesOf(reconstruction.joints)},

@@ -71,6 +71,24 @@ TEST_F(EvaluateTest, FoldersStandForTheFilesInThem) {
   EXPECT_EQ(report["features_per_keyframe"], 321.5);
 }
 
+TEST_F(EvaluateTest, LoopsOfTheRunAreComparedWithThoseOfTheTruth) {
+  // Once round a square of 20 m and 5 m farther, a metre each second.
+  std::vector<StampedPose> poses;
+  const std::vector<Eigen::Vector3d> sides = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
+  Eigen::Vector3d position(0, 0, 0);
+  for (int i = 0; i < 85; ++i, position += sides[i / 20 % 4]) {
+    poses.push_back({static_cast<double>(i), {Eigen::Quaterniond::Identity(), position}});
+  }
+  WriteTrajectory(Truth(), poses);
+  WriteTrajectory(Estimate(), poses);
+  WriteText(folder_ / "summary.json",
+            R"({"frames": 85, "tracked": 85, "loop_times": [[82, 2], [70, 20]]})");
+  const nlohmann::json loops = Report(folder_.path(), folder_.path())["loops"];
+  EXPECT_EQ(loops, (nlohmann::json{{"revisits", 1}, {"closed", 1}, {"wrong", 1}}));
+  EXPECT_THAT(RunOrb360({"evaluate", folder_.path(), folder_.path()}).out,
+              HasSubstr("wrong loops"));
+}
+
 TEST_F(EvaluateTest, DepthIsComparedWhereBothFoldersHaveIt) {
   const std::filesystem::path run = folder_ / "run";
   std::filesystem::create_directories(run / "depth");
