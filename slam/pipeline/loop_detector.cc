@@ -105,13 +105,21 @@ std::vector<std::pair<double, int>> LoopDetector::Rank(const std::vector<double>
   return best;
 }
 
-std::optional<TrackResult> LoopDetector::TrackAt(const Features& features,
+std::optional<TrackResult> LoopDetector::TrackAt(const Features& features, const Map& map,
                                                  const LocalMap& local) const {
   std::optional<TrackResult> result =
       TrackWithoutPrediction(features, local, pixel_sigma_, tracker_);
-  if (!result || result->num_inliers < options_.min_inliers ||
-      result->num_inliers <
-          options_.min_found_share * static_cast<double>(result->expected.size())) {
+  if (!result || result->num_inliers < options_.min_inliers) return std::nullopt;
+  // What has been seen now and then tells nothing when it is missing.
+  const auto is_sure = [&](LandmarkId id) {
+    constexpr size_t kObservations = 4;
+    if (id == kNoId) return false;
+    const Landmark& landmark = map.landmark(id);
+    return landmark.observations.size() >= kObservations && 2 * landmark.found >= landmark.visible;
+  };
+  const auto expected = std::ranges::count_if(result->expected, is_sure);
+  const auto found = std::ranges::count_if(result->landmarks, is_sure);
+  if (static_cast<double>(found) < options_.min_found_share * static_cast<double>(expected)) {
     return std::nullopt;
   }
   return result;
@@ -130,7 +138,7 @@ std::optional<LoopDetector::FoundPose> LoopDetector::FindPose(const Features& fe
         place.map,
         MakeLocalMap(place_map, place_map.LivingKeyframe(place.keyframe), local_keyframes_),
         {}};
-    if (std::optional<TrackResult> result = TrackAt(features, found.local)) {
+    if (std::optional<TrackResult> result = TrackAt(features, place_map, found.local)) {
       found.result = std::move(*result);
       return found;
     }
@@ -142,7 +150,7 @@ std::optional<Revisit> LoopDetector::Verify(const Map& map, KeyframeId newest, c
                                             KeyframeId place) const {
   const Keyframe& keyframe = map.keyframe(newest);
   const std::optional<TrackResult> result =
-      TrackAt(*keyframe.features, MakeLocalMap(place_map, place, local_keyframes_));
+      TrackAt(*keyframe.features, place_map, MakeLocalMap(place_map, place, local_keyframes_));
   if (!result) return std::nullopt;
   // The scale is the middle of the ratios of how far both maps have the same feature away.
   std::vector<double> ratios;

@@ -20,8 +20,8 @@ struct LoopOptions {
   int max_candidates = 3;
   /// Landmarks of a place that must be found in the picture ...
   int min_inliers = 40;
-  /// ... and the share of those that should be visible: what merely looks alike shows the facades
-  /// that are repeated and misses what stands around them.
+  /// ... and the share of those that should be visible and are often seen: what merely looks alike
+  /// shows the facades that are repeated and misses what stands around them.
   double min_found_share = 0.2;
   /// Keyframes that must lead to the same correction, out of twice as many in a row.
   int min_agreeing = 3;
@@ -104,7 +104,8 @@ class LoopDetector {
   /// neighbours is; without `excluded` (by place).
   std::vector<std::pair<double, int>> Rank(const std::vector<double>& scores,
                                            const std::vector<uint8_t>& excluded, int count) const;
-  std::optional<TrackResult> TrackAt(const Features& features, const LocalMap& local) const;
+  std::optional<TrackResult> TrackAt(const Features& features, const Map& map,
+                                     const LocalMap& local) const;
   std::optional<Revisit> Verify(const Map& map, KeyframeId newest, const Map& place_map,
                                 KeyframeId place) const;
   std::optional<Loop> Confirm(const Map& map, const Sighting& sighting,
