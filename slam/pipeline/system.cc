@@ -181,8 +181,12 @@ Reconstruction System::Finish() {
   if (job_) AdoptMapping();
   if (depth_ && depth_->is_pending()) AdoptCompletion();
   if (bundle_) AdoptBundle();
+  if (loop_) {  // found by the last keyframe
+    StartLoopCorrection();
+    AdoptMapping();
+  }
   if (closed_loops_.size() + joints_.size() > 0) {
-    StartBundle();  // what came after the last loop takes part as well
+    if (!bundle_) StartBundle();  // what came after the last loop takes part as well
     AdoptBundle();
   }
   if (map_.num_keyframes() > 0) FinishMap();
