@@ -170,6 +170,8 @@ class System {
   std::vector<std::optional<KnownGround>> grounds_;  // by finished map
   /// Once it is found, the map is in metres.
   std::optional<KnownGround> ground_;
+  /// It was seen in dense depth only, which is rough: the landmarks may still tell better.
+  bool is_ground_rough_ = false;
   LocalMap local_;
   TrackedFrame last_;
   std::optional<TrackedFrame> before_last_;

@@ -57,7 +57,8 @@ void System::StartMapping() {
   // The map moves into the job and comes back with its result; finished maps stay as they are while
   // there is a job.
   auto integrate = [map = std::move(map_), loops = std::move(loops_), finished = &finished_maps_,
-                    keyframe, ground = ground_, completed, options = options_]() mutable {
+                    keyframe, ground = is_ground_rough_ ? std::nullopt : ground_, completed,
+                    options = options_]() mutable {
     omp_set_num_threads(1);  // the other core goes on tracking
     const KeyframeId id = IntegrateKeyframe(keyframe, options.mapper, ground, &map);
     MappingResult result;
@@ -126,8 +127,9 @@ void System::AdoptCompletion() {
 }
 
 void System::FollowGround(const KnownGround& ground) {
-  if (!ground_) Rescale(options_.scale.height() / ground.camera_height);
+  if (!ground_ || is_ground_rough_) Rescale(options_.scale.height() / ground.camera_height);
   ground_ = {ground.up, options_.scale.height()};
+  is_ground_rough_ = false;
 }
 
 // Where too few landmarks lie on the ground (a smooth floor, a hand before it), what dense depth
@@ -139,6 +141,7 @@ void System::LookForDenseGround() {
   const DenseGround fused = FuseGrounds(dense_grounds_).value();
   if (fused.sigma > kMaxSigma) return;
   FollowGround({fused.up, std::exp(fused.log_height)});
+  is_ground_rough_ = true;
   local_ =
       MakeLocalMap(map_, map_.LivingKeyframe(local_.reference), options_.keyframe.local_keyframes);
 }
@@ -169,6 +172,7 @@ void System::FinishMap() {
   grounds_.push_back(ground_);
   map_ = Map();
   ground_.reset();
+  is_ground_rough_ = false;
   dense_grounds_.clear();
 }
 
