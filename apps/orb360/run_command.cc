@@ -136,7 +136,9 @@ void WriteLargestMap(const std::string& path, int width, const Rigid3& file_worl
   const std::vector<Map>& maps = system.maps();
   const auto largest = std::ranges::max_element(maps, {}, &Map::num_keyframes);
   if (largest == maps.end()) return;
-  WriteMap(path, {width, file_world_from_map, system.grounds()[largest - maps.begin()], *largest});
+  std::optional<KnownGround> ground = system.grounds()[largest - maps.begin()];
+  if (ground && ground->is_rough) ground.reset();  // the next run may find it
+  WriteMap(path, {width, file_world_from_map, ground, *largest});
 }
 
 /// What was left open, and what cannot be done, before any work.

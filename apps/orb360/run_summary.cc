@@ -23,7 +23,8 @@ nlohmann::json DescribeScale(const Reconstruction& reconstruction, const ScaleOp
   const bool is_metric = !reconstruction.maps.empty() && reconstruction.maps.front().is_metric;
   if (!is_metric) return {{"source", "none"}, {"value", nullptr}};
   return {{"source", options.camera_height > 0 ? "camera height" : "assumed camera height"},
-          {"value", options.height()}};
+          {"value", options.height()},
+          {"rough", reconstruction.maps.front().is_rough}};
 }
 
 /// Pairs of the frame that came back and the frame of the place.

@@ -15,7 +15,7 @@ constexpr int kMaxPoints = 2000;  // of the plane; more only take time
 // Roads bend up and down: within two heights of the camera the ground is one plane, rad.
 constexpr GroundPlaneOptions kNear{.min_below = 0.5};
 
-// Of the pixels between `bottom` and the horizon, about equally many for each solid angle.
+// Of the pixels below the horizon, about equally many for each solid angle.
 std::vector<Eigen::Vector3d> GroundPoints(const DenseDepth& depth, double min_probability) {
   const EquirectangularCamera camera(depth.range.cols, depth.range.rows);
   // Pixels of a step from row to row and, on the equator, from column to column.

@@ -26,6 +26,8 @@ struct LocalBundleOptions {
 struct KnownGround {
   Eigen::Vector3d up;    // unit, world
   double camera_height;  // in the map's unit
+  /// Seen in completed depth only: good for a first scale, not to hold it by.
+  bool is_rough = false;
 };
 
 /// Bundle adjustment of the neighbourhood of a keyframe (paper Eq. 11): poses of the keyframes

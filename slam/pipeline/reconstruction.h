@@ -47,6 +47,7 @@ struct MapSummary {
   int keyframes = 0;
   int landmarks = 0;
   bool is_metric = false;  // else in a scale of its own
+  bool is_rough = false;   // metres by completed depth only
 };
 
 /// The camera came back to a place; frame indices.

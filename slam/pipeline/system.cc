@@ -194,6 +194,7 @@ Reconstruction System::Finish() {
   Reconstruction result = MakeReconstruction(finished_maps_, placements_);
   for (size_t i = 0; i < result.maps.size(); ++i) {
     result.maps[i].is_metric = grounds_[i].has_value();
+    result.maps[i].is_rough = grounds_[i] && grounds_[i]->is_rough;
   }
   // Better the ground of another place than none.
   if (!result.up && !grounds_.empty() && grounds_.front()) result.up = grounds_.front()->up;

@@ -117,6 +117,7 @@ class System {
   bool MustAdopt() const;
   void AdoptMapping();
   void AdoptCompletion();
+  std::optional<KnownGround> ReliableGround() const;
   void FollowGround(const KnownGround& ground);
   void LookForDenseGround();
   void Rescale(double factor);
@@ -170,8 +171,6 @@ class System {
   std::vector<std::optional<KnownGround>> grounds_;  // by finished map
   /// Once it is found, the map is in metres.
   std::optional<KnownGround> ground_;
-  /// It was seen in dense depth only, which is rough: the landmarks may still tell better.
-  bool is_ground_rough_ = false;
   LocalMap local_;
   TrackedFrame last_;
   std::optional<TrackedFrame> before_last_;

@@ -102,7 +102,6 @@ void System::SwitchToMap(int finished) {
   CountSightings(&map_);
   std::swap(map_, finished_maps_[finished]);
   std::swap(ground_, grounds_[finished]);
-  is_ground_rough_ = false;
   dense_grounds_.clear();
   const int present = static_cast<int>(finished_maps_.size());
   std::vector<int> number_of(present + 1);
@@ -120,8 +119,7 @@ void System::RenumberMaps(const std::vector<int>& number_of, int shifted, Keyfra
 }
 
 void System::StartBundle() {
-  auto adjust = [map = map_, ground = is_ground_rough_ ? std::nullopt : ground_,
-                 options = options_]() mutable {
+  auto adjust = [map = map_, ground = ReliableGround(), options = options_]() mutable {
     omp_set_num_threads(1);
     AdjustGlobally({.max_iterations = options.loop.bundle_iterations}, ground,
                    options.mapper.bundle.height_sigma, &map);

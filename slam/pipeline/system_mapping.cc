@@ -57,8 +57,7 @@ void System::StartMapping() {
   // The map moves into the job and comes back with its result; finished maps stay as they are while
   // there is a job.
   auto integrate = [map = std::move(map_), loops = std::move(loops_), finished = &finished_maps_,
-                    keyframe, ground = is_ground_rough_ ? std::nullopt : ground_, completed,
-                    options = options_]() mutable {
+                    keyframe, ground = ReliableGround(), completed, options = options_]() mutable {
     omp_set_num_threads(1);  // the other core goes on tracking
     const KeyframeId id = IntegrateKeyframe(keyframe, options.mapper, ground, &map);
     MappingResult result;
@@ -126,10 +125,14 @@ void System::AdoptCompletion() {
   }
 }
 
+// As the landmarks show it.
+std::optional<KnownGround> System::ReliableGround() const {
+  return ground_ && !ground_->is_rough ? ground_ : std::nullopt;
+}
+
 void System::FollowGround(const KnownGround& ground) {
-  if (!ground_ || is_ground_rough_) Rescale(options_.scale.height() / ground.camera_height);
-  ground_ = {ground.up, options_.scale.height()};
-  is_ground_rough_ = false;
+  if (!ReliableGround()) Rescale(options_.scale.height() / ground.camera_height);
+  ground_ = {ground.up, options_.scale.height(), ground.is_rough};
 }
 
 // Where too few landmarks lie on the ground (a smooth floor, a hand before it), what dense depth
@@ -140,8 +143,7 @@ void System::LookForDenseGround() {
   if (ground_ || !options_.scale.from_ground || dense_grounds_.size() < kEnough) return;
   const DenseGround fused = FuseGrounds(dense_grounds_).value();
   if (fused.sigma > kMaxSigma) return;
-  FollowGround({fused.up, std::exp(fused.log_height)});
-  is_ground_rough_ = true;
+  FollowGround({fused.up, std::exp(fused.log_height), true});
   local_ =
       MakeLocalMap(map_, map_.LivingKeyframe(local_.reference), options_.keyframe.local_keyframes);
 }
@@ -172,7 +174,6 @@ void System::FinishMap() {
   grounds_.push_back(ground_);
   map_ = Map();
   ground_.reset();
-  is_ground_rough_ = false;
   dense_grounds_.clear();
 }
 

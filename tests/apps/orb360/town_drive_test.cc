@@ -30,14 +30,15 @@ class TownDriveSlow : public testing::Test {
   static std::string Drive() { return *folder_ / "drive"; }
 
   /// What `evaluate --json` tells of a run with these options.
-  static nlohmann::json Track(const std::vector<std::string>& options) {
+  static nlohmann::json Track(const std::vector<std::string>& options, bool is_rough) {
     const std::string out = *folder_ / "out";
     std::vector<std::string> arguments = {"run", Drive(), "--quiet", "--out", out};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const ProgramResult run = RunOrb360(arguments);
     EXPECT_EQ(run.status, 0) << run.err;
-    EXPECT_EQ(nlohmann::json::parse(ReadText(out + "/summary.json"))["scale"]["source"],
-              "camera height");
+    const nlohmann::json scale = nlohmann::json::parse(ReadText(out + "/summary.json"))["scale"];
+    EXPECT_EQ(scale["source"], "camera height");
+    EXPECT_EQ(scale["rough"], is_rough);
     return nlohmann::json::parse(RunOrb360({"evaluate", Drive(), out, "--json"}).out);
   }
 
@@ -47,7 +48,7 @@ class TownDriveSlow : public testing::Test {
 TempFolder* TownDriveSlow::folder_ = nullptr;
 
 TEST_F(TownDriveSlow, IsTrackedInMetresAndItsCloudLiesOnTheStreet) {
-  const nlohmann::json errors = Track({"--mask", "none"});
+  const nlohmann::json errors = Track({"--mask", "none"}, false);
   EXPECT_EQ(errors["tracked_share"], 1);
   EXPECT_NEAR(errors["scale_factor"].get<double>(), 1, 0.02);
   EXPECT_LT(errors["ate_rmse_sim3"], 0.1);
@@ -60,7 +61,7 @@ TEST_F(TownDriveSlow, IsRoughlyInMetresByDenseDepthWhereNoLandmarkLiesOnTheGroun
   mask.rowRange(172, 320) = 0;
   const std::string path = *folder_ / "mask.png";
   cv::imwrite(path, mask);
-  const nlohmann::json errors = Track({"--mask", path});
+  const nlohmann::json errors = Track({"--mask", path}, true);
   EXPECT_EQ(errors["tracked_share"], 1);
   // The network has not learned to go without points on the ground; in units of its own, the map's
   // would be about 5.
