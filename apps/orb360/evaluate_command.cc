@@ -63,7 +63,11 @@ void AddLoopErrors(const EvaluateOptions& options, const std::vector<StampedPose
   if (!summary.is_object() || !summary.contains("loop_times")) return;
   std::vector<LoopTimes> loops;
   for (const nlohmann::json& pair : summary["loop_times"]) {
-    loops.push_back({pair.at(0).get<double>(), pair.at(1).get<double>()});
+    if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number() || !pair[1].is_number()) {
+      throw UserError(options.estimate + "/summary.json: `loop_times` holds something else than " +
+                      "pairs of seconds; run the sequence again");
+    }
+    loops.push_back({pair[0].get<double>(), pair[1].get<double>()});
   }
   (*report)["loops"] = ToJson(CompareLoops(truth, loops));
 }
