@@ -102,9 +102,7 @@ Convolution::Convolution(const ConvolutionSpec& spec, std::span<const float> wei
   const int channels = (spec.out_channels + block - 1) / block * block;
   bias_.resize(channels);
   std::copy(bias.begin(), bias.end(), bias_.begin());
-  if (is_amx_stem()) {
-    rounded_weight_ = PackBFloat16Stem(weight, spec.out_channels, spec.in_channels);
-  } else if (spec.type == DataType::kBFloat16 && !is_bfloat16_stem()) {
+  if (spec.type == DataType::kBFloat16 && !is_bfloat16_stem()) {
     rounded_weight_ = PackBFloat16(weight, spec.out_channels, spec.in_channels, spec.kernel);
   } else {
     groups_ = DirectGroups(channels);
@@ -171,8 +169,6 @@ void Convolution::Run(const TensorView& input, const TensorView* residual, const
     const int last = std::min(rows, first + band);
     if (rounded_weight_.empty()) {
       RunDirect(direct, {first, last, 0, output.shape.width});
-    } else if (is_amx_stem()) {
-      RunAmxStem(rounded, first, last);
     } else if (unit_ == BFloat16Unit::kAmx) {
       RunAmx(rounded, first, last);
     } else {

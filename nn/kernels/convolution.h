@@ -42,8 +42,7 @@ constexpr int kMaxPlanarChannels = 8;
 /// |---|---|---|
 /// | float | float, blocked; up to kMaxPlanarChannels also planar | float, blocked or planar |
 /// | bfloat16 | bfloat16, blocked | bfloat16, blocked; float, blocked or planar |
-/// | bfloat16, up to kMaxPlanarChannels | float, planar; rounded where AMX multiplies | bfloat16,
-/// blocked |
+/// | bfloat16, up to kMaxPlanarChannels | float, planar, and not rounded | bfloat16, blocked |
 class Convolution {
  public:
   /// `weight` is out_channels x in_channels x kernel x kernel, row by row; `bias` has out_channels
@@ -65,12 +64,10 @@ class Convolution {
            std::span<std::byte> scratch, int threads) const;
 
  private:
-  // True where floats in planes become blocks of bfloat16.
+  // True where floats in planes become blocks of bfloat16. What a network starts from (positions,
+  // logarithms) has more digits than a bfloat16, so these are multiplied as floats.
   bool is_bfloat16_stem() const {
     return spec_.type == DataType::kBFloat16 && spec_.in_channels <= kMaxPlanarChannels;
-  }
-  bool is_amx_stem() const {
-    return is_bfloat16_stem() && unit_ == BFloat16Unit::kAmx && spec_.kernel == 3;
   }
   // True for what is computed in tiles by Winograd's method.
   bool is_winograd() const;

@@ -1,6 +1,9 @@
 #include "nn/kernels/convolution_bf16.h"
 
 #include <cstddef>
+#include <vector>
+
+#include "nn/base/bfloat16.h"
 
 namespace orb360::nn {
 
@@ -11,6 +14,21 @@ AlignedVector<std::uint16_t> Round(AlignedVector<float>& values) {
   const Shape shape{1, 1, static_cast<int>(values.size())};
   Reorder(TensorFormat{shape, Layout::kPlanar, DataType::kFloat, 0}.View(values.data()),
           TensorFormat{shape, Layout::kPlanar, DataType::kBFloat16, 0}.View(rounded.data()));
+  return rounded;
+}
+
+// Pictures are smooth: what a filter adds up to matters more than each of its weights. So each
+// takes over what the rounding of the one before it has left, and errors do not add up where the
+// input is the same all over the window.
+std::vector<float> RoundKeepingSums(std::span<const float> weight, int taps) {
+  std::vector<float> rounded(weight.size());
+  float left = 0;
+  for (std::size_t i = 0; i < weight.size(); ++i) {
+    if (i % taps == 0) left = 0;
+    const float wanted = weight[i] + left;
+    rounded[i] = ToFloat(ToBFloat16(wanted));
+    left = wanted - rounded[i];
+  }
   return rounded;
 }
 
@@ -40,7 +58,9 @@ void AppendPairs(const Filters& filters, int first_out, int first_in, int count,
 
 AlignedVector<std::uint16_t> PackBFloat16(std::span<const float> weight, int out_channels,
                                           int in_channels, int kernel) {
-  const Filters filters{weight, out_channels, in_channels, kernel * kernel};
+  const int taps = kernel * kernel;
+  const std::vector<float> rounded = RoundKeepingSums(weight, taps);
+  const Filters filters{rounded, out_channels, in_channels, taps};
   constexpr int kBlock = BlockOf(DataType::kBFloat16);
   AlignedVector<float> packed;
   for (int group = 0; group * kBFloat16Group < out_channels; ++group) {
@@ -49,23 +69,6 @@ AlignedVector<std::uint16_t> PackBFloat16(std::span<const float> weight, int out
         for (int half = 0; half < HalvesInGroup(group, out_channels); ++half) {
           AppendPairs(filters, group * kBFloat16Group + half * kBFloat16Half, first_in, kBlock, tap,
                       &packed);
-        }
-      }
-    }
-  }
-  return Round(packed);
-}
-
-AlignedVector<std::uint16_t> PackBFloat16Stem(std::span<const float> weight, int out_channels,
-                                              int in_channels) {
-  const Filters filters{weight, out_channels, in_channels, 9};
-  AlignedVector<float> packed;
-  for (int group = 0; group * kBFloat16Group < out_channels; ++group) {
-    for (int row = 0; row < 3; ++row) {
-      for (int half = 0; half < HalvesInGroup(group, out_channels); ++half) {
-        for (int column = 0; column < 3; ++column) {
-          AppendPairs(filters, group * kBFloat16Group + half * kBFloat16Half, 0, 8,
-                      row * 3 + column, &packed);
         }
       }
     }

@@ -31,23 +31,16 @@ constexpr int HalvesInGroup(int group, int out_channels) {
   return out_channels - group * kBFloat16Group > kBFloat16Half ? 2 : 1;
 }
 
-/// Rounds the weights, out_channels x in_channels x kernel x kernel, and orders them as the units
-/// read them: [group][input block][kernel row][kernel column][half][pair of input channels]
-/// [output channel][channel of the pair], where the last three are one tile of 1 KiB.
+/// Rounds the weights, out_channels x in_channels x kernel x kernel, so that every filter keeps the
+/// sum of its weights but for one rounding, and orders them as the units read them: [group][input
+/// block][kernel row][kernel column][half][pair of input channels] [output channel][channel of the
+/// pair], where the last three are one tile of 1 KiB.
 AlignedVector<std::uint16_t> PackBFloat16(std::span<const float> weight, int out_channels,
                                           int in_channels, int kernel);
-
-/// The same for RunAmxStem: [group][kernel row][half][kernel column][pair of input channels]
-/// [output channel][channel of the pair], where the last four are a tile of 768 bytes.
-AlignedVector<std::uint16_t> PackBFloat16Stem(std::span<const float> weight, int out_channels,
-                                              int in_channels);
 
 /// Compute rows `first` to `last` - 1 of the output with AMX or AVX-512's VDPBF16PS, which the
 /// processor must have.
 void RunAmx(const BFloat16Convolution& run, int first, int last);
 void RunAvx512BFloat16(const BFloat16Convolution& run, int first, int last);
-
-/// The same for a kernel of 3x3 on up to 8 planes of floats, which are rounded on the way.
-void RunAmxStem(const BFloat16Convolution& run, int first, int last);
 
 }  // namespace orb360::nn
