@@ -16,11 +16,16 @@
 namespace orb360 {
 namespace {
 
-// Where the loss changes from squares to lengths; the reason is told at BundleOptions::robust.
-constexpr double kHuberSigmas = 1.0;
+constexpr double kHuberSigmas = 1.0;    // the reason is told at BundleLoss
+constexpr double kArctanSquares = 2.0;  // squared sigmas
 // Of ranges that are known roughly: networks are wrong altogether more often than corners are, and
 // what is wrong by far should not count at all.
 constexpr double kCauchySigmas = 1.0;
+
+std::unique_ptr<ceres::LossFunction> MakeLoss(BundleLoss loss) {
+  if (loss == BundleLoss::kArctan) return std::make_unique<ceres::ArctanLoss>(kArctanSquares);
+  return std::make_unique<ceres::HuberLoss>(kHuberSigmas);
+}
 
 }  // namespace
 
@@ -36,7 +41,7 @@ BundleReport SolveBundle(const BundleOptions& options, BundleProblem* bundle) {
   }
   std::vector<Eigen::Vector3d> points = bundle->points;
 
-  ceres::HuberLoss loss(kHuberSigmas);
+  const std::unique_ptr<ceres::LossFunction> loss = MakeLoss(options.loss);
   ceres::CauchyLoss range_loss(kCauchySigmas);
   ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>> manifold;
   ceres::Problem::Options problem_options;
@@ -60,7 +65,7 @@ BundleReport SolveBundle(const BundleOptions& options, BundleProblem* bundle) {
   }
   for (const BundleProblem::Observation& o : bundle->observations) {
     costs.emplace_back(o.bearing, o.sigma);
-    problem.AddResidualBlock(&costs.back(), options.robust ? &loss : nullptr, poses[o.pose].data(),
+    problem.AddResidualBlock(&costs.back(), loss.get(), poses[o.pose].data(),
                              points[o.point].data());
   }
   for (const BundleProblem::Height& h : bundle->heights) {

@@ -40,13 +40,23 @@ struct BundleProblem {
   std::vector<Range> ranges;
 };
 
+/// What an observation's error costs.
+enum class BundleLoss {
+  /// Grows like the error from one sigma on. Errors have heavier tails than a normal
+  /// distribution's,
+  /// since a corner is not quite the same point from everywhere: with a loss from the 95 % bound on
+  /// (2.4 sigmas), a few corners of roofs and trees, seen from dozens of keyframes, decide how the
+  /// scale drifts.
+  kHuber,
+  /// Has a limit, which an error of three sigmas nearly reaches: for poses that are nearly right
+  /// and
+  /// observations that are wrong altogether.
+  kArctan,
+};
+
 struct BundleOptions {
   int max_iterations = 10;
-  /// Huber's loss from one sigma on; without it plain least squares. Errors have heavier tails than
-  /// a normal distribution's, since a corner is not quite the same point from everywhere: with the
-  /// loss from the 95 % bound on (2.4 sigmas), a few corners of roofs and trees, seen from dozens
-  /// of keyframes, decide how the scale drifts.
-  bool robust = true;
+  BundleLoss loss = BundleLoss::kHuber;
   /// The solver stops when an iteration lowers the cost by less than this share.
   double function_tolerance = 1e-4;
 };

@@ -15,6 +15,7 @@ constexpr double kMaxHeightError = 0.1;
 // All ranges of a keyframe together are worth as many measurements: about as many surfaces stand
 // around a camera, and on one of them a network is right or wrong as a whole.
 constexpr double kIndependentRanges = 5.0;
+constexpr int kGlobalRounds = 2;
 
 // Adds what the ground says of the keyframe with index `pose` and of the points around it.
 void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem* problem) {
@@ -150,16 +151,20 @@ void AdjustLocally(KeyframeId center, const LocalBundleOptions& options,
          options.height_sigma, map);
 }
 
-void AdjustGlobally(const BundleOptions& options, const std::optional<KnownGround>& ground,
+void AdjustGlobally(int max_iterations, const std::optional<KnownGround>& ground,
                     double height_sigma, Map* map) {
   const std::vector<KeyframeId> keyframes = map->KeyframeIds();
-  std::vector<LandmarkId> landmarks;
-  for (LandmarkId id = 0; id < map->landmark_end(); ++id) {
-    if (map->HasLandmark(id)) landmarks.push_back(id);
-  }
   if (keyframes.size() < 2) return;
   const std::span<const KeyframeId> all(keyframes);
-  Adjust(all.subspan(1), all.first(1), landmarks, options, ground, height_sigma, map);
+  for (int round = 0; round < kGlobalRounds; ++round) {
+    std::vector<LandmarkId> landmarks;
+    for (LandmarkId id = 0; id < map->landmark_end(); ++id) {
+      if (map->HasLandmark(id)) landmarks.push_back(id);
+    }
+    Adjust(all.subspan(1), all.first(1), landmarks,
+           {.max_iterations = max_iterations, .loss = BundleLoss::kArctan}, ground, height_sigma,
+           map);
+  }
 }
 
 }  // namespace orb360

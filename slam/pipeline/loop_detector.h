@@ -39,8 +39,8 @@ struct LoopOptions {
   int correction_frames = 12;
   /// The same for the bundle adjustment of the whole map that follows, for each of its keyframes.
   double bundle_frames = 0.5;
-  /// Iterations of the bundle adjustment of the whole map.
-  int bundle_iterations = 10;
+  /// Iterations of each round of the bundle adjustment of the whole map.
+  int bundle_iterations = 5;
 };
 
 /// One keyframe that sees a place again.

@@ -157,7 +157,7 @@ ConfigSchema MakeConfigSchema(Options* options) {
              "frames after which a bundle adjustment of the whole map is adopted, by keyframe", 0.0,
              100.0);
   schema.Add("loop.bundle_iterations", &loop.bundle_iterations,
-             "iterations of the bundle adjustment of the whole map", 1, 1000);
+             "iterations of each round of the bundle adjustment of the whole map", 1, 1000);
   return schema;
 }
 

@@ -124,7 +124,7 @@ void System::CreateMap(const PendingFrame& first, const PendingFrame& second,
     map.UpdateAppearance(landmark);
   }
   TriangulateNewLandmarks(keyframe2, options_.mapper.triangulation, &map);
-  AdjustGlobally({.max_iterations = 20}, &map);
+  AdjustGlobally(10, std::nullopt, 0.0, &map);
 
   // Gauge: the surroundings are one unit of length away; a later map goes on where the last pose
   // of the one before was, in its scale.

@@ -80,7 +80,7 @@ TEST(CloseLoop, BundleAdjustmentFinishesWhatThePoseGraphBegan) {
   Closed closed = DriveAndClose();
   const double before = PathError(closed.drive.map, closed.drive.truth);
   Map adjusted = closed.drive.map;
-  AdjustGlobally({.max_iterations = 20}, &adjusted);
+  AdjustGlobally(20, std::nullopt, 0.0, &adjusted);
   EXPECT_LT(PathError(adjusted, closed.drive.truth), 0.5 * before);
 }
 
@@ -88,7 +88,7 @@ TEST(AdoptAdjustment, GivesTheAdjustedMapWhereNothingElseHappened) {
   Closed closed = DriveAndClose();
   const Map before = closed.drive.map;
   Map adjusted = before;
-  AdjustGlobally({.max_iterations = 5}, &adjusted);
+  AdjustGlobally(5, std::nullopt, 0.0, &adjusted);
   Map map = before;
   AdoptAdjustment(before, adjusted, &map);
   map.CheckConsistency();
