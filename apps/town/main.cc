@@ -7,13 +7,13 @@
 #include "nn/base/check.h"
 
 int main(int argc, char** argv) {
-  CLI::App app("Renders panoramic drives through towns, with exact depth and poses.");
-  app.require_subcommand(1);
-  orb360::town::AddRenderCommand(&app);
-  orb360::town::AddStitchCommand(&app);
-  orb360::town::AddDescribeCommand(&app);
-  orb360::town::AddPathCommand(&app);
   try {
+    CLI::App app("Renders panoramic drives through towns, with exact depth and poses.");
+    app.require_subcommand(1);
+    orb360::town::AddRenderCommand(&app);
+    orb360::town::AddStitchCommand(&app);
+    orb360::town::AddDescribeCommand(&app);
+    orb360::town::AddPathCommand(&app);
     CLI11_PARSE(app, argc, argv);
   } catch (const orb360::UserError& error) {
     std::fprintf(stderr, "town: %s\n", error.what());

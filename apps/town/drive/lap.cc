@@ -24,7 +24,10 @@ std::vector<LinePoint> Resample(const std::vector<LinePoint>& ring) {
     const double length = (b - a).head<2>().norm();
     if (length < 1e-9) continue;
     double s = kStep - carried;
-    for (; s <= length; s += kStep) result.emplace_back(a + s / length * (b - a));
+    while (s <= length) {
+      result.emplace_back(a + s / length * (b - a));
+      s += kStep;
+    }
     carried = length - (s - kStep);
   }
   return result;
@@ -149,7 +152,7 @@ Vector2d Lap::Point(double station, double left) const {
   const size_t n = points_.size();
   const Vector2d& a = points_[whole % n];
   const Vector2d& b = points_[(whole + 1) % n];
-  const Vector2d on_line = (1 - t) * a + t * b;
+  Vector2d on_line = (1 - t) * a + t * b;
   if (left == 0) return on_line;
   // The normal changes with the direction over a metre, so that it turns steadily.
   const auto chord = [&](size_t i) -> Vector2d {

@@ -135,7 +135,8 @@ CameraPath ReadCameraPath(const std::filesystem::path& file) {
 void RequireFreePath(const RayScene& scene, const CameraPath& path, double end) {
   constexpr double kStep = 0.05;  // seconds
   Vector3f from = path.At(path.begin()).translation.cast<float>();
-  for (double time = path.begin(); time < end; time += kStep) {
+  double time = path.begin();
+  while (time < end) {
     const Vector3f to = path.At(std::min(time + kStep, end)).translation.cast<float>();
     const Vector3f step = to - from;
     // A little farther, so that a surface right where a step ends is met.
@@ -148,6 +149,7 @@ void RequireFreePath(const RayScene& scene, const CameraPath& path, double end) 
       throw UserError(message.str());
     }
     from = to;
+    time += kStep;
   }
 }
 
@@ -156,6 +158,7 @@ std::optional<double> HeightAboveGround(const RayScene& scene,
   constexpr float kFar = 100;         // metres
   constexpr double kTolerance = 0.1;  // of the median, for nine places in ten
   std::vector<double> heights;
+  heights.reserve(world_from_camera.size());
   for (const Rigid3& pose : world_from_camera) {
     heights.push_back(
         DistanceAlong(scene, pose.translation.cast<float>(), -Vector3f::UnitZ(), kFar));

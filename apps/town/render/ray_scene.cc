@@ -165,7 +165,7 @@ SurfaceHit FrameScene::Resolve(const RTCHit16& hit, int lane) const {
 }
 
 Vector3f FrameScene::GeometricNormal(const RTCHit16& hit, int lane) const {
-  const Vector3f normal(hit.Ng_x[lane], hit.Ng_y[lane], hit.Ng_z[lane]);
+  Vector3f normal(hit.Ng_x[lane], hit.Ng_y[lane], hit.Ng_z[lane]);
   const unsigned moving = hit.instID[0][lane];
   if (moving == RTC_INVALID_GEOMETRY_ID) return normal;
   return moving_[moving].world_from_model.linear() * normal;
