@@ -16,8 +16,9 @@
 namespace orb360 {
 namespace {
 
-constexpr double kHuberSigmas = 1.0;    // the reason is told at BundleLoss
-constexpr double kArctanSquares = 2.0;  // squared sigmas
+// The reason is told at BundleLoss.
+constexpr double kHuberSigmas = 1.0;
+constexpr double kArctanSquares = 2.0;  // squared sigmas, where the cost is half of its limit
 // Of ranges that are known roughly: networks are wrong altogether more often than corners are, and
 // what is wrong by far should not count at all.
 constexpr double kCauchySigmas = 1.0;

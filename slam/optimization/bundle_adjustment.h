@@ -43,14 +43,12 @@ struct BundleProblem {
 /// What an observation's error costs.
 enum class BundleLoss {
   /// Grows like the error from one sigma on. Errors have heavier tails than a normal
-  /// distribution's,
-  /// since a corner is not quite the same point from everywhere: with a loss from the 95 % bound on
-  /// (2.4 sigmas), a few corners of roofs and trees, seen from dozens of keyframes, decide how the
-  /// scale drifts.
+  /// distribution's, since a corner is not quite the same point from everywhere: with a loss from
+  /// the 95 % bound on (2.4 sigmas), a few corners of roofs and trees, seen from dozens of
+  /// keyframes, decide how the scale drifts.
   kHuber,
-  /// Has a limit, which an error of three sigmas nearly reaches: for poses that are nearly right
-  /// and
-  /// observations that are wrong altogether.
+  /// Has a limit, of which three sigmas cost 86 %: for poses that are nearly right and observations
+  /// that are wrong altogether.
   kArctan,
 };
 

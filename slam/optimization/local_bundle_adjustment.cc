@@ -15,6 +15,7 @@ constexpr double kMaxHeightError = 0.1;
 // All ranges of a keyframe together are worth as many measurements: about as many surfaces stand
 // around a camera, and on one of them a network is right or wrong as a whole.
 constexpr double kIndependentRanges = 5.0;
+// A third round of the whole map's adjustment finds next to nothing that is wrong.
 constexpr int kGlobalRounds = 2;
 
 // Adds what the ground says of the keyframe with index `pose` and of the points around it.
