@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <opencv2/imgproc.hpp>
@@ -59,25 +60,91 @@ CubeImages<Pixel> AddBorders(const CubeImages<Pixel>& faces) {
   return result;
 }
 
-/// Bilinear sample of a face with borders.
-template <typename Pixel>
-cv::Vec3f Sample(const cv::Mat_<Pixel>& wide, const CubePoint& point) {
-  const cv::Point2d p = ToPixel(point, wide.rows - 2 * kBorder);
-  const double x = p.x - 0.5 + kBorder;
-  const double y = p.y - 0.5 + kBorder;
-  const int x0 = std::clamp(static_cast<int>(x), 0, wide.cols - 2);
-  const int y0 = std::clamp(static_cast<int>(y), 0, wide.rows - 2);
-  const auto wx = static_cast<float>(x - x0);
-  const auto wy = static_cast<float>(y - y0);
-  const Pixel* upper = wide[y0] + x0;
-  const Pixel* lower = wide[y0 + 1] + x0;
-  cv::Vec3f result;
-  for (int channel = 0; channel < 3; ++channel) {
-    result[channel] = (1 - wy) * ((1 - wx) * upper[0][channel] + wx * upper[1][channel]) +
-                      wy * ((1 - wx) * lower[0][channel] + wx * lower[1][channel]);
+/// Where a bilinear sample lies on a face with borders: the upper left of its four pixels, and the
+/// way from there.
+struct SamplePlace {
+  int x;
+  int y;
+  double across;
+  double down;
+
+  SamplePlace(int wide_size, const CubePoint& point) {
+    const cv::Point2d p = ToPixel(point, wide_size - 2 * kBorder);
+    const double right = p.x - 0.5 + kBorder;
+    const double below = p.y - 0.5 + kBorder;
+    x = std::clamp(static_cast<int>(right), 0, wide_size - 2);
+    y = std::clamp(static_cast<int>(below), 0, wide_size - 2);
+    across = right - x;
+    down = below - y;
   }
-  return result;
-}
+};
+
+/// The mean of bilinear samples of faces with borders.
+class RadianceMean {
+ public:
+  explicit RadianceMean(CubeImages<cv::Vec3f> wide) : wide_(std::move(wide)) {}
+  void Clear() { sum_ = {0, 0, 0}; }
+  void Add(const CubePoint& point) {
+    const cv::Mat3f& face = wide_[static_cast<size_t>(point.face)];
+    const SamplePlace place(face.rows, point);
+    const cv::Vec3f* upper = face[place.y] + place.x;
+    const cv::Vec3f* lower = face[place.y + 1] + place.x;
+    const auto wx = static_cast<float>(place.across);
+    const auto wy = static_cast<float>(place.down);
+    sum_ += (1 - wy) * ((1 - wx) * upper[0] + wx * upper[1]) +
+            wy * ((1 - wx) * lower[0] + wx * lower[1]);
+  }
+  cv::Vec3f Of(int samples) const { return sum_ * (1.0F / static_cast<float>(samples)); }
+
+ private:
+  CubeImages<cv::Vec3f> wide_;
+  cv::Vec3f sum_;
+};
+
+/// The same for 8-bit colours, all channels in one integer and places to 1/256 of a pixel.
+class ColourMean {
+ public:
+  explicit ColourMean(const CubeImages<cv::Vec3b>& wide) {
+    for (size_t i = 0; i < wide.size(); ++i) {
+      faces_[i].create(wide[i].size());
+      std::transform(wide[i].begin(), wide[i].end(), faces_[i].begin(),
+                     [](const cv::Vec3b& c) { return c[0] | c[1] << 8 | c[2] << 16; });
+    }
+  }
+  void Clear() { blue_green_ = red_ = 0; }
+  void Add(const CubePoint& point) {
+    const cv::Mat1i& face = faces_[static_cast<size_t>(point.face)];
+    const SamplePlace place(face.rows, point);
+    const int* upper = face[place.y] + place.x;
+    const int* lower = face[place.y + 1] + place.x;
+    const auto wx = static_cast<uint64_t>(256 * place.across + 0.5);
+    const auto wy = static_cast<uint64_t>(256 * place.down + 0.5);
+    const uint64_t both = wx * wy >> 8;  // the four weights add up to 256
+    const uint64_t sum = (256 - wx - wy + both) * Spread(upper[0]) +
+                         (wx - both) * Spread(upper[1]) + (wy - both) * Spread(lower[0]) +
+                         both * Spread(lower[1]);
+    blue_green_ += sum & 0x0000ffff0000ffffU;
+    red_ += sum >> 16 & 0xffffU;
+  }
+  cv::Vec3b Of(int samples) const {
+    const auto channel = [&](uint64_t sum) {
+      return static_cast<uint8_t>((sum + static_cast<uint64_t>(128 * samples)) /
+                                  static_cast<uint64_t>(256 * samples));
+    };
+    return {channel(blue_green_ & 0xffffffffU), channel(blue_green_ >> 32), channel(red_)};
+  }
+
+ private:
+  /// Blue, red and green in 16 bits each, from the lowest upward.
+  static uint64_t Spread(int colour) {
+    const auto c = static_cast<uint64_t>(colour);
+    return (c & 0xff00ffU) | (c & 0xff00U) << 24;
+  }
+
+  CubeImages<int> faces_;
+  uint64_t blue_green_ = 0;
+  uint64_t red_ = 0;
+};
 
 /// Where the directions through a grid of `per_pixel` by `per_pixel` places in each pixel meet the
 /// cube (as MeetCube), from tables over the columns and the rows: on a side, the place to the right
@@ -152,24 +219,20 @@ int SamplesAcross(int face_size, const EquirectangularCamera& camera) {
   return std::max(2, static_cast<int>(std::ceil(footprint / 2)));
 }
 
-template <typename Pixel>
+template <typename Mean, typename Pixel>
 cv::Mat_<Pixel> Stitch(const CubeImages<Pixel>& faces, const EquirectangularCamera& camera) {
-  const CubeImages<Pixel> wide = AddBorders(faces);
+  Mean of_faces(AddBorders(faces));
   const int samples = SamplesAcross(SizeOf(faces), camera);
-  const float weight = 1.0F / static_cast<float>(samples * samples);
   const CubeGrid grid(camera, samples);
   cv::Mat_<Pixel> panorama(camera.height(), camera.width());
-#pragma omp parallel for schedule(dynamic, 4)
+#pragma omp parallel for schedule(dynamic, 4) firstprivate(of_faces)
   for (int row = 0; row < panorama.rows; ++row) {
     for (int column = 0; column < panorama.cols; ++column) {
-      cv::Vec3f sum(0, 0, 0);
+      of_faces.Clear();
       for (int y = row * samples; y < (row + 1) * samples; ++y) {
-        for (int x = column * samples; x < (column + 1) * samples; ++x) {
-          const CubePoint point = grid.At(x, y);
-          sum += Sample(wide[static_cast<size_t>(point.face)], point);
-        }
+        for (int x = column * samples; x < (column + 1) * samples; ++x) of_faces.Add(grid.At(x, y));
       }
-      panorama(row, column) = Pixel(sum * weight);  // rounds
+      panorama(row, column) = of_faces.Of(samples * samples);
     }
   }
   return panorama;
@@ -178,11 +241,11 @@ cv::Mat_<Pixel> Stitch(const CubeImages<Pixel>& faces, const EquirectangularCame
 }  // namespace
 
 cv::Mat3b StitchColour(const CubeImages<cv::Vec3b>& faces, const EquirectangularCamera& camera) {
-  return Stitch(faces, camera);
+  return Stitch<ColourMean>(faces, camera);
 }
 
 cv::Mat3f StitchRadiance(const CubeImages<cv::Vec3f>& faces, const EquirectangularCamera& camera) {
-  return Stitch(faces, camera);
+  return Stitch<RadianceMean>(faces, camera);
 }
 
 cv::Mat1f StitchRange(const CubeImages<float>& depth, const EquirectangularCamera& camera) {

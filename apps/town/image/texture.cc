@@ -1,6 +1,7 @@
 #include "apps/town/image/texture.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "nn/base/check.h"
@@ -79,12 +80,36 @@ Texture::Texture(int width, int height, std::vector<Rgba> texels)
   }
   while (true) {
     levels_.push_back({width, height, texels_.size()});
-    for (const Rgba& texel : texels) texels_.push_back(Encode(texel));
+    for (int y = 0; y <= height; ++y) {
+      const size_t row = static_cast<size_t>(y % height) * static_cast<size_t>(width);
+      for (int x = 0; x <= width; ++x)
+        texels_.push_back(Encode(texels[row + static_cast<size_t>(x % width)]));
+    }
     if (width == 1 && height == 1) break;
     texels = Halve(texels, width, height);
     width = std::max(width / 2, 1);
     height = std::max(height / 2, 1);
   }
+}
+
+Rgba Texture::Sample(float u, float v, float level) const {
+  const Level& l = LevelAt(level);
+  const float x = u * static_cast<float>(l.width) - 0.5F;  // texel centres are at halves
+  const float y = v * static_cast<float>(l.height) - 0.5F;
+  const float wx = x - std::floor(x);
+  const float wy = y - std::floor(y);
+  const size_t stride = static_cast<size_t>(l.width) + 1;
+  const uint32_t* below = TexelsOf(l) +
+                          static_cast<size_t>(FloorToInt(y) & (l.height - 1)) * stride +
+                          static_cast<size_t>(FloorToInt(x) & (l.width - 1));
+  const uint32_t* above = below + stride;
+  const auto root = [&](int shift) {
+    const auto channel = [&](uint32_t texel) { return static_cast<float>(texel >> shift & 255U); };
+    return ((1 - wy) * ((1 - wx) * channel(below[0]) + wx * channel(below[1])) +
+            wy * ((1 - wx) * channel(above[0]) + wx * channel(above[1]))) /
+           255;
+  };
+  return {root(0) * root(0), root(8) * root(8), root(16) * root(16), root(24)};
 }
 
 }  // namespace orb360::town

@@ -14,24 +14,22 @@ constexpr std::array<std::array<double, 2>, 1> kCentre = {{{0.5, 0.5}}};
 
 GeometryImage Geometry(const FrameScene& scene, const RayDirections& directions,
                        const Vector3f& eye) {
-  constexpr int kSide = 4;  // of the square of pixels that is a packet
+  constexpr int kSide = RayDirections::kSquare;
   GeometryImage image{cv::Mat1f(directions.height(), directions.width()),
                       cv::Mat1w(directions.height(), directions.width())};
 #pragma omp parallel for schedule(dynamic, 1)
   for (int top = 0; top < image.range.rows; top += kSide) {
     EyePacket packet;
+    Lanes3 square;
     for (int left = 0; left < image.range.cols; left += kSide) {
-      std::array<SamplePlace, kPacket> places;
-      size_t count = 0;
-      for (int row = top; row < std::min(top + kSide, image.range.rows); ++row) {
-        for (int column = left; column < std::min(left + kSide, image.range.cols); ++column)
-          places[count++] = {column, row, 0};
-      }
-      packet.Trace(scene, directions, eye, {places.data(), count});
-      for (size_t i = 0; i < count; ++i) {
-        const int lane = static_cast<int>(i);
-        image.object(places[i].row, places[i].column) = scene.ObjectId(packet.hit(), lane);
-        image.range(places[i].row, places[i].column) = packet.Hits(lane) ? packet.range(lane) : 0;
+      directions.OfSquare(left, top, 0, &square);
+      packet.Trace(scene, eye, square);
+      for (int lane = 0; lane < kPacket; ++lane) {
+        const int row = top + lane / kSide;
+        const int column = left + lane % kSide;
+        if (row >= image.range.rows || column >= image.range.cols) continue;
+        image.object(row, column) = scene.ObjectId(packet.hit(), lane);
+        image.range(row, column) = packet.Hits(lane) ? packet.range(lane) : 0;
       }
     }
   }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
+#include "apps/town/image/lanes.h"
 #include "apps/town/world/mesh.h"
 #include "slam/geometry/camera.h"
 #include "slam/geometry/rigid3.h"
@@ -25,34 +27,48 @@ class RayDirections {
                                   Pattern pattern);
 
   int width() const { return width_; }
-  int height() const { return static_cast<int>(rows_.size()) - 2; }
+  int height() const { return height_; }
 
-  /// The unit direction through a sample of a pixel, which may also lie in the column right of the
-  /// picture, in the row above or in the one below.
+  /// Pixels along the side of the squares that packets of rays are made of.
+  static constexpr int kSquare = 4;
+
+  /// The unit direction through a sample of a pixel, which may also lie up to kSquare columns right
+  /// of the picture, in the row above it, or up to kSquare rows below.
   Vector3f At(int column, int row, size_t sample) const {
-    const Row& weights = rows_[static_cast<size_t>(row + 1)][sample];
+    const Row& weights = rows_[sample][static_cast<size_t>(row + 1)];
+    const auto i = static_cast<size_t>(column);
+    const Columns& columns = columns_[sample];
     const Vector3f direction =
-        weights.along * columns_[static_cast<size_t>(column) * samples_ + sample] +
-        weights.up * upward_;
+        weights.along * Vector3f(columns.x[i], columns.y[i], columns.z[i]) + weights.up * upward_;
     return normalizes_ ? direction.normalized() : direction;
   }
 
- private:
-  static constexpr size_t kMaximumSamples = 4;
+  /// Those through one sample of each pixel of a square, row by row; it may reach as far beyond the
+  /// picture.
+  void OfSquare(int left, int top, size_t sample, Lanes3* directions) const;
 
+ private:
   /// direction = along * table over the columns + up * upward.
   struct Row {
     float along;
     float up;
   };
+  struct Columns {
+    std::vector<float> x;
+    std::vector<float> y;
+    std::vector<float> z;
+  };
 
-  RayDirections(int width, int height, size_t samples, bool normalizes);
+  RayDirections(int width, int height, bool normalizes);
+
+  void AddSample(const std::function<Eigen::Vector3d(int)>& column,
+                 const std::function<Row(int)>& row);
 
   int width_;
-  size_t samples_;
+  int height_;
   bool normalizes_;
-  std::vector<Vector3f> columns_;  // by column and sample
-  std::vector<std::array<Row, kMaximumSamples>> rows_;
+  std::vector<Columns> columns_;        // by sample; up to kSquare columns beyond the picture
+  std::vector<std::vector<Row>> rows_;  // by sample, then row + 1; as many rows beyond
   Vector3f upward_;
 };
 

@@ -1,39 +1,28 @@
 #pragma once
 
 #include <array>
-#include <span>
 
-#include "apps/town/render/ray_directions.h"
+#include "apps/town/image/lanes.h"
 #include "apps/town/render/ray_scene.h"
 
 namespace orb360::town {
 
 inline constexpr float kFar = 3000.0F;  ///< metres; rays end there
 
-/// One of a pixel's samples.
-struct SamplePlace {
-  int column = 0;
-  int row = 0;
-  size_t sample = 0;
-};
-
-/// Rays from one eye, at most kPacket, and what they meet.
+/// Rays from one eye, and what they meet.
 class EyePacket {
  public:
-  /// Traces the rays through `places`.
-  void Trace(const FrameScene& scene, const RayDirections& directions, const Vector3f& eye,
-             std::span<const SamplePlace> places);
+  EyePacket();
+
+  /// Traces rays into unit directions.
+  void Trace(const FrameScene& scene, const Vector3f& eye, const Lanes3& directions);
 
   bool Hits(int lane) const { return rays_.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID; }
   const RTCHit16& hit() const { return rays_.hit; }
   float range(int lane) const { return rays_.ray.tfar[lane]; }  ///< metres
-  Vector3f Direction(int lane) const {
-    return {rays_.ray.dir_x[lane], rays_.ray.dir_y[lane], rays_.ray.dir_z[lane]};
-  }
 
  private:
   RTCRayHit16 rays_;
-  alignas(64) std::array<int, kPacket> valid_;
 };
 
 /// Rays towards a light, at most kPacket.

@@ -1,34 +1,37 @@
 #pragma once
 
-#include "apps/town/render/ray_scene.h"
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "apps/town/image/lanes.h"
 #include "apps/town/render/sky.h"
+#include "apps/town/render/surface_lanes.h"
 #include "apps/town/render/surroundings.h"
 #include "apps/town/world/scenery.h"
 
 namespace orb360::town {
 
-/// A piece of surface that fills (a part of) a pixel, with what is the same all over it.
-struct Surface {
-  Vector3f tone;  ///< factor on the texture: tint and blotches
-  const Texture* texture;
-  float level;       ///< mip level for one sample
-  Vector3f normal;   ///< unit, on the side of the ray's origin
-  float openness;    ///< share of the sky that is seen
-  float sun_cosine;  ///< how squarely the sun shines on it; 0 if from behind
-  Finish finish;
+inline constexpr float kMaximumRadiance =
+    5.0F;  ///< keeps one bright sample from outshining a pixel
+
+/// A sample of a pixel in each lane.
+struct SampleLanes {
+  Lanes3 direction;  ///< unit
+  /// In [0, 1): spread evenly over a pixel's samples, they blend two mip levels.
+  Lanes level_offset;
 };
 
-/// A hit's place in its texture, in tiles.
-Vector2f TextureCoordinates(const SurfaceHit& hit, float b, float c);
-
-/// The places in a texture of the points around a hit that lie in its triangle's plane.
-struct TextureMapping {
-  Vector2f here;                      ///< tiles
-  Eigen::Matrix<float, 2, 3> by_way;  ///< tiles per metre
-
-  Vector2f At(const Vector3f& way) const { return here + by_way * way; }
+/// What the rays of a packet see.
+struct SightLanes {
+  std::array<uint32_t, kLanes> surface;  ///< object and material; 0 for the sky
+  Lanes range;                           ///< metres; this and the following not for the sky
+  Lanes3 way;                            ///< from the eye to the surface
+  Lanes3 geometric_normal;               ///< unit
+  Lanes sun_cosine;                      ///< how squarely the sun shines on it; 0 if from behind
+  Lanes3 shade;                          ///< radiance where the sun is hidden
+  Lanes3 sun;                            ///< radiance that the sun adds; 0 for the sky
 };
-TextureMapping MapTexture(const SurfaceHit& hit, float b, float c);
 
 /// Turns hits into light.
 class Shader {
@@ -38,19 +41,11 @@ class Shader {
   const Light& light() const { return *light_; }
   const Sky& sky() const { return *sky_; }
 
-  /// `b` and `c` are the barycentric weights of the triangle's second and third corner, `footprint`
-  /// the width in metres, across the ray, of the area that one sample stands for.
-  Surface Describe(const SurfaceHit& hit, float b, float c, const Vector3f& direction,
-                   float footprint) const;
-
-  /// The texture's colour at a place on a surface. Offsets in [0, 1) that are spread evenly over a
-  /// pixel's samples blend two mip levels.
-  static Vector3f Colour(const Surface& surface, const Vector2f& uv, float level_offset);
-
-  /// Light that leaves the surface against `direction`, `range` metres from the eye; `albedo` is
-  /// the mean colour of its texture, `sunlit` the share of it that the sun reaches.
-  Vector3f Radiance(const Surface& surface, const Vector3f& albedo, float sunlit,
-                    const Vector3f& direction, float range) const;
+  /// Light from where the rays of a packet end, as the mean of `samples` (1 to 4): the first are
+  /// the rays themselves, the others lie on the plane through the triangle that a ray meets. One
+  /// sample is `sample_angle` wide, in radians. `met` is room to work in.
+  void Shade(const FrameScene& scene, const EyePacket& rays, std::span<const SampleLanes> samples,
+             float sample_angle, SurfaceLanes* met, SightLanes* sight) const;
 
  private:
   const Palette* palette_;

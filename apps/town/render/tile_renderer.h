@@ -10,7 +10,6 @@
 #include "apps/town/render/ray_packet.h"
 #include "apps/town/render/ray_scene.h"
 #include "apps/town/render/shading.h"
-#include "apps/town/render/sighting.h"
 
 namespace orb360::town {
 
@@ -22,15 +21,14 @@ inline constexpr std::array<std::array<double, 2>, kSamples> kSamplePattern = {
 
 /// For which of a pixel's four samples rays are traced, to the surface and from there to the sun.
 enum class Sampling {
-  /// For one; for the others where this one and those of the pixels around meet different surfaces.
-  /// Elsewhere they lie on one plane, so that the others can be placed by calculation: nothing is
-  /// lost but what is smaller than a pixel. Rays to the sun are saved in the same way.
+  /// For one; for all where this one and those of the pixels around meet different surfaces, or
+  /// some of them the sun and others not. Elsewhere they lie on one plane, so that the others can
+  /// be placed by calculation: nothing is lost but what is smaller than a pixel.
   kAdaptive,
   kFull,  ///< for all
 };
 
-/// Renders a picture piece by piece. Samples of a pixel that meet the same surface share its
-/// description and its lighting; each has its own texture sample and its own point on the sun.
+/// Renders a picture piece by piece.
 class TileRenderer {
  public:
   /// Pixels of a tile, so that with the samples around it it is a whole number of packets.
@@ -48,41 +46,42 @@ class TileRenderer {
   const Vector3f& At(int column, int row) const { return pixels_[IndexOf(column, row)]; }
 
  private:
-  struct Spot {
-    Sighting seen;
-    Surface surface;
-  };
+  static constexpr size_t kStride = kWidth + 1;
+  static constexpr size_t kPixels = kStride * (kHeight + 2);
+  static constexpr int kSide = RayDirections::kSquare;
+
+  /// A number of each pixel of the tile, of the column to its right and of the rows above and
+  /// below, by IndexOf.
+  using Plane = std::array<float, kPixels>;
   /// What the first sample of a pixel tells.
-  struct Corner {
-    bool sunlit : 1;
-    bool joins_right : 1;  ///< one plane fills the way to the first sample of the next pixel
-    bool joins_below : 1;
+  struct Corners {
+    std::array<uint32_t, kPixels> surface;
+    Plane range;
+    std::array<Plane, 3> way;
+    std::array<Plane, 3> normal;
+    std::array<Plane, 3> shade;  // mean over the samples, if all of them lie on its plane
+    std::array<Plane, 3> sun;
+    Plane sunlit;                              // 1 or 0
+    std::array<uint8_t, kPixels> joins_right;  // one plane fills the way to the next first sample
+    std::array<uint8_t, kPixels> joins_below;
   };
-  struct EdgePixel;
-  struct FlatPixel;
 
   size_t IndexOf(int column, int row) const {
     return static_cast<size_t>(row - tile_.y + 1) * kStride + static_cast<size_t>(column - tile_.x);
   }
-  Surface Describe(const Sighting& seen) const;
-  bool FacesSun(const Surface& surface) const { return has_sun_ && surface.sun_cosine > 0; }
   /// The point of the sun's disc that a sample looks at: each pixel's samples take turns, so that
   /// the first samples of neighbours together see whether a part of the disc is hidden.
-  const Vector3f& ToSun(const SamplePlace& place) const {
-    const auto turn = static_cast<size_t>(place.column + 2 * place.row + 2);
-    return to_sun_[(place.sample + turn) % kSamples];
+  const Vector3f& ToSun(int column, int row, size_t sample) const {
+    return to_sun_[(sample + static_cast<size_t>(column + 2 * row + 2)) % kSamples];
   }
-  Vector3f SkySample(const Vector3f& direction) const;
-  /// The light from a number of samples that meet one surface.
-  Vector3f Shade(const Spot& spot, const Vector3f& colours, int samples, int sunlit) const;
-
+  /// Traces a ray to a point of the sun, `sun_of(lane)`, from each surface that is seen.
+  template <typename SunOf>
+  void TraceShadows(const SunOf& sun_of);
   void TraceCorners();
-  void RenderPixel(int column, int row);
-  FlatPixel PlaceOnPlane(int column, int row) const;
-  void RenderPenumbras();
+  void KeepCorners(int left, int top);
+  void JoinCorners();
+  void RenderPixels();
   void RenderEdges();
-
-  static constexpr size_t kStride = kWidth + 1;
 
   const FrameScene* scene_;
   const Shader* shader_;
@@ -94,13 +93,14 @@ class TileRenderer {
   std::array<Vector3f, kSamples> to_sun_;
 
   cv::Rect tile_;
-  std::vector<Spot> spots_;           // of the first samples, by IndexOf
-  std::vector<Corner> corners_;       // likewise
-  std::vector<Vector3f> pixels_;      // likewise
-  std::vector<cv::Point> edges_;      // pixels that need all rays
-  std::vector<cv::Point> penumbras_;  // pixels on a plane that need more rays to the sun
+  Corners corners_;
+  std::array<Vector3f, kPixels> pixels_;  // by IndexOf
+  std::vector<cv::Point> edges_;          // pixels that need all rays
   EyePacket eye_rays_;
   ShadowPacket shadows_;
+  std::array<SampleLanes, kSamples> samples_;
+  SurfaceLanes met_;
+  SightLanes sight_;
 };
 
 }  // namespace orb360::town

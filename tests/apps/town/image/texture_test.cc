@@ -30,7 +30,7 @@ TEST(Texture, SampleAtATexelsCentreIsThatTexel) {
 TEST(Texture, SampleWraps) {
   const Texture ramp = Texture::Paint(16, [](float x, float y) { return Rgba{x, y, 0, 1}; });
   for (const float shift : {-3.0F, -1.0F, 1.0F, 7.0F}) {
-    EXPECT_FLOAT_EQ(ramp.Sample(0.3F, 0.6F, 0).r, ramp.Sample(0.3F + shift, 0.6F - shift, 0).r);
+    EXPECT_NEAR(ramp.Sample(0.3F, 0.6F, 0).r, ramp.Sample(0.3F + shift, 0.6F - shift, 0).r, 1e-5F);
   }
 }
 
@@ -61,10 +61,6 @@ TEST(Texture, RefusesColoursThatAreNoNumbers) {
   std::vector<Rgba> texels(4);
   texels[2].g = std::nanf("");
   EXPECT_THROW(Texture(2, 2, texels), ContractError);
-}
-
-TEST(FastLog2, IsWithinATenthOfTheLogarithm) {
-  for (float x = 1e-4F; x < 1e6F; x *= 1.07F) EXPECT_NEAR(FastLog2(x), std::log2(x), 0.09F) << x;
 }
 
 }  // namespace
