@@ -1,5 +1,6 @@
 // The whole job on a rendered drive, with the network that comes with the program.
 
+#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "slam/io/atomic_file.h"
 #include "tests/apps/orb360/program.h"
@@ -30,9 +32,10 @@ class TownDriveSlow : public testing::Test {
   static std::string Drive() { return *folder_ / "drive"; }
 
   /// What `evaluate --json` tells of a run with these options.
-  static nlohmann::json Track(const std::vector<std::string>& options, bool is_rough) {
+  static nlohmann::json Track(const std::vector<std::string>& options, bool is_rough,
+                              const std::string& drive = Drive()) {
     const std::string out = *folder_ / "out";
-    std::vector<std::string> arguments = {"run", Drive(), "--quiet", "--out", out};
+    std::vector<std::string> arguments = {"run", drive, "--quiet", "--out", out};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const ProgramResult run = RunOrb360(arguments);
     EXPECT_EQ(run.status, 0) << run.err;
@@ -66,6 +69,26 @@ TEST_F(TownDriveSlow, IsRoughlyInMetresByDenseDepthWhereNoLandmarkLiesOnTheGroun
   // The network has not learned to go without points on the ground; in units of its own, the map's
   // would be about 5.
   EXPECT_NEAR(errors["scale_factor"].get<double>(), 1, 0.3);
+}
+
+TEST_F(TownDriveSlow, TakesItsMetresFromLandmarksAsSoonAsTheyLieOnTheGround) {
+  // First the drive is over a road without texture.
+  const std::string drive = *folder_ / "smooth";
+  std::filesystem::copy(Drive(), drive, std::filesystem::copy_options::recursive);
+  constexpr int kSmooth = 80;
+  for (int i = 0; i < kSmooth; ++i) {
+    char name[32];
+    std::snprintf(name, sizeof(name), "/rgb/%06d.jpg", i);
+    cv::Mat image = cv::imread(drive + name);
+    ASSERT_FALSE(image.empty()) << name;
+    cv::Mat road = image.rowRange(172, 320);
+    cv::GaussianBlur(road, road, {}, 15);
+    cv::imwrite(drive + name, image);
+  }
+  Track({"--mask", "none", "--max-frames", std::to_string(kSmooth)}, true, drive);
+  const nlohmann::json errors = Track({"--mask", "none"}, false, drive);
+  EXPECT_EQ(errors["tracked_share"], 1);
+  EXPECT_NEAR(errors["scale_factor"].get<double>(), 1, 0.03);
 }
 
 }  // namespace
