@@ -28,6 +28,10 @@ class EyePacket {
 /// Rays towards a light, at most kPacket.
 class ShadowPacket {
  public:
+  ShadowPacket() {
+    for (int lane = 0; lane < kPacket; ++lane) Set(lane, Vector3f::Zero(), Vector3f::Zero());
+    Clear();
+  }
   void Clear() {
     valid_.fill(0);
     any_ = false;
