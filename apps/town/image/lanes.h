@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include <Eigen/Core>
+
 namespace orb360::town {
 
 /// Number of rays and samples that are worked on together: what Embree traces as one packet.
@@ -15,6 +17,18 @@ struct Lanes3 {
   Lanes x;  ///< or red
   Lanes y;
   Lanes z;
+
+  Eigen::Vector3f At(size_t lane) const { return {x[lane], y[lane], z[lane]}; }
+  void Set(size_t lane, const Eigen::Vector3f& v) {
+    x[lane] = v.x();
+    y[lane] = v.y();
+    z[lane] = v.z();
+  }
+  void Fill(float value) {
+    x.fill(value);
+    y.fill(value);
+    z.fill(value);
+  }
 };
 
 }  // namespace orb360::town

@@ -16,10 +16,7 @@ void GatherLane(const FrameScene& scene, const Palette& palette, const EyePacket
   met->b[i] = rays.hit().u[lane];
   met->c[i] = rays.hit().v[lane];
   met->range[i] = rays.range(lane);
-  const Vector3f normal = scene.GeometricNormal(rays.hit(), lane);
-  met->geometric_normal.x[i] = normal.x();
-  met->geometric_normal.y[i] = normal.y();
-  met->geometric_normal.z[i] = normal.z();
+  met->geometric_normal.Set(i, scene.GeometricNormal(rays.hit(), lane));
   for (size_t corner = 0; corner < 3; ++corner) {
     const uint32_t index = triangle.vertices[corner];
     met->vertices[corner][i] = hit.mesh->vertices[index];
@@ -35,14 +32,11 @@ void GatherLane(const FrameScene& scene, const Palette& palette, const EyePacket
   met->blotch_scale[i] = 1 / (kBlotchMetres * material.tiles_per_metre);
   met->any_blotches |= material.blotches > 0;
   met->openness[i] = 1;
-  met->paint.x[i] = met->paint.y[i] = met->paint.z[i] = 1;
+  met->paint.Set(i, Vector3f::Ones());
   if (hit.instance == nullptr) return;
   met->openness[i] = hit.instance->openness;
-  if (material.finish == Finish::kPaint) {
-    met->paint.x[i] = hit.instance->tint.r;
-    met->paint.y[i] = hit.instance->tint.g;
-    met->paint.z[i] = hit.instance->tint.b;
-  }
+  const Rgba& tint = hit.instance->tint;
+  if (material.finish == Finish::kPaint) met->paint.Set(i, {tint.r, tint.g, tint.b});
   if (!met->any_turned) {
     for (size_t k = 0; k < 9; ++k) met->rotation[k].fill(k % 4 == 0 ? 1.0F : 0.0F);
     met->any_turned = true;
@@ -55,11 +49,10 @@ void GatherLane(const FrameScene& scene, const Palette& palette, const EyePacket
 }
 
 void RepeatLane(size_t from, size_t to, SurfaceLanes* met) {
-  for (Lanes* lanes :
-       {&met->b, &met->c, &met->range, &met->geometric_normal.x, &met->geometric_normal.y,
-        &met->geometric_normal.z, &met->texels_per_metre, &met->paint.x, &met->paint.y,
-        &met->paint.z, &met->openness, &met->blotches, &met->blotch_scale})
+  for (Lanes* lanes : {&met->b, &met->c, &met->range, &met->texels_per_metre, &met->openness,
+                       &met->blotches, &met->blotch_scale})
     (*lanes)[to] = (*lanes)[from];
+  for (Lanes3* lanes : {&met->geometric_normal, &met->paint}) lanes->Set(to, lanes->At(from));
   if (met->any_turned) {
     for (Lanes& element : met->rotation) element[to] = element[from];
   }

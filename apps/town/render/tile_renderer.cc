@@ -52,9 +52,8 @@ void TileRenderer::TraceShadows(const SunOf& sun_of) {
   if (!has_sun_) return;
   for (size_t i = 0; i < kPacket; ++i) {
     if (sight_.surface[i] == 0 || sight_.sun_cosine[i] <= 0) continue;
-    const Vector3f way(sight_.way.x[i], sight_.way.y[i], sight_.way.z[i]);
-    const Vector3f normal(sight_.geometric_normal.x[i], sight_.geometric_normal.y[i],
-                          sight_.geometric_normal.z[i]);
+    const Vector3f way = sight_.way.At(i);
+    const Vector3f normal = sight_.geometric_normal.At(i);
     // From a little before the surface, in metres: well above the rounding of coordinates.
     const float lift = 2e-3F + 1e-5F * sight_.range[i];
     const float side = normal.dot(way) > 0 ? -lift : lift;
@@ -170,10 +169,7 @@ void TileRenderer::RenderEdges() {
     };
     for (size_t i = 0; i < kPacket; ++i) {
       const cv::Point& pixel = pixel_of(i);
-      const Vector3f direction = directions_->At(pixel.x, pixel.y, i % kSamples);
-      sample.direction.x[i] = direction.x();
-      sample.direction.y[i] = direction.y();
-      sample.direction.z[i] = direction.z();
+      sample.direction.Set(i, directions_->At(pixel.x, pixel.y, i % kSamples));
     }
     eye_rays_.Trace(*scene_, eye_, sample.direction);
     shader_->Shade(*scene_, eye_rays_, {&sample, 1}, sample_angle_, &met_, &sight_);
@@ -184,9 +180,7 @@ void TileRenderer::RenderEdges() {
       Vector3f sum = Vector3f::Zero();
       for (size_t i = k * kSamples; i < (k + 1) * kSamples; ++i) {
         const float sunlit = shadows_.IsLit(static_cast<int>(i)) ? 1 : 0;
-        const Vector3f radiance(sight_.shade.x[i] + sunlit * sight_.sun.x[i],
-                                sight_.shade.y[i] + sunlit * sight_.sun.y[i],
-                                sight_.shade.z[i] + sunlit * sight_.sun.z[i]);
+        const Vector3f radiance = sight_.shade.At(i) + sunlit * sight_.sun.At(i);
         sum += radiance.cwiseMin(kMaximumRadiance);
       }
       pixels_[IndexOf(edges_[first + k].x, edges_[first + k].y)] = sum / kSamples;

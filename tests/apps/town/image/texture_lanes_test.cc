@@ -36,7 +36,7 @@ TEST(AddSamples, AddsWhatEachTexturesSampleIs) {
     }
     ForEachDispatchTarget([&] {
       Lanes3 sum;
-      for (Lanes* channel : {&sum.x, &sum.y, &sum.z}) channel->fill(1);
+      sum.Fill(1);
       AddSamples(chosen, u, v, level, &sum);
       for (size_t i = 0; i < kLanes; ++i) {
         // Places are rounded to 1/256 of a texel, and neighbours may differ by all there is.

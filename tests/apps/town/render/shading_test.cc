@@ -78,7 +78,7 @@ TEST(Shade, AMatteSurfaceThrowsBackSkySunAndGround) {
     const SightLanes sight = Look(scene, shader, eye, {samples.data(), 1});
     for (size_t i = 0; i < kLanes; ++i) {
       ASSERT_NE(sight.surface[i], 0U);
-      const Vector3f point = eye + Vector3f(sight.way.x[i], sight.way.y[i], sight.way.z[i]);
+      const Vector3f point = eye + sight.way.At(i);
       EXPECT_NEAR(point.z(), 0, 1e-5);
       EXPECT_NEAR(sight.range[i], (point - eye).norm(), 1e-5);
       EXPECT_NEAR(sight.sun_cosine[i], kLight.to_sun.z(), 1e-5);
