@@ -9,7 +9,7 @@ namespace {
 constexpr double kSamePlace = 5;    // m
 constexpr double kTravelled = 50;   // m
 constexpr double kOtherPlace = 10;  // m: from there on a loop is wrong
-constexpr double kLate = 1;         // s
+constexpr double kSlack = 1;        // s
 constexpr double kCosAcross = 0.5;  // of the angle between the ways the camera looks
 
 Eigen::Vector3d Ahead(const StampedPose& pose) {
@@ -88,7 +88,7 @@ LoopErrors CompareLoops(std::span<const StampedPose> truth, std::span<const Loop
   for (const TrueRevisit& revisit : FindRevisits(truth)) {
     ++errors.revisits;
     errors.closed += std::ranges::any_of(right, [&](const LoopTimes& loop) {
-      return loop.now >= revisit.begin && loop.now <= revisit.end + kLate;
+      return loop.now >= revisit.begin - kSlack && loop.now <= revisit.end + kSlack;
     });
   }
   return errors;

@@ -68,9 +68,11 @@ TEST(Revisit, IsClosedByALoopThatIsRightAndInTime) {
   // On the other side of the square.
   EXPECT_EQ(compare({{16.5, 8.0}}).closed, 0);
   EXPECT_EQ(compare({{16.5, 8.0}, {16.6, 0.4}}).wrong, 1);
-  // 9 m before the corner: right, but before there was anything to close.
-  EXPECT_EQ(compare({{15.1, 0.0}}).closed, 0);
+  // Recognised 9 m before the corner.
+  EXPECT_EQ(compare({{15.1, 0.0}}).closed, 1);
   EXPECT_EQ(compare({{15.1, 0.0}}).wrong, 0);
+  // Long before it.
+  EXPECT_EQ(compare({{14.1, 0.0}}).closed, 0);
   EXPECT_EQ(CompareLoops({}, {}).revisits, 0);
 }
 
