@@ -15,28 +15,29 @@ inline constexpr float kBlotchMetres = 31.0F;  ///< across which the large-scale
 /// What the rays of a packet meet, gathered from meshes and materials. Lanes without a hit repeat
 /// one that has, so that all can be calculated with.
 struct SurfaceLanes {
-  std::array<bool, kLanes> hits;
-  std::array<uint32_t, kLanes> surface;  ///< object and material; 0 where nothing is met
-  Lanes b;                               ///< barycentric weights of the second corner
-  Lanes c;                               ///< and of the third
-  Lanes range;                           ///< metres
-  Lanes3 geometric_normal;               ///< of any length, in the world
+  Lanes b;                  ///< barycentric weights of the second corner
+  Lanes c;                  ///< and of the third
+  Lanes range;              ///< metres
+  Lanes3 geometric_normal;  ///< of any length, in the world
 
   alignas(64) std::array<std::array<Vertex, kLanes>, 3> vertices;                 ///< by corner
   alignas(64) std::array<std::array<std::array<float, 4>, kLanes>, 3> positions;  ///< likewise
   /// From the frame of vertices and positions to the world, by row and column; only where
   /// `any_turned`.
   std::array<Lanes, 9> rotation;
-  bool any_turned;
 
-  std::array<const Texture*, kLanes> texture;
   Lanes texels_per_metre;  ///< of level 0, the geometric mean of both directions
   Lanes3 paint;            ///< factor on the colour
   Lanes openness;          ///< factor on the vertices'
   Lanes blotches;          ///< strength of the large-scale variation
   Lanes blotch_scale;      ///< its tiles for each of the texture's
-  bool any_blotches;
   alignas(64) std::array<int32_t, kLanes> finish;
+  std::array<const Texture*, kLanes> texture;
+
+  std::array<uint32_t, kLanes> surface;  ///< object and material; 0 where nothing is met
+  std::array<bool, kLanes> hits;
+  bool any_turned;
+  bool any_blotches;
   bool any_mirror;
 };
 
