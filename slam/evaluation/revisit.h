@@ -32,8 +32,8 @@ struct LoopErrors {
   int wrong = 0;   // loops whose two ends are more than 10 m apart
 };
 
-/// A revisit is closed by a loop that is right and comes on the stretch or within a second of it: it
-/// takes a few keyframes to be sure, and a place may be recognised from farther away.
+/// A revisit is closed by a loop that is right and comes on the stretch or within a second of it:
+/// it takes a few keyframes to be sure, and a place may be recognised from farther away.
 LoopErrors CompareLoops(std::span<const StampedPose> truth, std::span<const LoopTimes> loops);
 
 }  // namespace orb360

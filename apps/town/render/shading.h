@@ -10,8 +10,8 @@
 
 namespace orb360::town {
 
-inline constexpr float kMaximumRadiance =
-    5.0F;  ///< keeps one bright sample from outshining a pixel
+/// Keeps one bright sample from outshining a pixel.
+inline constexpr float kMaximumRadiance = 5.0F;
 
 /// Turns hits into light.
 class Shader {

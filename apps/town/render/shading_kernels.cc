@@ -198,8 +198,10 @@ void IlluminateKernel(const SurfaceLanes& met, const DescribedLanes& described,
     V3 shade = Product(colour, ambient);
     V3 sun = hn::Load(d, sight->sun_cosine.data() + i) * Product(colour, Constant3(light.sun));
     const VI finish = hn::Load(di, met.finish.data() + i);
-    const auto is = [&](int32_t kind)
-                        HWY_ATTR { return hn::RebindMask(d, hn::Eq(finish, hn::Set(di, kind))); };
+    const auto is = [&](int32_t kind) HWY_ATTR {
+      const auto same = hn::Eq(finish, hn::Set(di, kind));
+      return hn::RebindMask(d, same);
+    };
     shade = MulAdd3(hn::IfThenElseZero(is(kLamp), Constant(0.7F)), colour, shade);
     if (met.any_mirror) {
       const auto is_glass = is(kGlass);
