@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <map>
 #include <memory>
 #include <numbers>
+#include <utility>
 
 #include "nn/base/check.h"
 
@@ -15,6 +17,13 @@ namespace {
 /// nearly the same to where half of what one sees is hidden from the other.
 constexpr double kDistances[] = {0.125, 0.25, 0.5, 1.0, 2.0};
 
+/// A view with what is needed of its picture.
+struct LoadedView {
+  DepthView depth;
+  double median_range;  // world units
+  cv::Mat color;        // CV_8UC3
+};
+
 /// Views that were used last.
 class ViewCache {
  public:
@@ -22,37 +31,45 @@ class ViewCache {
             const ConfirmationOptions& options, size_t capacity)
       : views_(views), load_(load), options_(options), capacity_(capacity) {}
 
-  /// Stays valid until the next call but `capacity`.
-  const DepthView& Get(size_t index) {
-    const auto found = entries_.find(index);
-    if (found != entries_.end()) {
-      found->second.used = ++now_;
-      return found->second.view;
+  std::shared_ptr<const LoadedView> Get(size_t index) {
+    auto found = entries_.find(index);
+    if (found == entries_.end()) {
+      if (entries_.size() >= capacity_) {
+        entries_.erase(std::ranges::min_element(
+            entries_, {}, [](const auto& entry) { return entry.second.used; }));
+      }
+      found = entries_.emplace(index, Entry{Load(index), 0}).first;
     }
-    return Insert(index, load_(views_[index].frame_index));
-  }
-
-  const DepthView& Insert(size_t index, const DenseDepth& depth) {
-    if (entries_.size() >= capacity_) {
-      entries_.erase(std::ranges::min_element(entries_, {},
-                                              [](const auto& entry) { return entry.second.used; }));
-    }
-    const DenseView& view = views_[index];
-    Entry entry{DepthView(depth, view.world_from_camera, view.scale, options_), ++now_};
-    return entries_.insert_or_assign(index, std::move(entry)).first->second.view;
+    found->second.used = ++now_;
+    return found->second.view;
   }
 
  private:
   struct Entry {
-    DepthView view;
+    std::shared_ptr<const LoadedView> view;
     std::int64_t used;
   };
+
+  std::shared_ptr<const LoadedView> Load(size_t index) const {
+    const DenseView& view = views_[index];
+    const DenseDepth depth = load_(view.frame_index);
+    return std::make_shared<LoadedView>(
+        LoadedView{DepthView(depth, view.world_from_camera, view.scale, options_.min_error),
+                   view.scale * MedianRange(depth.range), depth.color});
+  }
+
   std::span<const DenseView> views_;
   const DepthLoader& load_;
   const ConfirmationOptions& options_;
   const size_t capacity_;
   std::map<size_t, Entry> entries_;
   std::int64_t now_ = 0;
+};
+
+/// A view and those that it is compared with.
+struct Comparison {
+  std::shared_ptr<const LoadedView> view;
+  std::vector<std::shared_ptr<const LoadedView>> others;
 };
 
 /// A hundredth of the median of a few views' median ranges.
@@ -135,24 +152,45 @@ DenseCloudStatistics FuseCloud(std::span<const DenseView> views, const DepthLoad
                                  options.max_error_voxels * statistics.voxel_size};
   ViewCache cache(views, load, options.confirmation, static_cast<size_t>(options.max_views));
   VoxelGrid grid(statistics.voxel_size);
-  for (size_t i = 0; i < views.size(); ++i) {
-    const DenseDepth depth = load(views[i].frame_index);
-    const double median_range = views[i].scale * MedianRange(depth.range);
-    if (!(median_range > 0)) continue;
-    ++statistics.views;
-    const DepthView& view = cache.Insert(i, depth);
-    std::vector<const DepthView*> others;
-    for (const size_t neighbour : ChooseNeighbours(views, i, median_range, options.max_neighbours))
-      others.push_back(&cache.Get(neighbour));
-    for (const ConfirmedPoint& point :
-         ConfirmSurface(view, others, options.confirmation, sampling)) {
-      const cv::Vec3b& bgr = depth.color.at<cv::Vec3b>(point.row, point.column);
-      grid.Add(point.position, point.normal, {bgr[2], bgr[1], bgr[0]}, point.error,
-               static_cast<int>(i));
-      ++statistics.confirmed;
+  const auto prepare = [&](size_t index) {
+    Comparison comparison{cache.Get(index), {}};
+    const double median_range = comparison.view->median_range;
+    if (!(median_range > 0)) return comparison;
+    for (const size_t other :
+         ChooseNeighbours(views, index, median_range, options.max_neighbours)) {
+      comparison.others.push_back(cache.Get(other));
     }
+    return comparison;
+  };
+  const auto collect = [&](const std::vector<ConfirmedPoint>& points, const cv::Mat& color,
+                           size_t index) {
+    std::vector<VoxelSample> samples;
+    samples.reserve(points.size());
+    for (const ConfirmedPoint& point : points) {
+      const cv::Vec3b& bgr = color.at<cv::Vec3b>(point.row, point.column);
+      samples.push_back({point.position, point.normal, {bgr[2], bgr[1], bgr[0]}, point.error});
+    }
+    grid.Add(samples, static_cast<int>(index));
     if (grid.num_voxels() > options.max_voxels) sink(grid.TakeOldest());
+  };
+  // Files are read for the next view, and the points of the last one collected, beside the
+  // comparison of this one: each of the three goes through the views in their order.
+  std::future<Comparison> next;
+  std::future<void> collecting;
+  for (size_t i = 0; i < views.size(); ++i) {
+    const Comparison now = next.valid() ? next.get() : prepare(i);
+    if (i + 1 < views.size()) next = std::async(std::launch::async, prepare, i + 1);
+    if (!(now.view->median_range > 0)) continue;
+    ++statistics.views;
+    std::vector<const DepthView*> others;
+    for (const auto& other : now.others) others.push_back(&other->depth);
+    std::vector<ConfirmedPoint> points =
+        ConfirmSurface(now.view->depth, others, options.confirmation, sampling);
+    statistics.confirmed += static_cast<std::int64_t>(points.size());
+    if (collecting.valid()) collecting.get();
+    collecting = std::async(std::launch::async, collect, std::move(points), now.view->color, i);
   }
+  if (collecting.valid()) collecting.get();
   sink(grid.TakeAll());
   return statistics;
 }

@@ -1,14 +1,11 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "slam/depth/dense_depth.h"
-#include "slam/geometry/rigid3.h"
+#include "slam/depth/depth_view.h"
 
 namespace orb360 {
 
@@ -28,54 +25,6 @@ struct ConfirmationOptions {
   /// Keyframes of the same place err alike: together they are at most so many times as certain as
   /// the best of them (in variance).
   double max_independent = 4.0;
-};
-
-/// Dense depth of a keyframe in the world, ready for comparison.
-class DepthView {
- public:
-  /// `scale`: world units in one unit of the ranges. Contract: images of an even width, 8 x 4 or
-  /// more.
-  DepthView(const DenseDepth& depth, const Rigid3& world_from_camera, double scale,
-            const ConfirmationOptions& options);
-
-  int width() const { return range_.cols; }
-  int height() const { return range_.rows; }
-  const Rigid3& world_from_camera() const { return world_from_camera_; }
-
-  /// World units; 0 where unknown.
-  float range(int row, int column) const { return range_.at<float>(row, column); }
-  /// Of ln(range), to be expected.
-  float error(int row, int column) const {
-    return errors_[confidence_.at<std::uint8_t>(row, column)];
-  }
-  /// The least of the ranges of a pixel and the eight around it; 0 where one is unknown.
-  float Nearest(int row, int column) const;
-
-  /// Unit vector through a pixel's centre, camera frame.
-  Eigen::Vector3f BearingOf(int row, int column) const;
-
-  /// The range along a bearing (camera frame, unit), between pixels: linear in 1 / range, which is
-  /// exact on planes, where the four pixels around see one surface; that of the nearest pixel
-  /// otherwise. With the error of that pixel. Range 0 where unknown.
-  struct Sample {
-    float range;
-    float error;
-    int row;  // of the nearest pixel
-    int column;
-  };
-  Sample At(const Eigen::Vector3f& bearing) const;
-
-  /// The surface around a pixel as a plane, fitted to ranges of the pixels around it: unit normal
-  /// towards the camera, camera frame. Zero where there is none.
-  Eigen::Vector3f Normal(int row, int column) const;
-
- private:
-  Rigid3 world_from_camera_;
-  cv::Mat range_;
-  cv::Mat confidence_;                       // CV_8UC1, times 255: a quarter of the memory
-  std::array<float, 256> errors_{};          // by that
-  std::vector<Eigen::Vector2f> longitudes_;  // cosine and sine of each column's longitude
-  std::vector<Eigen::Vector2f> latitudes_;   // of each row's latitude
 };
 
 /// A point of a keyframe that others have confirmed.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <hwy/cache_control.h>
+
 #include "nn/base/check.h"
 
 namespace orb360 {
@@ -50,6 +52,27 @@ Eigen::Map<const Eigen::Vector3f> Sum(const std::array<float, 3>& sum) {
   return Eigen::Map<const Eigen::Vector3f>(sum.data());
 }
 
+/// What a sample adds to its voxel; without a key where it is too far away.
+Voxel PartOf(const VoxelSample& sample, double voxel_size, int view) {
+  ORB360_CHECK(sample.error > 0, sample.error);
+  const Eigen::Vector3d in_voxels = sample.position / voxel_size;
+  std::array<std::int64_t, 3> index{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double whole = std::floor(in_voxels[axis]);
+    if (!(std::abs(whole) < static_cast<double>(kIndexOffset - 1))) return {};
+    index[static_cast<size_t>(axis)] = static_cast<std::int64_t>(whole);
+  }
+  Voxel part;
+  part.key = MakeKey(index);
+  const auto size = static_cast<float>(voxel_size);
+  part.information = part.best = size * size / (sample.error * sample.error);
+  Sum(part.offset) = part.information * (in_voxels - CentreOf(part.key)).cast<float>();
+  Sum(part.normal) = part.information * sample.normal;
+  Sum(part.rgb) = part.information * Eigen::Vector3f(sample.rgb[0], sample.rgb[1], sample.rgb[2]);
+  part.last_view = view;
+  return part;
+}
+
 }  // namespace
 
 Voxel& Voxel::operator+=(const Voxel& other) {
@@ -74,38 +97,39 @@ void VoxelGrid::Rebuild(std::span<const Voxel> voxels, size_t capacity) {
   count_ = voxels.size();
 }
 
-void VoxelGrid::Add(const Eigen::Vector3d& position, const Eigen::Vector3f& normal,
-                    const std::array<std::uint8_t, 3>& rgb, float error, int view) {
-  ORB360_CHECK(error > 0, error);
-  const Eigen::Vector3d in_voxels = position / size_;
-  std::array<std::int64_t, 3> index{};
-  for (int axis = 0; axis < 3; ++axis) {
-    const double whole = std::floor(in_voxels[axis]);
-    if (!(std::abs(whole) < static_cast<double>(kIndexOffset - 1))) return;
-    index[static_cast<size_t>(axis)] = static_cast<std::int64_t>(whole);
-  }
+void VoxelGrid::Reserve(size_t more) {
   // At most three quarters full, so that searches stay short.
-  if (4 * (count_ + 1) > 3 * slots_.size()) {
-    std::vector<Voxel> voxels;
-    voxels.reserve(count_);
-    std::ranges::copy_if(slots_, std::back_inserter(voxels),
-                         [](const Voxel& v) { return v.key != 0; });
-    Rebuild(voxels, std::max(kFirstCapacity, 2 * slots_.size()));
-  }
-  Voxel part;
-  part.key = MakeKey(index);
-  const auto size = static_cast<float>(size_);
-  part.information = part.best = size * size / (error * error);
-  Sum(part.offset) = part.information * (in_voxels - CentreOf(part.key)).cast<float>();
-  Sum(part.normal) = part.information * normal;
-  Sum(part.rgb) = part.information * Eigen::Vector3f(rgb[0], rgb[1], rgb[2]);
-  part.last_view = view;
-  Voxel& voxel = Find(part.key);
-  if (voxel.key == 0) {
-    voxel = part;
-    ++count_;
-  } else {
-    voxel += part;
+  if (4 * (count_ + more) <= 3 * slots_.size()) return;
+  std::vector<Voxel> voxels;
+  voxels.reserve(count_);
+  std::ranges::copy_if(slots_, std::back_inserter(voxels),
+                       [](const Voxel& v) { return v.key != 0; });
+  Rebuild(voxels, std::max(kFirstCapacity, 2 * slots_.size()));
+}
+
+void VoxelGrid::Add(std::span<const VoxelSample> samples, int view) {
+  // A few at a time: their places are fetched from memory while the rest of them is prepared.
+  constexpr size_t kBatch = 32;
+  std::array<Voxel, kBatch> parts;
+  for (size_t first = 0; first < samples.size(); first += kBatch) {
+    const auto batch = samples.subspan(first, std::min(kBatch, samples.size() - first));
+    Reserve(batch.size());
+    for (size_t i = 0; i < batch.size(); ++i) {
+      parts[i] = PartOf(batch[i], size_, view);
+      const Voxel* slot = &slots_[Hash(parts[i].key) & (slots_.size() - 1)];
+      hwy::Prefetch(&slot->key);
+      hwy::Prefetch(&slot->last_view);  // perhaps in the next line of the cache
+    }
+    for (const Voxel& part : std::span(parts).first(batch.size())) {
+      if (part.key == 0) continue;
+      Voxel& voxel = Find(part.key);
+      if (voxel.key == 0) {
+        voxel = part;
+        ++count_;
+      } else {
+        voxel += part;
+      }
+    }
   }
 }
 

@@ -25,14 +25,21 @@ struct Voxel {
   Voxel& operator+=(const Voxel& other);
 };
 
+/// A point that falls into a grid.
+struct VoxelSample {
+  Eigen::Vector3d position;  // world
+  Eigen::Vector3f normal;
+  std::array<std::uint8_t, 3> rgb;
+  float error;  // to be expected, world units
+};
+
 /// Cubes of one size in the world, filled with points one keyframe after the other.
 class VoxelGrid {
  public:
   explicit VoxelGrid(double size) : size_(size) {}
 
-  /// `error`: expected, world units. Points more than 2^20 voxels from the origin are left out.
-  void Add(const Eigen::Vector3d& position, const Eigen::Vector3f& normal,
-           const std::array<std::uint8_t, 3>& rgb, float error, int view);
+  /// Adds what a keyframe sees. Points more than 2^20 voxels from the origin are left out.
+  void Add(std::span<const VoxelSample> samples, int view);
 
   size_t num_voxels() const { return count_; }
 
@@ -43,7 +50,10 @@ class VoxelGrid {
 
  private:
   std::vector<Voxel> Take(int last_view);
+  /// The place of a key's voxel, or where it would be put.
   Voxel& Find(std::uint64_t key);
+  /// Makes room for so many new voxels.
+  void Reserve(size_t more);
   void Rebuild(std::span<const Voxel> voxels, size_t capacity);
 
   const double size_;

@@ -67,6 +67,16 @@ struct RangeRoom {
     return depth;
   }
 
+  /// The wall's normal, inward, at `range` along a ray of a camera; camera frame.
+  Eigen::Vector3d NormalAlong(const Rigid3& world_from_camera, const Eigen::Vector3d& bearing,
+                              double range) const {
+    const Eigen::Vector3d point = world_from_camera * Eigen::Vector3d(range * bearing);
+    int axis = 0;
+    (half_size - point.cwiseAbs()).minCoeff(&axis);
+    const Eigen::Vector3d inward = (point[axis] > 0 ? -1.0 : 1.0) * Eigen::Vector3d::Unit(axis);
+    return world_from_camera.rotation.inverse() * inward;
+  }
+
   /// Distance of a point inside from the walls.
   double DistanceFromWalls(const Eigen::Vector3d& point) const {
     return (half_size - point.cwiseAbs()).cwiseAbs().minCoeff();

@@ -11,12 +11,14 @@ namespace {
 
 const Eigen::Vector3f kUp(0, 0, 1);
 
+void AddOne(const VoxelSample& sample, int view, VoxelGrid* grid) { grid->Add({&sample, 1}, view); }
+
 TEST(VoxelGrid, APointIsTheMeanWeightedByCertainty) {
   VoxelGrid grid(0.1);
   // Below zero, where rounding is easily wrong. The second is twice as certain: four times the
   // weight.
-  grid.Add({-0.31, 0.52, 7.04}, {0, 0, 1}, {10, 20, 30}, 0.02f, 0);
-  grid.Add({-0.36, 0.57, 7.09}, {1, 0, 0}, {60, 120, 80}, 0.01f, 1);
+  AddOne({{-0.31, 0.52, 7.04}, {0, 0, 1}, {10, 20, 30}, 0.02f}, 0, &grid);
+  AddOne({{-0.36, 0.57, 7.09}, {1, 0, 0}, {60, 120, 80}, 0.01f}, 1, &grid);
   const std::vector<Voxel> voxels = grid.TakeAll();
   ASSERT_EQ(voxels.size(), 1u);
   const SurfacePoint point = MakeSurfacePoint(voxels[0], 0.1, 100.0);
@@ -38,7 +40,7 @@ TEST(VoxelGrid, HoldsWhatAMapHolds) {
   for (int i = 0; i < 300000; ++i) {  // Grows several times.
     const std::array<int, 3> cell{index(random), index(random), index(random)};
     ++counts[cell];
-    grid.Add({cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}, kUp, {}, 1.0f, i);
+    AddOne({{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5}, kUp, {}, 1.0f}, i, &grid);
   }
   EXPECT_EQ(grid.num_voxels(), counts.size());
   const std::vector<Voxel> voxels = grid.TakeAll();
@@ -55,10 +57,35 @@ TEST(VoxelGrid, HoldsWhatAMapHolds) {
   }
 }
 
+TEST(VoxelGrid, ManyAtOnceAreTheSameAsOneByOne) {
+  VoxelGrid together(1.0);
+  VoxelGrid alone(1.0);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> place(-12.0, 12.0);
+  std::vector<VoxelSample> samples;
+  for (int i = 0; i < 100003; ++i) {  // Several in a voxel, also close behind each other.
+    const Eigen::Vector3d position(place(random), place(random), i % 50 == 0 ? 1e9 : 0.5);
+    samples.push_back({position, kUp, {static_cast<std::uint8_t>(i % 256), 0, 9}, 0.5f});
+    AddOne(samples.back(), 7, &alone);
+  }
+  together.Add(samples, 7);
+  const std::vector<Voxel> expected = alone.TakeAll();
+  const std::vector<Voxel> voxels = together.TakeAll();
+  ASSERT_EQ(voxels.size(), 24u * 24u);
+  ASSERT_EQ(voxels.size(), expected.size());
+  for (size_t i = 0; i < voxels.size(); ++i) {
+    ASSERT_EQ(voxels[i].key, expected[i].key);
+    ASSERT_EQ(voxels[i].information, expected[i].information);
+    ASSERT_EQ(voxels[i].offset, expected[i].offset);
+    ASSERT_EQ(voxels[i].rgb, expected[i].rgb);
+    ASSERT_EQ(voxels[i].last_view, 7);
+  }
+}
+
 TEST(VoxelGrid, GivesTheOldestHalfAndKeepsTheRest) {
   VoxelGrid grid(1.0);
-  for (int view = 0; view < 100; ++view) grid.Add({view + 0.5, 0, 0}, kUp, {}, 1.0f, view);
-  grid.Add({0.5, 0, 0}, kUp, {}, 1.0f, 100);  // The oldest becomes the newest.
+  for (int view = 0; view < 100; ++view) AddOne({{view + 0.5, 0, 0}, kUp, {}, 1.0f}, view, &grid);
+  AddOne({{0.5, 0, 0}, kUp, {}, 1.0f}, 100, &grid);  // The oldest becomes the newest.
   const std::vector<Voxel> old = grid.TakeOldest();
   EXPECT_GE(old.size(), 50u);
   EXPECT_LE(old.size(), 51u);
@@ -77,8 +104,8 @@ TEST(VoxelGrid, PartsOfAVoxelAddUp) {
   for (int i = 0; i < 20; ++i) {
     const Eigen::Vector3d position(place(random), place(random), place(random));
     const std::array<std::uint8_t, 3> rgb{static_cast<std::uint8_t>(i), 0, 255};
-    whole.Add(position, kUp, rgb, 0.01f, i);
-    parts.Add(position, kUp, rgb, 0.01f, i);
+    AddOne({position, kUp, rgb, 0.01f}, i, &whole);
+    AddOne({position, kUp, rgb, 0.01f}, i, &parts);
     for (const Voxel& part : parts.TakeAll()) {
       if (i == 0) sum = part;
       if (i != 0) sum += part;
@@ -93,10 +120,10 @@ TEST(VoxelGrid, PartsOfAVoxelAddUp) {
 
 TEST(VoxelGrid, LeavesOutWhatIsTooFarAway) {
   VoxelGrid grid(0.05);
-  grid.Add({1e9, 0, 0}, kUp, {}, 1.0f, 0);
-  grid.Add({0, std::numeric_limits<double>::quiet_NaN(), 0}, kUp, {}, 1.0f, 0);
+  AddOne({{1e9, 0, 0}, kUp, {}, 1.0f}, 0, &grid);
+  AddOne({{0, std::numeric_limits<double>::quiet_NaN(), 0}, kUp, {}, 1.0f}, 0, &grid);
   EXPECT_EQ(grid.num_voxels(), 0u);
-  grid.Add({-50000, 50000, 0}, kUp, {}, 1.0f, 0);
+  AddOne({{-50000, 50000, 0}, kUp, {}, 1.0f}, 0, &grid);
   EXPECT_LT(
       (MakeSurfacePoint(grid.TakeAll()[0], 0.05, 1).position - Eigen::Vector3f(-50000, 50000, 0))
           .norm(),
@@ -106,7 +133,7 @@ TEST(VoxelGrid, LeavesOutWhatIsTooFarAway) {
 TEST(VoxelGrid, TilesAreCubesOfVoxels) {
   VoxelGrid grid(1.0);
   const auto tile = [&grid](double x, double y, double z) {
-    grid.Add({x, y, z}, kUp, {}, 1.0f, 0);
+    AddOne({{x, y, z}, kUp, {}, 1.0f}, 0, &grid);
     return VoxelTile(grid.TakeAll()[0].key);
   };
   EXPECT_EQ(tile(0.5, 0.5, 0.5), tile(255.5, 255.5, 255.5));

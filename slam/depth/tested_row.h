@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace orb360 {
+
+/// A surface seen at less than this sine of the angle is treated as if seen at that: its normal is
+/// not known better.
+inline constexpr float kMinIncidence = 0.15f;
+
+/// Points that vector instructions may take at once.
+inline constexpr size_t kMostLanes = 16;
+
+/// Pixels of one row of a keyframe that are tested together, one in each place of the arrays.
+struct TestedRow {
+  using Array = std::vector<float>;
+
+  int row = 0;
+  size_t size = 0;
+  std::vector<std::int32_t> column;
+  std::array<Array, 3> bearing;  // camera frame, unit
+  Array range;                   // world units
+  std::array<Array, 3> normal;   // camera frame, unit, towards the camera; zero where there is none
+  Array variance;                // of the point along its normal, to be expected
+  // What others have said of the points:
+  Array support;      // how many see the same surface there
+  Array conflict;     // how many look through it
+  Array information;  // sum of 1 / variance of those that support
+  Array best;         // the largest of these
+  Array shift;        // sum of the offsets along the normal, each times its information
+
+  void Clear(int new_row);
+  void Add(int new_column, const Eigen::Vector3f& new_bearing, float new_range);
+  /// Ends the row: the arrays are filled up to a multiple of kMostLanes, and what others fill
+  /// in is set to zero.
+  void Close();
+};
+
+}  // namespace orb360

@@ -1,0 +1,219 @@
+#include "slam/depth/witness.h"
+
+#include <numbers>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "slam/depth/witness.cc"
+#include <hwy/foreach_target.h>
+// foreach_target must come first.
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include "slam/depth/row_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace orb360 {
+namespace HWY_NAMESPACE {
+
+/// The angle of (x, y) from the x axis, -pi to pi; 0 for the origin.
+HWY_INLINE V Angle(V y, V x) {
+  const D d;
+  const V run = hn::Abs(x);
+  const V rise = hn::Abs(y);
+  const V longer = hn::Max(hn::Max(run, rise), Constant(1e-30f));
+  const V acute = hn::Atan(d, hn::Div(hn::Min(run, rise), longer));
+  constexpr float kPi = std::numbers::pi_v<float>;
+  const V first = hn::IfThenElse(hn::Gt(rise, run), hn::Sub(Constant(0.5f * kPi), acute), acute);
+  const V upper = hn::IfThenElse(hn::Lt(x, hn::Zero(d)), hn::Sub(Constant(kPi), first), first);
+  return hn::CopySign(upper, y);
+}
+
+/// Of every point: what a keyframe sees in a direction.
+struct Sighting {
+  V inverse_range;  // 0 where unknown
+  V error;          // of ln(range), to be expected
+  VI row;           // of the nearest pixel
+  VI column;
+};
+
+/// Directions are unit vectors in the camera's frame.
+HWY_INLINE Sighting LookAlong(const DepthView& view, V x, V y, V z) {
+  const D d;
+  const DI di;
+  const DU du;
+  constexpr float kPi = std::numbers::pi_v<float>;
+  const VI width = hn::Set(di, view.width());
+  const VI half = hn::Set(di, view.width() / 2);
+  const VI zero = hn::Zero(di);
+  const VI one = hn::Set(di, 1);
+  const VI bottom_row = hn::Set(di, view.height() - 1);
+  const V longitude = Angle(y, hn::Neg(x));
+  const V latitude = Angle(z, hn::Sqrt(hn::MulAdd(x, x, hn::Mul(y, y))));
+  // In pixels whose centres are at integers.
+  const V u = hn::MulAdd(longitude, Constant(static_cast<float>(view.width()) / (2 * kPi)),
+                         Constant(0.5f * static_cast<float>(view.width() - 1)));
+  const V v = hn::MulAdd(latitude, Constant(static_cast<float>(-view.height()) / kPi),
+                         Constant(0.5f * static_cast<float>(view.height() - 1)));
+  const V whole_u = hn::Floor(u);
+  const V whole_v = hn::Floor(v);
+  const V right_share = hn::Sub(u, whole_u);
+  const V bottom_share = hn::Sub(v, whole_v);
+  // Numbers that are none become some pixel.
+  const VI left = hn::Max(hn::Min(hn::ConvertTo(di, whole_u), width), hn::Set(di, -1));
+  const VI top = hn::Max(hn::Min(hn::ConvertTo(di, whole_v), bottom_row), hn::Set(di, -1));
+  // Beyond a pole the first or last row goes on at the opposite longitude.
+  const VI upper_turn = hn::IfThenElseZero(hn::Lt(top, zero), half);
+  const VI lower_turn = hn::IfThenElseZero(hn::Eq(top, bottom_row), half);
+  const VI upper = hn::Mul(hn::Max(top, zero), width);
+  const VI lower = hn::Mul(hn::Min(hn::Add(top, one), bottom_row), width);
+  const VI left_wrapped = Wrap(left, width);
+  const VI right_wrapped = Wrap(hn::Add(left, one), width);
+  const float* inverse = view.inverse_ranges().data();
+  const auto gather = [&](VI row, VI column, VI turn) HWY_ATTR {
+    return hn::GatherIndex(d, inverse, hn::Add(row, Wrap(hn::Add(column, turn), width)));
+  };
+  const V upper_left = gather(upper, left_wrapped, upper_turn);
+  const V upper_right = gather(upper, right_wrapped, upper_turn);
+  const V lower_left = gather(lower, left_wrapped, lower_turn);
+  const V lower_right = gather(lower, right_wrapped, lower_turn);
+
+  Sighting seen;
+  const auto is_upper = hn::Lt(bottom_share, Constant(0.5f));
+  const auto is_left = hn::Lt(right_share, Constant(0.5f));
+  seen.row = hn::IfThenElse(hn::RebindMask(di, is_upper), hn::Max(top, zero),
+                            hn::Min(hn::Add(top, one), bottom_row));
+  seen.column = hn::IfThenElse(hn::RebindMask(di, is_left), left_wrapped, right_wrapped);
+  const V nearest = hn::IfThenElse(is_upper, hn::IfThenElse(is_left, upper_left, upper_right),
+                                   hn::IfThenElse(is_left, lower_left, lower_right));
+  const V least = hn::Min(hn::Min(upper_left, upper_right), hn::Min(lower_left, lower_right));
+  const V most = hn::Max(hn::Max(upper_left, upper_right), hn::Max(lower_left, lower_right));
+  // Ranges that differ by this factor belong to different surfaces. 0 is unknown.
+  constexpr float kEdgeRatio = 1.15f;
+  const auto is_one_surface = hn::Lt(most, hn::Mul(Constant(kEdgeRatio), least));
+  const V above = hn::MulAdd(right_share, hn::Sub(upper_right, upper_left), upper_left);
+  const V below = hn::MulAdd(right_share, hn::Sub(lower_right, lower_left), lower_left);
+  seen.inverse_range = hn::IfThenElse(
+      is_one_surface, hn::MulAdd(bottom_share, hn::Sub(below, above), above), nearest);
+
+  const VI pixel = hn::Add(hn::Mul(seen.row, width), seen.column);
+  const auto words = hn::GatherIndex(du, view.confidence_levels().data(), hn::ShiftRight<2>(pixel));
+  const auto byte = hn::BitCast(du, hn::ShiftLeft<3>(hn::And(pixel, hn::Set(di, 3))));
+  const auto level = hn::And(hn::Shr(words, byte), hn::Set(du, 255));
+  const V confidence = hn::Max(hn::ConvertTo(d, hn::BitCast(di, level)), Constant(0.5f));
+  seen.error =
+      hn::Max(Constant(view.min_error()), hn::Sub(hn::Div(Constant(255), confidence), Constant(1)));
+  return seen;
+}
+
+/// The largest of 1 / range of a pixel and the eight around it; infinite where one is unknown.
+HWY_INLINE V NearestAround(const DepthView& view, VI row, VI column) {
+  const D d;
+  const DI di;
+  const VI width = hn::Set(di, view.width());
+  const VI one = hn::Set(di, 1);
+  V least = Constant(1e30f);
+  V most = hn::Zero(d);
+  for (const VI y : {hn::Max(hn::Sub(row, one), hn::Zero(di)), row,
+                     hn::Min(hn::Add(row, one), hn::Set(di, view.height() - 1))}) {
+    for (const VI x :
+         {Wrap(hn::Sub(column, one), width), column, Wrap(hn::Add(column, one), width)}) {
+      const V inverse =
+          hn::GatherIndex(d, view.inverse_ranges().data(), hn::Add(hn::Mul(y, width), x));
+      least = hn::Min(least, inverse);
+      most = hn::Max(most, inverse);
+    }
+  }
+  return hn::IfThenElse(hn::Gt(least, hn::Zero(d)), most, hn::Inf(d));
+}
+
+struct V3 {
+  V x;
+  V y;
+  V z;
+};
+
+HWY_INLINE V3 Rotated(const Eigen::Matrix3f& by, const V3& v) {
+  const auto row = [&](int r) HWY_ATTR {
+    return hn::MulAdd(Constant(by(r, 0)), v.x,
+                      hn::MulAdd(Constant(by(r, 1)), v.y, hn::Mul(Constant(by(r, 2)), v.z)));
+  };
+  return {row(0), row(1), row(2)};
+}
+
+HWY_INLINE V Dot(const V3& a, const V3& b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+
+HWY_INLINE V3 Load3(const std::array<TestedRow::Array, 3>& from, size_t i) {
+  const D d;
+  return {hn::LoadU(d, from[0].data() + i), hn::LoadU(d, from[1].data() + i),
+          hn::LoadU(d, from[2].data() + i)};
+}
+
+void HearWitnessKernel(const Witness& witness, TestedRow* points) {
+  const D d;
+  const Eigen::Matrix3f rotation =
+      witness.witness_from_view.rotation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f translation = witness.witness_from_view.translation.cast<float>();
+  const V tolerance_errors = Constant(static_cast<float>(witness.tolerance_errors));
+  const V tolerance_share = Constant(static_cast<float>(witness.tolerance_share));
+  const V zero = hn::Zero(d);
+  const V one = Constant(1);
+  for (size_t i = 0; i < points->size; i += hn::Lanes(d)) {
+    const V own_range = hn::LoadU(d, points->range.data() + i);
+    const V3 turned = Rotated(rotation, Load3(points->bearing, i));
+    const V3 seen{hn::MulAdd(own_range, turned.x, Constant(translation.x())),
+                  hn::MulAdd(own_range, turned.y, Constant(translation.y())),
+                  hn::MulAdd(own_range, turned.z, Constant(translation.z()))};
+    const V range = hn::Max(hn::Sqrt(Dot(seen, seen)), Constant(1e-30f));
+    const V inverse_range = hn::Div(one, range);
+    const V3 bearing{hn::Mul(inverse_range, seen.x), hn::Mul(inverse_range, seen.y),
+                     hn::Mul(inverse_range, seen.z)};
+    const Sighting sighting = LookAlong(*witness.view, bearing.x, bearing.y, bearing.z);
+    const auto is_known = hn::Gt(sighting.inverse_range, zero);
+    const V there = hn::Div(one, hn::IfThenElse(is_known, sighting.inverse_range, one));
+    const V slant = Dot(bearing, Rotated(rotation, Load3(points->normal, i)));
+    const V incidence = hn::Max(hn::Abs(slant), Constant(kMinIncidence));
+    const V error = hn::Mul(hn::Mul(there, sighting.error), incidence);
+    const V both = hn::Sqrt(hn::MulAdd(error, error, hn::LoadU(d, points->variance.data() + i)));
+    const V tolerance =
+        hn::MulAdd(tolerance_errors, both, hn::Mul(tolerance_share, hn::Mul(range, incidence)));
+    const V farther = hn::Sub(there, range);
+    const V deviation = hn::Mul(farther, incidence);
+    const auto agrees = hn::And(is_known, hn::Le(hn::Abs(deviation), tolerance));
+    // A surface turned away from the witness is another one that happens to be there.
+    const auto supports = hn::And(agrees, hn::Le(slant, Constant(kMinIncidence)));
+    const V information = hn::IfThenElseZero(supports, hn::Div(one, hn::Mul(error, error)));
+    const auto add = [&](TestedRow::Array* sum, V more) HWY_ATTR {
+      hn::StoreU(hn::Add(hn::LoadU(d, sum->data() + i), more), d, sum->data() + i);
+    };
+    add(&points->support, hn::IfThenElseZero(supports, one));
+    add(&points->information, information);
+    add(&points->shift, hn::Mul(information, hn::Mul(farther, slant)));
+    float* best = points->best.data() + i;
+    hn::StoreU(hn::Max(hn::LoadU(d, best), information), d, best);
+    const auto is_through = hn::And(is_known, hn::Gt(deviation, tolerance));
+    if (hn::AllFalse(d, is_through)) continue;
+    // As far away as the nearest of the pixels around: still behind the point?
+    const V nearest = hn::Div(one, NearestAround(*witness.view, sighting.row, sighting.column));
+    const auto conflicts =
+        hn::And(is_through, hn::Gt(hn::Mul(hn::Sub(nearest, range), incidence), tolerance));
+    add(&points->conflict, hn::IfThenElseZero(conflicts, one));
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace orb360
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace orb360 {
+
+HWY_EXPORT(HearWitnessKernel);
+
+void HearWitness(const Witness& witness, TestedRow* points) {
+  HWY_DYNAMIC_DISPATCH(HearWitnessKernel)(witness, points);
+}
+
+}  // namespace orb360
+#endif
