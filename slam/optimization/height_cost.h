@@ -7,8 +7,9 @@ namespace orb360 {
 
 /// A point of the ground lies the camera's height below it: (-normal . p / height - 1) / sigma with
 /// p in the camera. Parameters as for BearingCost: pose as camera_from_world (quaternion x y z w,
-/// translation), point (world).
-class HeightCost final : public ceres::SizedCostFunction<1, 7, 3> {
+/// translation), point (world). The second residual is always zero: where all have two rows, Ceres
+/// eliminates points with code for blocks of 2 x 3 and 2 x 6, instead of sizes found at run time.
+class HeightCost final : public ceres::SizedCostFunction<2, 7, 3> {
  public:
   /// `normal`: of the ground, unit, towards the camera, in its frame; `height` in the world's unit;
   /// `sigma`: standard deviation as a share of the height.

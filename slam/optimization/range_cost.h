@@ -6,8 +6,8 @@ namespace orb360 {
 
 /// A point's range from a camera against one that is known roughly: ln(|p| / range) / sigma with p
 /// in the camera. Parameters as for BearingCost: pose as camera_from_world (quaternion x y z w,
-/// translation), point (world).
-class RangeCost final : public ceres::SizedCostFunction<1, 7, 3> {
+/// translation), point (world). The second residual is always zero, as that of HeightCost.
+class RangeCost final : public ceres::SizedCostFunction<2, 7, 3> {
  public:
   /// `range` in the world's unit; `sigma`: standard deviation of its logarithm.
   RangeCost(double range, double sigma) : range_(range), weight_(1 / sigma) {}

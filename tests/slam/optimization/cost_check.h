@@ -19,23 +19,28 @@ inline std::vector<double> CostParameters(const Rigid3& camera_from_world,
   return parameters;
 }
 
+/// Of a cost with one residual and one that is always zero.
 template <typename Cost>
 double Residual(const Cost& cost, const std::vector<double>& parameters) {
   const double* blocks[] = {parameters.data(), parameters.data() + 7};
-  double residual = 0;
-  EXPECT_TRUE(cost.Evaluate(blocks, &residual, nullptr));
-  return residual;
+  Eigen::Vector2d residuals(7, 7);
+  EXPECT_TRUE(cost.Evaluate(blocks, residuals.data(), nullptr));
+  EXPECT_EQ(residuals[1], 0);
+  return residuals[0];
 }
 
-/// Compares the derivatives of a cost with one residual with finite differences.
+/// Compares the derivatives of such a cost with finite differences.
 template <typename Cost>
 void ExpectDerivatives(const Cost& cost, const std::vector<double>& parameters) {
-  Eigen::Matrix<double, 1, 7> by_pose;
-  Eigen::Matrix<double, 1, 3> by_point;
+  Eigen::Matrix<double, 2, 7, Eigen::RowMajor> by_pose;
+  Eigen::Matrix<double, 2, 3, Eigen::RowMajor> by_point;
+  by_pose.setConstant(7);
+  by_point.setConstant(7);
   const double* blocks[] = {parameters.data(), parameters.data() + 7};
   double* jacobians[] = {by_pose.data(), by_point.data()};
-  double residual = 0;
-  ASSERT_TRUE(cost.Evaluate(blocks, &residual, jacobians));
+  Eigen::Vector2d residuals;
+  ASSERT_TRUE(cost.Evaluate(blocks, residuals.data(), jacobians));
+  EXPECT_TRUE(by_pose.row(1).isZero(0) && by_point.row(1).isZero(0));
   for (int i = 0; i < 10; ++i) {
     constexpr double kStep = 1e-6;
     std::vector<double> plus = parameters;
@@ -43,7 +48,7 @@ void ExpectDerivatives(const Cost& cost, const std::vector<double>& parameters) 
     plus[i] += kStep;
     minus[i] -= kStep;
     const double numeric = (Residual(cost, plus) - Residual(cost, minus)) / (2 * kStep);
-    const double analytic = i < 7 ? by_pose[i] : by_point[i - 7];
+    const double analytic = i < 7 ? by_pose(0, i) : by_point(0, i - 7);
     EXPECT_NEAR(numeric, analytic, 1e-7 * (1 + std::abs(analytic))) << i;
   }
 }

@@ -34,8 +34,8 @@ TEST(RangeCost, HasNoValueAtTheCentreOfTheCamera) {
   const RangeCost cost(1.0, 0.1);
   const std::vector<double> parameters = CostParameters(Rigid3(), Eigen::Vector3d::Zero());
   const double* blocks[] = {parameters.data(), parameters.data() + 7};
-  double residual = 0;
-  EXPECT_FALSE(cost.Evaluate(blocks, &residual, nullptr));
+  Eigen::Vector2d residuals;
+  EXPECT_FALSE(cost.Evaluate(blocks, residuals.data(), nullptr));
 }
 
 }  // namespace
