@@ -1,8 +1,10 @@
 // The dense cloud of a hall of 1024 x 512 pixels a keyframe: comparing one keyframe with ten
 // others, and the whole way from files to voxels.
 #include <filesystem>
+#include <string>
 
 #include <benchmark/benchmark.h>
+#include <unistd.h>
 
 #include "slam/depth/dense_cloud.h"
 #include "slam/io/range_store.h"
@@ -45,7 +47,8 @@ void ConfirmKeyframe(benchmark::State& state) {
 BENCHMARK(ConfirmKeyframe)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void FuseHall(benchmark::State& state) {
-  const RangeStore store(std::filesystem::temp_directory_path() / "orb360_dense_cloud_benchmark");
+  const RangeStore store(std::filesystem::temp_directory_path() /
+                         ("orb360_dense_cloud_benchmark." + std::to_string(getpid())));
   const std::vector<DenseDepth> depths = RenderHall(kKeyframes);
   std::vector<DenseView> views;
   for (int i = 0; i < kKeyframes; ++i) {
@@ -62,7 +65,7 @@ void FuseHall(benchmark::State& state) {
         views, [&store](int frame) { return store.Get(frame); }, {},
         [&voxels](std::span<const Voxel> part) { voxels += part.size(); });
   }
-  state.counters["voxels"] = static_cast<double>(voxels);
+  state.counters["voxel_parts"] = static_cast<double>(voxels);
   state.counters["ms_per_keyframe"] =
       benchmark::Counter(1e-3 * kKeyframes, benchmark::Counter::kIsIterationInvariantRate |
                                                 benchmark::Counter::kInvert);

@@ -175,6 +175,8 @@ DenseCloudStatistics FuseCloud(std::span<const DenseView> views, const DepthLoad
   };
   // Files are read for the next view, and the points of the last one collected, beside the
   // comparison of this one: each of the three goes through the views in their order.
+  // Declared last: where one of the functions throws, they wait for threads that use all of the
+  // above.
   std::future<Comparison> next;
   std::future<void> collecting;
   for (size_t i = 0; i < views.size(); ++i) {

@@ -22,8 +22,9 @@ struct DenseCloudOptions {
   /// Keyframes that each one is compared with.
   int max_neighbours = 10;
   ConfirmationOptions confirmation{};
-  /// Keyframes held in memory, at 4 MB each for 1024 x 512 pixels. They are read again where this
-  /// is less than the path that max_neighbours extend over.
+  /// Keyframes held in memory, at 4 MB each for 1024 x 512 pixels; two at a time and those that
+  /// they are compared with in any case. They are read again where this is less than the path that
+  /// max_neighbours extend over.
   int max_views = 32;
   /// Voxels held in memory, at 150 bytes each; what has not been seen for longest goes first.
   size_t max_voxels = 1'400'000;
@@ -47,11 +48,11 @@ struct DenseCloudStatistics {
   double voxel_size = 0;       // world units
 };
 
-/// Gives the depth of a frame. Called on another thread, one call at a time, perhaps several times
-/// for the same frame.
+/// Gives the depth of a frame, perhaps several times that of the same one. The images must not
+/// change afterwards. Called on any thread, one call at a time, but perhaps while the sink runs.
 using DepthLoader = std::function<DenseDepth(int frame_index)>;
 /// Takes voxels, ordered by key. Several calls may give parts of the same voxel
-/// (Voxel::operator+=). Called on another thread, one call at a time.
+/// (Voxel::operator+=). Called on any thread, one call at a time.
 using VoxelSink = std::function<void(std::span<const Voxel>)>;
 
 /// Joins the dense depth of keyframes into one cloud: each keyframe's points that enough others

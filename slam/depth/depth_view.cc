@@ -37,6 +37,7 @@ DepthView::DepthView(const DenseDepth& depth, const Rigid3& world_from_camera, d
                    depth.range.cols >= 8 && depth.range.cols % 2 == 0,
                depth.range.size(), depth.confidence.size());
   ORB360_CHECK(scale > 0 && std::isfinite(scale), scale);
+  ORB360_CHECK(min_error > 0, min_error);
   inverse_ranges_.assign(depth.range.total(), 0.0f);
   levels_.assign((depth.range.total() + 3) / 4, 0);
   const auto inverse_scale = static_cast<float>(1.0 / scale);

@@ -17,8 +17,8 @@ namespace orb360 {
 class DepthView {
  public:
   /// `scale`: world units in one unit of the ranges. `min_error`: the least error of ln(range) to
-  /// be expected of a pixel, however confident the network is. Contract: images of an even width, 8
-  /// x 4 or more.
+  /// be expected of a pixel, however confident the network is; positive. Contract: images of an
+  /// even width, 8 x 4 or more.
   DepthView(const DenseDepth& depth, const Rigid3& world_from_camera, double scale,
             double min_error);
 
@@ -45,7 +45,7 @@ class DepthView {
     return {-latitude.x() * longitude.x(), latitude.x() * longitude.y(), latitude.y()};
   }
 
-  /// Row by row: 1 / range, linear between the pixels that see one plane; 0 where unknown.
+  /// Row by row: 1 / range, nearly linear between pixels that see one plane; 0 where unknown.
   std::span<const float> inverse_ranges() const { return inverse_ranges_; }
   /// Row by row: confidence times 255, four pixels a word, the first in its lowest byte.
   std::span<const std::uint32_t> confidence_levels() const { return levels_; }

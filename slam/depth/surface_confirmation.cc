@@ -24,7 +24,8 @@ void ChoosePixels(const DepthView& view, int row, const SamplingOptions& samplin
     if (range * view.error(row, column) * kMinIncidence > max_own_error) continue;
     // The largest power of two at which pixels are no farther apart than the spacing.
     int stride = 1;
-    while (2.0f * static_cast<float>(stride) * range * pixel_angle <= sampling.spacing) {
+    while (stride < view.height() &&
+           2.0f * static_cast<float>(stride) * range * pixel_angle <= sampling.spacing) {
       stride *= 2;
     }
     if (row % stride != 0 || column / step % stride != 0) continue;
@@ -64,8 +65,9 @@ std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
   }
   // A point keeps at least this share of its own error: others may be better than it by the one
   // factor (in variance), and all together better than the best by the other.
-  const auto least_gain = static_cast<float>(1 / std::sqrt(std::max(options.redundant_ratio, 1.0) *
-                                                           std::max(options.max_independent, 1.0)));
+  const double redundant_ratio = std::max(options.redundant_ratio, 1.0);
+  const auto least_gain =
+      static_cast<float>(1 / std::sqrt(redundant_ratio * std::max(options.max_independent, 1.0)));
   const float max_own_error = static_cast<float>(sampling.max_error) / least_gain;
 
   const auto confirm = [&](const TestedRow& points, std::vector<ConfirmedPoint>* confirmed) {
@@ -75,7 +77,7 @@ std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
       const float conflict = points.conflict[i];
       if (support < static_cast<float>(options.min_support)) continue;
       if (conflict > options.max_conflict_share * (support + conflict)) continue;
-      if (points.best[i] * points.variance[i] > options.redundant_ratio) continue;
+      if (points.best[i] * points.variance[i] > redundant_ratio) continue;
       const float information = std::min(
           points.information[i], static_cast<float>(options.max_independent) * points.best[i]);
       const float error = 1.0f / std::sqrt(information);

@@ -19,8 +19,8 @@ namespace orb360 {
 
 /// One of the pixels that a plane is fitted to.
 struct PlaneTap {
-  std::int32_t first;   // pixel's place in the image for a point in column 0
-  std::int32_t offset;  // in columns, 0 to width - 1
+  std::int32_t first;   // pixel of its row, by place in the image
+  std::int32_t offset;  // of its column from the point's, 0 to width - 1: beyond the seam it wraps
   // Its bearing, seen from the point: along the point's bearing, and to the east and north of it in
   // pixels. The same for all points of a row.
   float forward;

@@ -19,7 +19,7 @@ void TestedRow::Add(int new_column, const Eigen::Vector3f& new_bearing, float ne
 }
 
 void TestedRow::Close() {
-  // Pixel 0 takes the places past the end.
+  // Past the end: column 0, where any image has a pixel.
   const size_t length = (size + kMostLanes - 1) / kMostLanes * kMostLanes;
   column.resize(length);
   range.resize(length);

@@ -26,18 +26,18 @@ struct TestedRow {
   std::array<Array, 3> bearing;  // camera frame, unit
   Array range;                   // world units
   std::array<Array, 3> normal;   // camera frame, unit, towards the camera; zero where there is none
-  Array variance;                // of the point along its normal, to be expected
-  // What others have said of the points:
+  Array variance;  // of the point along its normal, to be expected; 0: it is not to be confirmed
+  // What others have said of the points, and their own keyframe:
   Array support;      // how many see the same surface there
   Array conflict;     // how many look through it
-  Array information;  // sum of 1 / variance of those that support
+  Array information;  // sum of 1 / variance, its own and of those that support
   Array best;         // the largest of these
   Array shift;        // sum of the offsets along the normal, each times its information
 
   void Clear(int new_row);
   void Add(int new_column, const Eigen::Vector3f& new_bearing, float new_range);
-  /// Ends the row: the arrays are filled up to a multiple of kMostLanes, and what others fill
-  /// in is set to zero.
+  /// Ends the row: fills the arrays up to a multiple of kMostLanes, and sets everything but where
+  /// the points are to zero.
   void Close();
 };
 

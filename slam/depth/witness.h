@@ -17,7 +17,7 @@ struct Witness {
 
 /// Adds what a witness sees in the direction of each point: the same surface supports it, something
 /// nearer hides it, and something farther away, here and in the eight pixels around, conflicts with
-/// it. Ranges between pixels are linear in 1 / range, which is exact on planes, where the four
+/// it. Ranges between pixels are linear in 1 / range, nearly exact on planes, where the four
 /// around see one surface; otherwise that of the nearest pixel counts.
 void HearWitness(const Witness& witness, TestedRow* points);
 

@@ -24,9 +24,18 @@ double Weight(const Plane& plane, const Eigen::Vector3d& point, double tolerance
   return rest * rest;
 }
 
-double Support(const Plane& plane, std::span<const Eigen::Vector3d> points, double tolerance) {
+// Sum of all weights, or some number below `least` where it cannot reach that.
+double Support(const Plane& plane, std::span<const Eigen::Vector3d> points, double tolerance,
+               double least) {
+  constexpr size_t kPart = 32;  // points between two looks at what is left
   double sum = 0;
-  for (const Eigen::Vector3d& p : points) sum += Weight(plane, p, tolerance);
+  for (size_t first = 0; first < points.size(); first += kPart) {
+    const std::span rest = points.subspan(first);
+    if (sum + static_cast<double>(rest.size()) < least) break;
+    for (const Eigen::Vector3d& p : rest.first(std::min(kPart, rest.size()))) {
+      sum += Weight(plane, p, tolerance);
+    }
+  }
   return sum;
 }
 
@@ -84,7 +93,7 @@ std::optional<GroundPlane> FitGroundPlane(std::span<const Eigen::Vector3d> point
     const Eigen::Vector3d& c = below[random() % below.size()];
     const std::optional<Plane> plane = Through(a, b, c, up, min_cosine);
     if (!plane) continue;
-    const double support = Support(*plane, below, options.tolerance);
+    const double support = Support(*plane, below, options.tolerance, best_support);
     if (support > best_support) {
       best_support = support;
       best = plane;

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "nn/base/check.h"
 #include "tests/slam/depth/range_room.h"
 
 namespace orb360 {
@@ -155,6 +156,31 @@ TEST_F(FuseCloudTest, GivesTheSameInAnyNumberOfPiecesAndKeptViews) {
   ASSERT_EQ(whole.size(), pieces.size());
   for (const auto& [key, information] : whole) {
     ASSERT_NEAR(pieces.at(key), information, 1e-4 * information);
+  }
+}
+
+TEST_F(FuseCloudTest, GoesOnWhereAViewKnowsNothing) {
+  depths_[4].range = 0;
+  depths_[8].range = 0;
+  EXPECT_GT(Fuse({.voxel_size = 0.1}).size(), 1000u);
+  EXPECT_EQ(statistics_.views, 7);
+}
+
+TEST_F(FuseCloudTest, ErrorsOfThoseWhoLoadAndTakeComeThrough) {
+  const auto load = [this](int frame) { return depths_[static_cast<size_t>(frame)]; };
+  for (const int bad : {0, 1, 5, 8}) {
+    const auto fail = [&](int frame) {
+      if (frame == bad) throw UserError("damaged");
+      return load(frame);
+    };
+    EXPECT_THROW(FuseCloud(views_, fail, {.voxel_size = 0.1}, [](std::span<const Voxel>) {}),
+                 UserError)
+        << bad;
+  }
+  for (const size_t max_voxels : {1000, 1'000'000}) {  // in the middle, and at the end
+    EXPECT_THROW(FuseCloud(views_, load, {.voxel_size = 0.1, .max_voxels = max_voxels},
+                           [](std::span<const Voxel>) { throw UserError("disk full"); }),
+                 UserError);
   }
 }
 

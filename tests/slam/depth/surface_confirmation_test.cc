@@ -158,6 +158,13 @@ TEST(ConfirmSurface, LeavesPointsToKeyframesThatSeeThemBetter) {
   EXPECT_LT(left, all / 50);
 }
 
+TEST(ConfirmSurface, RangesOfNextToNothingEndAsWell) {
+  std::vector<DenseDepth> depths = RenderAll();
+  depths[3].range.at<float>(0, 0) = 1e-12f;
+  depths[3].range.at<float>(64, 7) = 1e-30f;
+  EXPECT_GT(ConfirmMiddle(Views(depths)).size(), 7000u);
+}
+
 TEST(ConfirmSurface, IsTheSameForAnyNumberOfThreads) {
   const std::vector<DepthView> views = Views(RenderAll());
   const int threads = omp_get_max_threads();

@@ -80,7 +80,7 @@ TEST(HearWitness, RangesBetweenPixelsAreThoseOfThePlaneSeamAndPolesIncluded) {
         EXPECT_TRUE(is_right) << bearings[i].transpose();
       }
     }
-    EXPECT_LT(near_edges, 500);
+    EXPECT_LT(near_edges, 150);
   });
 }
 
