@@ -1,9 +1,12 @@
 // Pose refinement with 500 landmarks, and local bundle adjustment of 20 keyframes and 5,000
-// landmarks, without and with ranges that are known roughly.
+// landmarks, without and with ranges that are known roughly; both solvers on the problem of a usual
+// window.
 #include <benchmark/benchmark.h>
 
+#include "slam/optimization/bundle_solvers.h"
 #include "slam/optimization/local_bundle_adjustment.h"
 #include "slam/optimization/pose_refinement.h"
+#include "tests/slam/geometry/random_geometry.h"
 #include "tests/slam/pipeline/synthetic_scene.h"
 
 namespace orb360 {
@@ -41,6 +44,36 @@ void AdjustTwentyKeyframes(benchmark::State& state) {
   }
 }
 BENCHMARK(AdjustTwentyKeyframes)->ArgName("ranges")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+
+using Solver = BundleReport (*)(const BundleOptions&, BundleProblem*);
+
+// 10 poses that move and 16 that do not, 2,300 points seen by five of them in a row.
+void SolveWindow(benchmark::State& state, Solver solve) {
+  RandomGeometry random(3);
+  BundleProblem window;
+  for (int i = 0; i < 26; ++i) {
+    window.world_from_camera.push_back({random.Rotation(0.1), {0.5 * i, 0.0, 0.0}});
+    window.pose_fixed.push_back(i < 8 || i >= 18);
+  }
+  for (int p = 0; p < 2300; ++p) {
+    const int first = p % 22;
+    const Eigen::Vector3d point =
+        window.world_from_camera[first + 2].translation + random.Point(3.0, 20.0);
+    window.points.push_back(point + random.Point(0.0, 0.1));
+    for (int i = first; i < first + 5; ++i) {
+      const Eigen::Vector3d seen = window.world_from_camera[i].Inverse() * point;
+      window.observations.push_back({i, p, random.Noisy(seen.normalized(), 0.002), 0.002});
+    }
+  }
+  for (auto _ : state) {
+    state.PauseTiming();
+    BundleProblem copy = window;
+    state.ResumeTiming();
+    solve({.max_iterations = 4, .function_tolerance = 0}, &copy);
+  }
+}
+BENCHMARK_CAPTURE(SolveWindow, dense, SolveBundleDense)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(SolveWindow, sparse, SolveBundleSparse)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace orb360

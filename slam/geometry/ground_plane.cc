@@ -9,8 +9,9 @@
 namespace orb360 {
 namespace {
 
-constexpr int kSamples = 300;    // of three points
-constexpr int kRefinements = 5;  // of the plane by the points on it
+constexpr int kMaxSamples = 300;     // of three points
+constexpr double kMaxMissed = 1e-4;  // probability that no sample lies on the ground
+constexpr int kRefinements = 5;      // of the plane by the points on it
 
 struct Plane {
   Eigen::Vector3d normal;  // unit, towards the origin
@@ -87,7 +88,8 @@ std::optional<GroundPlane> FitGroundPlane(std::span<const Eigen::Vector3d> point
   const double min_cosine = std::cos(options.max_tilt);
   std::optional<Plane> best;
   double best_support = 0;
-  for (int i = 0; i < kSamples; ++i) {
+  int num_samples = kMaxSamples;
+  for (int i = 0; i < num_samples; ++i) {
     const Eigen::Vector3d& a = below[random() % below.size()];
     const Eigen::Vector3d& b = below[random() % below.size()];
     const Eigen::Vector3d& c = below[random() % below.size()];
@@ -97,6 +99,10 @@ std::optional<GroundPlane> FitGroundPlane(std::span<const Eigen::Vector3d> point
     if (support > best_support) {
       best_support = support;
       best = plane;
+      // The sum of weights is less than the number of points on the plane: rather too many samples.
+      const double share = support / static_cast<double>(below.size());
+      const double needed = std::log(kMaxMissed) / std::log1p(-std::pow(share, 3));
+      if (needed < kMaxSamples) num_samples = static_cast<int>(std::ceil(needed));
     }
   }
   if (!best) return std::nullopt;

@@ -1,112 +1,18 @@
 #include "slam/optimization/bundle_adjustment.h"
 
-#include <array>
-#include <deque>
 #include <limits>
-#include <memory>
-
-#include <ceres/ceres.h>
 
 #include "nn/base/check.h"
-#include "slam/optimization/bearing_cost.h"
 #include "slam/optimization/bearing_residual.h"
-#include "slam/optimization/height_cost.h"
-#include "slam/optimization/range_cost.h"
+#include "slam/optimization/bundle_solvers.h"
 
 namespace orb360 {
-namespace {
 
-// The reason is told at BundleLoss.
-constexpr double kHuberSigmas = 1.0;
-constexpr double kArctanSquares = 2.0;  // squared sigmas, where the cost is half of its limit
-// Of ranges that are known roughly: networks are wrong altogether more often than corners are, and
-// what is wrong by far should not count at all.
-constexpr double kCauchySigmas = 1.0;
-
-std::unique_ptr<ceres::LossFunction> MakeLoss(BundleLoss loss) {
-  if (loss == BundleLoss::kArctan) return std::make_unique<ceres::ArctanLoss>(kArctanSquares);
-  return std::make_unique<ceres::HuberLoss>(kHuberSigmas);
-}
-
-}  // namespace
-
-BundleReport SolveBundle(const BundleOptions& options, BundleProblem* bundle) {
-  ORB360_CHECK(bundle->pose_fixed.size() == bundle->world_from_camera.size());
-  // camera_from_world as (quaternion x y z w, translation): the point's residual is then one
-  // rotation away from its camera coordinates.
-  std::vector<std::array<double, 7>> poses(bundle->world_from_camera.size());
-  for (size_t i = 0; i < poses.size(); ++i) {
-    const Rigid3 camera_from_world = bundle->world_from_camera[i].Inverse();
-    Eigen::Map<Eigen::Quaterniond>(poses[i].data()) = camera_from_world.rotation;
-    Eigen::Map<Eigen::Vector3d>(poses[i].data() + 4) = camera_from_world.translation;
-  }
-  std::vector<Eigen::Vector3d> points = bundle->points;
-
-  const std::unique_ptr<ceres::LossFunction> loss = MakeLoss(options.loss);
-  ceres::CauchyLoss range_loss(kCauchySigmas);
-  ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>> manifold;
-  ceres::Problem::Options problem_options;
-  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  problem_options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  problem_options.disable_all_safety_checks = true;
-  std::deque<BearingCost> costs;  // cost functions cannot move
-  std::deque<HeightCost> height_costs;
-  std::deque<RangeCost> range_costs;
-  ceres::Problem problem(problem_options);
-  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  for (size_t i = 0; i < poses.size(); ++i) {
-    problem.AddParameterBlock(poses[i].data(), 7, &manifold);
-    if (bundle->pose_fixed[i]) problem.SetParameterBlockConstant(poses[i].data());
-    ordering->AddElementToGroup(poses[i].data(), 1);
-  }
-  for (Eigen::Vector3d& point : points) {
-    problem.AddParameterBlock(point.data(), 3);
-    ordering->AddElementToGroup(point.data(), 0);
-  }
-  for (const BundleProblem::Observation& o : bundle->observations) {
-    costs.emplace_back(o.bearing, o.sigma);
-    problem.AddResidualBlock(&costs.back(), loss.get(), poses[o.pose].data(),
-                             points[o.point].data());
-  }
-  for (const BundleProblem::Height& h : bundle->heights) {
-    height_costs.emplace_back(h.normal, h.height, h.sigma);
-    problem.AddResidualBlock(&height_costs.back(), nullptr, poses[h.pose].data(),
-                             points[h.point].data());
-  }
-  for (const BundleProblem::Range& r : bundle->ranges) {
-    range_costs.emplace_back(r.range, r.sigma);
-    problem.AddResidualBlock(&range_costs.back(), &range_loss, poses[r.pose].data(),
-                             points[r.point].data());
-  }
-
-  ceres::Solver::Options solver_options;
-  solver_options.linear_solver_type =
-      poses.size() <= 100 ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
-  solver_options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
-  solver_options.dense_linear_algebra_library_type = ceres::EIGEN;
-  solver_options.linear_solver_ordering = ordering;
-  solver_options.max_num_iterations = options.max_iterations;
-  solver_options.function_tolerance = options.function_tolerance;
-  solver_options.max_solver_time_in_seconds =
-      1e9;  // a time limit would make results depend on load
-  solver_options.num_threads = 1;
-  solver_options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver_options, &problem, &summary);
-
-  BundleReport report{summary.initial_cost, summary.final_cost,
-                      static_cast<int>(summary.iterations.size()), summary.IsSolutionUsable()};
-  if (!report.usable) return report;
-  for (size_t i = 0; i < poses.size(); ++i) {
-    if (bundle->pose_fixed[i]) continue;
-    const Rigid3 camera_from_world{
-        Eigen::Map<const Eigen::Quaterniond>(poses[i].data()).normalized(),
-        Eigen::Map<const Eigen::Vector3d>(poses[i].data() + 4)};
-    bundle->world_from_camera[i] = camera_from_world.Inverse();
-  }
-  bundle->points = std::move(points);
-  return report;
+BundleReport SolveBundle(const BundleOptions& options, BundleProblem* problem) {
+  ORB360_CHECK(problem->pose_fixed.size() == problem->world_from_camera.size());
+  constexpr size_t kFew = 100;  // the dense system of the poses takes 3 MB and few milliseconds
+  return problem->world_from_camera.size() <= kFew ? SolveBundleDense(options, problem)
+                                                   : SolveBundleSparse(options, problem);
 }
 
 double SquaredResidual(const BundleProblem& problem,

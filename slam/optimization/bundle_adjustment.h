@@ -17,7 +17,7 @@ struct BundleProblem {
     Eigen::Vector3d bearing;  // unit, camera frame
     double sigma;             // angular noise, rad
   };
-  /// A point of the ground: it lies `height` below the camera. See HeightCost.
+  /// A point of the ground: it lies `height` below the camera. See HeightResidual.
   struct Height {
     int pose;
     int point;
@@ -25,7 +25,7 @@ struct BundleProblem {
     double height;
     double sigma;  // share of the height
   };
-  /// A range that is known roughly, from completed depth. See RangeCost.
+  /// A range that is known roughly, from completed depth. See RangeResidual.
   struct Range {
     int pose;
     int point;
@@ -66,9 +66,8 @@ struct BundleReport {
   bool usable = false;  // false: numerically failed, the problem is as it was
 };
 
-/// Bundle adjustment on tangent-plane residuals (bearing_residual.h; paper Eq. 11) with Ceres and
-/// a Schur complement over the points, on one thread: Ceres adds Schur blocks in arrival order on
-/// several, and the result would depend on it.
+/// Bundle adjustment on tangent-plane residuals (bearing_residual.h; paper Eq. 11) by Levenberg and
+/// Marquardt's method with the points eliminated, on one thread (bundle_solvers.h).
 /// Contract: indices are in range; every point is observed.
 BundleReport SolveBundle(const BundleOptions& options, BundleProblem* problem);
 

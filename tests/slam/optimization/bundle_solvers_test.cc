@@ -1,0 +1,133 @@
+#include "slam/optimization/bundle_solvers.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/slam/geometry/random_geometry.h"
+
+namespace orb360 {
+namespace {
+
+/// A walk that sees points from a few poses each, over a ground and with ranges, all with noise,
+/// and every twentieth observation wrong altogether. Three poses are held.
+BundleProblem NoisyWalk(int seed) {
+  RandomGeometry random(seed);
+  BundleProblem problem;
+  for (int i = 0; i < 12; ++i) {
+    problem.world_from_camera.push_back({random.Rotation(0.3), {0.5 * i, 0.1 * i, 0.02 * i * i}});
+    problem.pose_fixed.push_back(i == 0 || i == 5 || i == 11);
+  }
+  for (int p = 0; p < 300; ++p) {
+    Eigen::Vector3d point = random.Point(2.0, 12.0) + Eigen::Vector3d(3, 0, 0);
+    const bool is_ground = p < 60;
+    if (is_ground) point.z() = -1.6;
+    problem.points.push_back(point + random.Point(0.0, 0.05));
+    for (int i = p % 8; i < p % 8 + 5; ++i) {
+      const Eigen::Vector3d seen = problem.world_from_camera[i].Inverse() * point;
+      const bool is_wrong = (5 * p + i) % 20 == 0;
+      const double sigma = random.Uniform(0.001, 0.003);
+      problem.observations.push_back(
+          {i, p, random.Noisy(seen.normalized(), is_wrong ? 0.1 : sigma), sigma});
+      if (p % 3 == 0) problem.ranges.push_back({i, p, seen.norm() * random.Uniform(0.8, 1.2), 0.1});
+      if (is_ground) {
+        const Eigen::Vector3d up(0, 0, 1);
+        const double height = 1.6 + problem.world_from_camera[i].translation.z();
+        problem.heights.push_back(
+            {i, p, problem.world_from_camera[i].rotation.inverse() * up, height, 0.05});
+      }
+    }
+  }
+  for (size_t i = 0; i < problem.world_from_camera.size(); ++i) {
+    if (problem.pose_fixed[i]) continue;
+    Rigid3& pose = problem.world_from_camera[i];
+    pose = pose * Rigid3{random.Rotation(0.01), random.Point(0.0, 0.03)};
+  }
+  return problem;
+}
+
+class BundleSolvers : public testing::TestWithParam<BundleLoss> {};
+
+// Ceres is the independent truth here.
+TEST_P(BundleSolvers, ComeToTheSameMinimum) {
+  for (int seed = 1; seed <= 3; ++seed) {
+    BundleProblem dense = NoisyWalk(seed);
+    BundleProblem sparse = dense;
+    const BundleOptions options{
+        .max_iterations = 200, .loss = GetParam(), .function_tolerance = 1e-15};
+    const BundleReport by_dense = SolveBundleDense(options, &dense);
+    const BundleReport by_sparse = SolveBundleSparse(options, &sparse);
+    ASSERT_TRUE(by_dense.usable && by_sparse.usable);
+    EXPECT_NEAR(by_dense.initial_cost, by_sparse.initial_cost, 1e-9 * by_sparse.initial_cost);
+    EXPECT_LT(by_dense.final_cost, 0.9 * by_dense.initial_cost);
+    EXPECT_NEAR(by_dense.final_cost, by_sparse.final_cost, 1e-8 * by_sparse.final_cost);
+    for (size_t i = 0; i < dense.world_from_camera.size(); ++i) {
+      const Rigid3 difference = dense.world_from_camera[i].Inverse() * sparse.world_from_camera[i];
+      EXPECT_LT(difference.translation.norm(), 1e-5) << i;
+      EXPECT_LT(LogSo3(difference.rotation).norm(), 1e-5) << i;
+    }
+  }
+}
+
+// With few iterations, as in local bundle adjustment.
+TEST_P(BundleSolvers, ComeEquallyFarInFewSteps) {
+  BundleProblem dense = NoisyWalk(4);
+  BundleProblem sparse = dense;
+  const BundleOptions options{.max_iterations = 4, .loss = GetParam()};
+  const BundleReport by_dense = SolveBundleDense(options, &dense);
+  const BundleReport by_sparse = SolveBundleSparse(options, &sparse);
+  EXPECT_LE(by_dense.iterations, 4);
+  EXPECT_NEAR(by_dense.final_cost, by_sparse.final_cost, 0.01 * by_sparse.final_cost);
+}
+
+INSTANTIATE_TEST_SUITE_P(Losses, BundleSolvers,
+                         testing::Values(BundleLoss::kHuber, BundleLoss::kArctan));
+
+TEST(SolveBundleDense, HoldsFixedPoses) {
+  const BundleProblem before = NoisyWalk(5);
+  BundleProblem problem = before;
+  ASSERT_TRUE(SolveBundleDense({}, &problem).usable);
+  for (size_t i = 0; i < before.world_from_camera.size(); ++i) {
+    const bool has_moved =
+        problem.world_from_camera[i].translation != before.world_from_camera[i].translation;
+    EXPECT_NE(has_moved, before.pose_fixed[i] != 0) << i;
+  }
+}
+
+TEST(SolveBundleDense, LeavesTheProblemAsItIsWhereAResidualHasNoValue) {
+  BundleProblem problem = NoisyWalk(6);
+  problem.points[0] = problem.world_from_camera[0].translation;  // sees it at range zero
+  const BundleProblem before = problem;
+  EXPECT_FALSE(SolveBundleDense({}, &problem).usable);
+  EXPECT_EQ(problem.points, before.points);
+  for (size_t i = 0; i < before.world_from_camera.size(); ++i) {
+    EXPECT_EQ(problem.world_from_camera[i].translation, before.world_from_camera[i].translation);
+  }
+}
+
+// A point that all poses see in nearly the same direction has next to no range: the step must not
+// throw it, or anything else, to infinity.
+TEST(SolveBundleDense, BearsPointsWithoutParallax) {
+  BundleProblem problem = NoisyWalk(7);
+  problem.ranges.clear();
+  RandomGeometry random(8);
+  for (int p = 0; p < 50; ++p) {
+    const Eigen::Vector3d far = 1e6 * random.Bearing();
+    const int point = static_cast<int>(problem.points.size());
+    problem.points.push_back(1e-4 * far);
+    for (int i = 0; i < 4; ++i) {
+      const Eigen::Vector3d seen = problem.world_from_camera[i].Inverse() * far;
+      problem.observations.push_back({i, point, seen.normalized(), 0.001});
+    }
+  }
+  const BundleReport report = SolveBundleDense({.max_iterations = 50}, &problem);
+  ASSERT_TRUE(report.usable);
+  EXPECT_LT(report.final_cost, 0.9 * report.initial_cost);
+  for (const Eigen::Vector3d& point : problem.points) EXPECT_TRUE(point.allFinite());
+  for (const Rigid3& pose : problem.world_from_camera) {
+    EXPECT_LT(pose.translation.norm(), 10.0);
+  }
+}
+
+}  // namespace
+}  // namespace orb360
