@@ -146,8 +146,9 @@ std::optional<LoopDetector::FoundPose> LoopDetector::FindPose(const Features& fe
   return std::nullopt;
 }
 
-std::optional<Revisit> LoopDetector::Verify(const Map& map, KeyframeId newest, const Map& place_map,
-                                            KeyframeId place) const {
+std::optional<Revisit> LoopDetector::Verify(
+    const Map& map, KeyframeId newest, const Map& place_map, KeyframeId place,
+    const std::function<bool(KeyframeId)>& may_close) const {
   const Keyframe& keyframe = map.keyframe(newest);
   const std::optional<TrackResult> result =
       TrackAt(*keyframe.features, place_map, MakeLocalMap(place_map, place, local_keyframes_));
@@ -165,10 +166,22 @@ std::optional<Revisit> LoopDetector::Verify(const Map& map, KeyframeId newest, c
   if (ratios.size() < kMinRatios) return std::nullopt;
   const auto middle = ratios.begin() + ratios.size() / 2;
   std::nth_element(ratios.begin(), middle, ratios.end());
+  // Pictures are alike over a few metres: what looked most like this one need not be the nearest.
+  const auto distance = [&](KeyframeId id) {
+    return (place_map.keyframe(id).world_from_camera.translation -
+            result->world_from_camera.translation)
+        .norm();
+  };
+  KeyframeId nearest = place;
+  for (const Map::Covisible& near :
+       place_map.FindCovisible(place_map.keyframe(place).landmarks, kCovisible, place)) {
+    const bool is_nearer = distance(near.keyframe) < distance(nearest);
+    if (is_nearer && may_close(near.keyframe)) nearest = near.keyframe;
+  }
   const Rigid3 place_from_camera =
-      place_map.keyframe(place).world_from_camera.Inverse() * result->world_from_camera;
+      place_map.keyframe(nearest).world_from_camera.Inverse() * result->world_from_camera;
   return Revisit{newest,
-                 place,
+                 nearest,
                  {*middle, place_from_camera.rotation, place_from_camera.translation},
                  result->num_inliers};
 }
@@ -180,13 +193,13 @@ std::optional<Loop> LoopDetector::Observe(const Map& map, KeyframeId newest,
   const std::vector<uint8_t> is_connected = FindConnected(map, newest);
   const std::vector<double> ways = FindWays(map);
   const double min_way = options_.min_length * map.MedianRange(newest);
+  const auto is_apart = [&](KeyframeId id) { return !is_connected[id] && ways[id] >= min_way; };
   std::vector<uint8_t> excluded(places_.size(), 0);
   double likeness_before = 0;  // of what the camera still sees
   const std::vector<double> scores = index_.Score(LandmarkDescriptors(keyframe));
   for (size_t p = 0; p < places_.size(); ++p) {
     if (places_[p].map != present) continue;
-    const KeyframeId id = map.LivingKeyframe(places_[p].keyframe);
-    if (!is_connected[id] && ways[id] >= min_way) continue;
+    if (is_apart(map.LivingKeyframe(places_[p].keyframe))) continue;
     excluded[p] = 1;
     likeness_before = std::max(likeness_before, scores[p]);
   }
@@ -196,12 +209,13 @@ std::optional<Loop> LoopDetector::Observe(const Map& map, KeyframeId newest,
     const bool is_present = places_[p].map == present;
     const Map& place_map = is_present ? map : finished[places_[p].map];
     const KeyframeId place = place_map.LivingKeyframe(places_[p].keyframe);
-    const std::optional<Revisit> revisit = Verify(map, newest, place_map, place);
+    const std::optional<Revisit> revisit = Verify(
+        map, newest, place_map, place, [&](KeyframeId id) { return !is_present || is_apart(id); });
     if (!revisit) continue;
     if (is_present) {
       const Similarity3 correction = CorrectionBy(*revisit, map, map);
       const Eigen::Vector3d& here = keyframe.world_from_camera.translation;
-      if ((correction * here - here).norm() > options_.max_drift * ways[place] ||
+      if ((correction * here - here).norm() > options_.max_drift * ways[revisit->place] ||
           Angle(correction.rotation) > options_.max_turn ||
           std::abs(std::log(correction.scale)) > std::log(options_.max_scale)) {
         continue;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -106,8 +107,11 @@ class LoopDetector {
                                            const std::vector<uint8_t>& excluded, int count) const;
   std::optional<TrackResult> TrackAt(const Features& features, const Map& map,
                                      const LocalMap& local) const;
+  /// The newest keyframe at a place, told from the nearest of the keyframes there that `may_close`
+  /// allows.
   std::optional<Revisit> Verify(const Map& map, KeyframeId newest, const Map& place_map,
-                                KeyframeId place) const;
+                                KeyframeId place,
+                                const std::function<bool(KeyframeId)>& may_close) const;
   std::optional<Loop> Confirm(const Map& map, const Sighting& sighting,
                               std::span<const Map> finished);
 
