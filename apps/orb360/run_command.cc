@@ -10,6 +10,9 @@
 
 #include <omp.h>
 #include <opencv2/core/utility.hpp>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "apps/orb360/commands.h"
 #include "apps/orb360/input.h"
@@ -110,6 +113,9 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction, const
   const auto start = std::chrono::steady_clock::now();
   std::optional<DenseOutput> dense;
   if (reconstruction.depth_scales.empty()) return dense;  // nothing could be completed
+#ifdef __GLIBC__
+  malloc_trim(0);  // what tracking and the last bundle adjustment needed would stay beside fusion's
+#endif
   try {
     dense = output.WriteDense(reconstruction, depth, options.saves_depth);
   } catch (const UserError&) {

@@ -10,6 +10,7 @@ namespace orb360 {
 namespace {
 
 constexpr int kMaxSamples = 300;     // of three points
+constexpr int kMinSamples = 30;      // three points on the ground may still be too close together
 constexpr double kMaxMissed = 1e-4;  // probability that no sample lies on the ground
 constexpr int kRefinements = 5;      // of the plane by the points on it
 
@@ -102,7 +103,9 @@ std::optional<GroundPlane> FitGroundPlane(std::span<const Eigen::Vector3d> point
       // The sum of weights is less than the number of points on the plane: rather too many samples.
       const double share = support / static_cast<double>(below.size());
       const double needed = std::log(kMaxMissed) / std::log1p(-std::pow(share, 3));
-      if (needed < kMaxSamples) num_samples = static_cast<int>(std::ceil(needed));
+      if (needed < kMaxSamples) {
+        num_samples = std::max(kMinSamples, static_cast<int>(std::ceil(needed)));
+      }
     }
   }
   if (!best) return std::nullopt;

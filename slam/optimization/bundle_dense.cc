@@ -11,9 +11,11 @@
 namespace orb360 {
 namespace {
 
-// Of the damping, as in Ceres: the trust region's first radius, the least diagonal that is damped,
-// and the least share of the predicted decrease with which a step is taken.
+// Of the damping, as in Ceres: the trust region's radius, the least diagonal that is damped, and
+// the least share of the predicted decrease with which a step is taken.
 constexpr double kFirstRadius = 1e4;
+constexpr double kMaxRadius = 1e16;
+constexpr double kMinRadius = 1e-32;
 constexpr double kMinDiagonal = 1e-6;
 constexpr double kMinGain = 1e-3;
 
@@ -37,7 +39,7 @@ Eigen::Matrix3d InverseOfLower(const Eigen::Matrix3d& l) {
 }
 
 /// One step towards the minimum. False where the damped equations are not positive definite to
-/// rounding.
+/// rounding, or promise nothing: at the minimum.
 bool Solve(const NormalEquations& equations, double radius, BundleStep* step) {
   const int num_moving = static_cast<int>(equations.poses.size());
   const auto block = [](int pose) { return static_cast<Eigen::Index>(6) * pose; };
@@ -100,7 +102,7 @@ bool Solve(const NormalEquations& equations, double radius, BundleStep* step) {
     predict(step->points[p], equations.point_gradients[p],
             Damping<Eigen::Vector3d>(equations.points[p].diagonal(), radius));
   }
-  return std::isfinite(step->predicted);
+  return std::isfinite(step->predicted) && step->predicted > 0;
 }
 
 }  // namespace
@@ -121,33 +123,38 @@ BundleReport SolveBundleDense(const BundleOptions& options, BundleProblem* probl
   bool is_linearized = false;
   NormalEquations equations;
   BundleStep step;
+  int solved = 0;
   while (report.iterations < options.max_iterations && cost > 0) {
     ++report.iterations;
     if (!is_linearized) equations = bundle.Linearize(estimate);
     is_linearized = true;
     double gain = 0;
-    if (Solve(equations, radius, &step) && step.predicted > 0) {
+    bool has_converged = false;
+    if (Solve(equations, radius, &step)) {
+      ++solved;
       BundleEstimate moved = bundle.Moved(estimate, step);
       const double new_cost = bundle.Cost(moved);
+      has_converged = std::abs(cost - new_cost) <= options.function_tolerance * cost;
       gain = (cost - new_cost) / step.predicted;
       if (gain > kMinGain) {
-        const bool has_converged = cost - new_cost < options.function_tolerance * cost;
         estimate = std::move(moved);
         cost = new_cost;
         is_linearized = false;
-        if (has_converged) break;
       }
     }
+    if (has_converged) break;
     // Nielsen's rule, as in Ceres.
     if (gain > kMinGain) {
-      radius = std::min(1e16, radius / std::max(1.0 / 3.0, 1 - std::pow(2 * gain - 1, 3)));
+      radius = std::min(kMaxRadius, radius / std::max(1.0 / 3.0, 1 - std::pow(2 * gain - 1, 3)));
       shrinking = 2;
     } else {
       radius /= shrinking;
       shrinking *= 2;
-      if (radius < 1e-32) break;
+      if (radius < kMinRadius) break;
     }
   }
+  report.usable = solved > 0 || report.iterations == 0;
+  if (!report.usable) return report;
   report.final_cost = cost;
   for (size_t i = 0; i < estimate.camera_from_world.size(); ++i) {
     if (problem->pose_fixed[i]) continue;

@@ -64,11 +64,10 @@ double BundleModel::ForEachTerm(const BundleEstimate& estimate,
   double cost = 0;
   for (size_t t = first_term_[point]; t < first_term_[point + 1]; ++t) {
     const Term& term = terms_[t];
-    const Eigen::Vector3d turned = rotations[term.pose] * estimate.points[point];
+    const Eigen::Vector3d seen = rotations[term.pose] * estimate.points[point] +
+                                 estimate.camera_from_world[term.pose].translation;
     PointJacobian jacobian;
-    const Eigen::Vector2d residual =
-        Residual(term, turned + estimate.camera_from_world[term.pose].translation,
-                 kWithDerivatives ? &jacobian : nullptr);
+    const Eigen::Vector2d residual = Residual(term, seen, kWithDerivatives ? &jacobian : nullptr);
     const double squared = residual.squaredNorm();
     if (!std::isfinite(squared)) return std::numeric_limits<double>::infinity();
     // A robust loss counts like a weight that is its slope (all of them bend downward).
@@ -78,7 +77,7 @@ double BundleModel::ForEachTerm(const BundleEstimate& estimate,
     cost += 0.5 * loss[0];
     if constexpr (kWithDerivatives) {
       const double weight = std::sqrt(loss[1]);
-      take(term.pose, turned, weight * residual, weight * jacobian);
+      take(term.pose, seen, weight * residual, weight * jacobian);
     }
   }
   return cost;
@@ -106,7 +105,7 @@ NormalEquations BundleModel::Linearize(const BundleEstimate& estimate) const {
     const size_t first = equations.links.size();
     equations.first_link.push_back(first);
     ForEachTerm<true>(estimate, rotations, p,
-                      [&](int pose, const Eigen::Vector3d& turned, const Eigen::Vector2d& residual,
+                      [&](int pose, const Eigen::Vector3d& seen, const Eigen::Vector2d& residual,
                           const PointJacobian& by_seen) {
                         const PointJacobian by_point = by_seen * rotations[pose];
                         equations.points[p] += by_point.transpose() * by_point;
@@ -114,7 +113,7 @@ NormalEquations BundleModel::Linearize(const BundleEstimate& estimate) const {
                         const int moving = moving_[pose];
                         if (moving < 0) return;
                         Eigen::Matrix<double, 2, 6> by_pose;
-                        by_pose << -by_seen * Skew(turned), by_seen;
+                        by_pose << -by_seen * Skew(seen), by_seen;
                         equations.poses[moving] += by_pose.transpose() * by_pose;
                         equations.pose_gradients[moving] += by_pose.transpose() * residual;
                         const auto link = std::find_if(
@@ -137,9 +136,8 @@ BundleEstimate BundleModel::Moved(const BundleEstimate& estimate, const BundleSt
   for (size_t i = 0; i < moving_.size(); ++i) {
     if (moving_[i] < 0) continue;
     const Vector6& d = step.poses[moving_[i]];
-    Rigid3& pose = moved.camera_from_world[i];
-    pose.rotation = (ExpSo3(d.head<3>()) * pose.rotation).normalized();
-    pose.translation += d.tail<3>();
+    moved.camera_from_world[i] =
+        Rigid3{ExpSo3(d.head<3>()), d.tail<3>()} * moved.camera_from_world[i];
   }
   for (size_t p = 0; p < moved.points.size(); ++p) moved.points[p] += step.points[p];
   return moved;

@@ -16,7 +16,8 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Matrix63 = Eigen::Matrix<double, 6, 3>;
 
-/// What is estimated. A step turns a camera by exp(w) from the left and adds to its translation.
+/// What is estimated. A step turns each camera's frame by exp(w) where the camera stands, and then
+/// moves it: how far it gets does not depend on where the world's origin is.
 struct BundleEstimate {
   std::vector<Rigid3> camera_from_world;
   std::vector<Eigen::Vector3d> points;
@@ -64,7 +65,7 @@ class BundleModel {
     int index;
   };
 
-  /// Calls take(pose, turned point, weighted residual, weighted derivative by the camera's point)
+  /// Calls take(pose, point seen from the camera, weighted residual, weighted derivative by that)
   /// for each of a point's terms, or nothing where derivatives are not wanted; returns their cost.
   template <bool kWithDerivatives, typename Take>
   double ForEachTerm(const BundleEstimate& estimate, const std::vector<Eigen::Matrix3d>& rotations,

@@ -74,7 +74,7 @@ BundleReport SolveBundleSparse(const BundleOptions& options, BundleProblem* bund
   ceres::Solve(solver_options, &problem, &summary);
 
   BundleReport report{summary.initial_cost, summary.final_cost,
-                      static_cast<int>(summary.iterations.size()), summary.IsSolutionUsable()};
+                      static_cast<int>(summary.iterations.size()) - 1, summary.IsSolutionUsable()};
   if (!report.usable) return report;
   for (size_t i = 0; i < poses.size(); ++i) {
     if (bundle->pose_fixed[i]) continue;

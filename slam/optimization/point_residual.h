@@ -45,18 +45,18 @@ struct HeightResidual {
 
 /// Its range is known roughly: ln(|p| / range) / sigma. Not finite for a point at the centre.
 struct RangeResidual {
-  double range;
+  double log_range;
   double weight;
 
   /// `known` in the world's unit; `sigma`: standard deviation of its logarithm.
-  RangeResidual(double known, double sigma) : range(known), weight(1 / sigma) {}
+  RangeResidual(double known, double sigma) : log_range(std::log(known)), weight(1 / sigma) {}
 
   Eigen::Vector2d operator()(const Eigen::Vector3d& point, PointJacobian* jacobian) const {
     const double squared = point.squaredNorm();
     if (jacobian != nullptr) {
       *jacobian << weight / squared * point.transpose(), Eigen::RowVector3d::Zero();
     }
-    return {weight * (0.5 * std::log(squared) - std::log(range)), 0};
+    return {weight * (0.5 * std::log(squared) - log_range), 0};
   }
 };
 
