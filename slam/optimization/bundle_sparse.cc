@@ -11,13 +11,12 @@
 namespace orb360 {
 
 BundleReport SolveBundleSparse(const BundleOptions& options, BundleProblem* bundle) {
-  // camera_from_world as (quaternion x y z w, translation): the point's residual is then one
-  // rotation away from its camera coordinates.
+  // As PointCost has them.
   std::vector<std::array<double, 7>> poses(bundle->world_from_camera.size());
   for (size_t i = 0; i < poses.size(); ++i) {
-    const Rigid3 camera_from_world = bundle->world_from_camera[i].Inverse();
-    Eigen::Map<Eigen::Quaterniond>(poses[i].data()) = camera_from_world.rotation;
-    Eigen::Map<Eigen::Vector3d>(poses[i].data() + 4) = camera_from_world.translation;
+    const Rigid3& world_from_camera = bundle->world_from_camera[i];
+    Eigen::Map<Eigen::Quaterniond>(poses[i].data()) = world_from_camera.rotation.conjugate();
+    Eigen::Map<Eigen::Vector3d>(poses[i].data() + 4) = world_from_camera.translation;
   }
   std::vector<Eigen::Vector3d> points = bundle->points;
 
@@ -78,10 +77,9 @@ BundleReport SolveBundleSparse(const BundleOptions& options, BundleProblem* bund
   if (!report.usable) return report;
   for (size_t i = 0; i < poses.size(); ++i) {
     if (bundle->pose_fixed[i]) continue;
-    const Rigid3 camera_from_world{
-        Eigen::Map<const Eigen::Quaterniond>(poses[i].data()).normalized(),
+    bundle->world_from_camera[i] = {
+        Eigen::Map<const Eigen::Quaterniond>(poses[i].data()).normalized().conjugate(),
         Eigen::Map<const Eigen::Vector3d>(poses[i].data() + 4)};
-    bundle->world_from_camera[i] = camera_from_world.Inverse();
   }
   bundle->points = std::move(points);
   return report;

@@ -98,16 +98,21 @@ TEST(SolveBundleDense, HoldsFixedPoses) {
   }
 }
 
-TEST(SolveBundleDense, GetsAsFarFarAwayFromTheOrigin) {
+TEST_P(BundleSolvers, ComeAsFarFarAwayFromTheOrigin) {
   BundleProblem near = NoisyWalk(4);
   BundleProblem far = near;
   const Eigen::Vector3d away(2000, -500, 100);
   for (Rigid3& pose : far.world_from_camera) pose.translation += away;
   for (Eigen::Vector3d& point : far.points) point += away;
-  const BundleReport near_report = SolveBundleDense({.max_iterations = 3}, &near);
-  const BundleReport far_report = SolveBundleDense({.max_iterations = 3}, &far);
-  EXPECT_LT(near_report.final_cost, 0.9 * near_report.initial_cost);
-  EXPECT_NEAR(far_report.final_cost, near_report.final_cost, 1e-6 * near_report.final_cost);
+  for (const auto solve : {SolveBundleDense, SolveBundleSparse}) {
+    BundleProblem near_copy = near;
+    BundleProblem far_copy = far;
+    const BundleOptions options{.max_iterations = 3, .loss = GetParam()};
+    const BundleReport near_report = solve(options, &near_copy);
+    const BundleReport far_report = solve(options, &far_copy);
+    EXPECT_LT(near_report.final_cost, 0.95 * near_report.initial_cost);
+    EXPECT_NEAR(far_report.final_cost, near_report.final_cost, 1e-6 * near_report.final_cost);
+  }
 }
 
 TEST(SolveBundleDense, LeavesTheProblemAsItIsWhereAResidualHasNoValue) {

@@ -48,8 +48,9 @@ void ExpectDerivatives(const Residual& residual, const Rigid3& camera_from_world
                        const Eigen::Vector3d& seen) {
   const PointCost<Residual> cost(residual);
   Eigen::Matrix<double, 10, 1> parameters;
-  parameters << camera_from_world.rotation.coeffs(), camera_from_world.translation,
-      camera_from_world.Inverse() * seen;
+  const Rigid3 world_from_camera = camera_from_world.Inverse();
+  parameters << camera_from_world.rotation.coeffs(), world_from_camera.translation,
+      world_from_camera * seen;
   const auto evaluate = [&cost](const Eigen::Matrix<double, 10, 1>& p, double** jacobians) {
     const double* blocks[] = {p.data(), p.data() + 7};
     Eigen::Vector2d values;
