@@ -118,7 +118,7 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction, const
 #endif
   try {
     dense = output.WriteDense(reconstruction, depth, options.saves_depth);
-  } catch (const UserError&) {
+  } catch (const std::exception&) {  // the trajectory is written all the same
     if (!record->failure) record->failure = std::current_exception();
   }
   record->fusion_seconds =

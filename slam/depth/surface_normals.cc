@@ -42,7 +42,8 @@ void FitNormalsKernel(const float* inverse_ranges, int width, const PlaneTap* ta
   const DI di;
   // The difference in ln(range) from the point's at which a pixel counts half.
   constexpr float kPlaneScale = 0.15f;
-  // What nearly equal bearings leave open of the slope is taken to be zero.
+  // Where all neighbours but those in one line are given up, the slope across it is taken to be
+  // zero. So little, in neighbours at one pixel's distance, changes no other slope.
   constexpr float kRidge = 2e-3f;
   const VI last = hn::Set(di, width);
   const VI start = hn::Set(di, row * width);

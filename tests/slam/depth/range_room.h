@@ -60,8 +60,9 @@ struct RangeRoom {
             world_from_camera.rotation * camera.Bearing({column + 0.5, row + 0.5});
         const double range = Range(world_from_camera.translation, ray, ball);
         depth.range.at<float>(row, column) = static_cast<float>(range);
-        const int wall = WallAt(world_from_camera.translation + range * ray);
-        depth.color.at<cv::Vec3b>(row, column) = cv::Vec3b::all(static_cast<uchar>(wall));
+        const Wall wall = WallAt(world_from_camera.translation + range * ray);
+        const int grey = 40 * wall.axis + (wall.is_positive ? 100 : 0);
+        depth.color.at<cv::Vec3b>(row, column) = cv::Vec3b::all(static_cast<uchar>(grey));
       }
     }
     return depth;
@@ -70,11 +71,9 @@ struct RangeRoom {
   /// The wall's normal, inward, at `range` along a ray of a camera; camera frame.
   Eigen::Vector3d NormalAlong(const Rigid3& world_from_camera, const Eigen::Vector3d& bearing,
                               double range) const {
-    const Eigen::Vector3d point = world_from_camera * Eigen::Vector3d(range * bearing);
-    int axis = 0;
-    (half_size - point.cwiseAbs()).minCoeff(&axis);
-    const Eigen::Vector3d inward = (point[axis] > 0 ? -1.0 : 1.0) * Eigen::Vector3d::Unit(axis);
-    return world_from_camera.rotation.inverse() * inward;
+    const Wall wall = WallAt(world_from_camera * Eigen::Vector3d(range * bearing));
+    const Eigen::Vector3d outward = Eigen::Vector3d::Unit(wall.axis);
+    return world_from_camera.rotation.inverse() * (wall.is_positive ? -outward : outward);
   }
 
   /// Distance of a point inside from the walls.
@@ -83,10 +82,16 @@ struct RangeRoom {
   }
 
  private:
-  int WallAt(const Eigen::Vector3d& point) const {
+  struct Wall {
+    int axis;
+    bool is_positive;  // on the positive side of its axis
+  };
+
+  /// The one that is nearest to a point inside.
+  Wall WallAt(const Eigen::Vector3d& point) const {
     int axis = 0;
     (half_size - point.cwiseAbs()).minCoeff(&axis);
-    return 40 * axis + (point[axis] > 0 ? 100 : 0);
+    return {axis, point[axis] > 0};
   }
 };
 

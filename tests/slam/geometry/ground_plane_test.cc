@@ -48,6 +48,17 @@ TEST(GroundPlane, IsFoundOnASlopeAmongAsManyOtherPoints) {
   }
 }
 
+// A third of what lies below the camera is on the ground.
+TEST(GroundPlane, IsFoundAmongManyMoreOtherPoints) {
+  for (int seed = 1; seed <= 40; ++seed) {
+    RandomGeometry random(seed);
+    const auto ground = FitGroundPlane(Scene(100, 1500, 0.01, &random), kUp, {});
+    ASSERT_TRUE(ground.has_value()) << seed;
+    EXPECT_NEAR(ground->height, 1.7, 0.03) << seed;
+    EXPECT_LT(AngleBetween(ground->normal, kUp), 0.015) << seed;
+  }
+}
+
 TEST(GroundPlane, IsNoSteepWallAndNoCeiling) {
   RandomGeometry random(3);
   std::vector<Eigen::Vector3d> points = Scene(100, 0, 0.0, &random);

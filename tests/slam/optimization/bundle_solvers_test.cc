@@ -46,6 +46,18 @@ BundleProblem NoisyWalk(int seed) {
   return problem;
 }
 
+/// The same with poses and points as good as unknown.
+BundleProblem FarStart(int seed) {
+  BundleProblem problem = NoisyWalk(seed);
+  RandomGeometry random(seed);
+  for (size_t i = 0; i < problem.world_from_camera.size(); ++i) {
+    Rigid3& pose = problem.world_from_camera[i];
+    if (!problem.pose_fixed[i]) pose = pose * Rigid3{random.Rotation(1.0), random.Point(0.0, 2.0)};
+  }
+  for (Eigen::Vector3d& point : problem.points) point += random.Point(0.0, 3.0);
+  return problem;
+}
+
 class BundleSolvers : public testing::TestWithParam<BundleLoss> {};
 
 // Ceres is the independent truth here.
@@ -152,13 +164,7 @@ TEST(SolveBundleDense, BearsPointsWithoutParallax) {
 
 // The way down is not smooth from here: steps are refused on it.
 TEST(SolveBundleDense, ComesDownFromAFarStart) {
-  BundleProblem problem = NoisyWalk(9);
-  RandomGeometry random(9);
-  for (size_t i = 0; i < problem.world_from_camera.size(); ++i) {
-    Rigid3& pose = problem.world_from_camera[i];
-    if (!problem.pose_fixed[i]) pose = pose * Rigid3{random.Rotation(1.0), random.Point(0.0, 2.0)};
-  }
-  for (Eigen::Vector3d& point : problem.points) point += random.Point(0.0, 3.0);
+  BundleProblem problem = FarStart(9);
   BundleProblem sparse = problem;
   const BundleOptions options{.max_iterations = 300, .function_tolerance = 1e-12};
   const BundleReport report = SolveBundleDense(options, &problem);
@@ -166,6 +172,33 @@ TEST(SolveBundleDense, ComesDownFromAFarStart) {
   ASSERT_TRUE(report.usable && by_sparse.usable);
   EXPECT_LT(report.final_cost, 0.5 * report.initial_cost);
   EXPECT_LT(report.final_cost, 1.2 * by_sparse.final_cost);
+}
+
+TEST(SolveBundleDense, RefusesAStepThatLeadsUpAndFindsOneThatLeadsDown) {
+  int refused = 0;
+  for (int seed = 1; seed <= 20; ++seed) {
+    BundleProblem problem = FarStart(seed);
+    BundleOptions options{.max_iterations = 1, .loss = BundleLoss::kArctan};
+    for (int step = 1; step <= 3; ++step) {
+      const BundleReport report = SolveBundleDense(options, &problem);
+      EXPECT_LE(report.final_cost, report.initial_cost) << seed;
+      if (report.final_cost < report.initial_cost) continue;
+      ++refused;
+      BundleProblem copy = problem;
+      options.max_iterations = 20;
+      EXPECT_LT(SolveBundleDense(options, &copy).final_cost, report.initial_cost) << seed;
+      options.max_iterations = 1;
+    }
+  }
+  EXPECT_GT(refused, 0);  // or this tests nothing
+}
+
+TEST(SolveBundleDense, StopsWhereNothingIsToBeGained) {
+  BundleProblem problem = NoisyWalk(12);
+  SolveBundleDense({.max_iterations = 200, .function_tolerance = 1e-12}, &problem);
+  const BundleReport again =
+      SolveBundleDense({.max_iterations = 200, .function_tolerance = 1e-6}, &problem);
+  EXPECT_EQ(again.iterations, 1);
 }
 
 TEST(SolveBundleDense, NothingToMoveAndNothingSeenAreNoError) {

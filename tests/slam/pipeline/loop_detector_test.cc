@@ -48,6 +48,30 @@ TEST(LoopDetector, FindsTheLoopAndWhatHasDrifted) {
   }
 }
 
+// On the second lap, the places on the first one that are far enough back lie behind the camera.
+TEST(LoopDetector, ALoopIsNoShorterThanAsked) {
+  RingStreet street(2000);
+  RingStreet::Drive drive;
+  LoopOptions options;
+  options.min_length = 22;  // median ranges: a lap and a few keyframes
+  LoopDetector detector(options, {}, kLocalKeyframes, RingStreet::kSigma);
+  std::optional<Loop> loop;
+  std::vector<double> asked;  // metres, by keyframe
+  for (int k = 0; k < kLap + 15 && !loop; ++k) {
+    const KeyframeId id = street.DriveOn(RingStreet::PoseAt(ArcOf(k)), {}, &drive);
+    asked.push_back(options.min_length * drive.map.MedianRange(id));
+    loop = detector.Observe(drive.map, id, {});
+  }
+  ASSERT_TRUE(loop.has_value());
+  for (const Revisit& revisit : loop->revisits) {
+    double way = 0;
+    for (KeyframeId id = revisit.place; id < revisit.keyframe; ++id) {
+      way += (drive.truth[id + 1].translation - drive.truth[id].translation).norm();
+    }
+    EXPECT_GE(way, asked[revisit.keyframe]);
+  }
+}
+
 // The way back is in the opposite direction and on the other side of the street.
 TEST(LoopDetector, RecognisesAStreetDrivenTheOtherWay) {
   RingStreet street(2000);
