@@ -11,13 +11,21 @@ Reconstruction MakeReconstruction(const std::vector<Map>& maps,
                                   const std::map<int, Placement>& placements) {
   Reconstruction result;
   result.maps.resize(maps.size());
+  std::vector<const Placement*> ordered;
   for (const auto& [index, placement] : placements) {
-    const Map& map = maps[placement.map];
-    result.frames.push_back({index, placement.timestamp, placement.map,
-                             map.PoseOf(placement.reference) * placement.reference_from_camera});
+    result.frames.push_back({index, placement.timestamp, placement.map, Rigid3()});
+    ordered.push_back(&placement);
     MapSummary& summary = result.maps[placement.map];
     if (summary.tracked++ == 0) summary.first_frame = index;
     summary.last_frame = index;
+  }
+#pragma omp parallel for schedule(dynamic, 16)
+  for (size_t i = 0; i < ordered.size(); ++i) {
+    const Placement& placement = *ordered[i];
+    const Map& map = maps[placement.map];
+    result.frames[i].world_from_camera =
+        RefineFrame(map, map.PoseOf(placement.reference) * placement.reference_from_camera,
+                    placement.sightings);
   }
   int64_t matched = 0;
   for (size_t m = 0; m < maps.size(); ++m) {
@@ -40,6 +48,11 @@ Reconstruction MakeReconstruction(const std::vector<Map>& maps,
             [](const FramePose& a, const FramePose& b) { return a.index < b.index; });
   std::map<int, size_t> position_of;  // in result.keyframes, by frame index
   for (size_t i = 0; i < result.keyframes.size(); ++i) position_of[result.keyframes[i].index] = i;
+  for (FramePose& frame : result.frames) {
+    const auto place = position_of.find(frame.index);
+    if (place == position_of.end()) continue;
+    frame.world_from_camera = result.keyframes[place->second].world_from_camera;
+  }
   for (const Map& map : maps) {
     for (const CovisibilityEdge& edge : FindCovisibilityEdges(map, kCovisible)) {
       result.covisibility.push_back({position_of.at(map.keyframe(edge.first).frame_index),

@@ -9,6 +9,7 @@
 #include "slam/features/features.h"
 #include "slam/geometry/rigid3.h"
 #include "slam/map/map.h"
+#include "slam/pipeline/frame_refinement.h"
 
 namespace orb360 {
 
@@ -18,6 +19,7 @@ struct Placement {
   int map;
   KeyframeId reference;
   Rigid3 reference_from_camera;
+  std::vector<Sighting> sightings;  // landmarks of the map by which the pose was found
 };
 
 struct FramePose {
@@ -80,7 +82,8 @@ struct Reconstruction {
 };
 
 /// Everything but `initialized_at`, `depth_scales`, what is counted and which maps are metric.
-/// Placements are by frame index.
+/// Placements are by frame index. Keyframes have the pose that the map gives them, and the other
+/// frames the one in which they see its landmarks best (frame_refinement.h).
 Reconstruction MakeReconstruction(const std::vector<Map>& maps,
                                   const std::map<int, Placement>& placements);
 

@@ -167,12 +167,13 @@ void System::AcceptTracking(const PendingFrame& frame, TrackResult result) {
            result.world_from_camera,
            std::move(result.landmarks),
            result.num_inliers};
-  Place(frame.index, frame.timestamp, last_.world_from_camera);
+  Place(last_);
 }
 
-void System::Place(int index, double timestamp, const Rigid3& world_from_camera) {
-  placements_[index] = {timestamp, static_cast<int>(finished_maps_.size()), local_.reference,
-                        local_.world_from_reference.Inverse() * world_from_camera};
+void System::Place(const TrackedFrame& frame) {
+  placements_[frame.index] = {
+      frame.timestamp, static_cast<int>(finished_maps_.size()), local_.reference,
+      local_.world_from_reference.Inverse() * frame.world_from_camera, SightingsOf(frame)};
 }
 
 // --- result -----------------------------------------------------------------------------------

@@ -127,7 +127,8 @@ class System {
   void AdoptBundle();
   void SwitchToMap(int finished);
   void AdoptJoinedMap(const MappingResult& result);
-  void RenumberMaps(const std::vector<int>& number_of, int shifted, KeyframeId shift);
+  void RenumberMaps(const std::vector<int>& number_of, int shifted, KeyframeId keyframe_shift,
+                    LandmarkId landmark_shift);
   void ScalePlacements(const std::vector<Similarity3>& corrections);
   void ScalePlacement(int frame_index, double factor, Placement* placement);
   void MoveTracked(const Similarity3& correction);
@@ -136,7 +137,7 @@ class System {
   void CountSightings(Map* map);
   void UpdateLocalMap();
   int FreeThreads() const;
-  void Place(int index, double timestamp, const Rigid3& world_from_camera);
+  void Place(const TrackedFrame& frame);
 
   const EquirectangularCamera camera_;
   const Options options_;

@@ -83,7 +83,7 @@ void System::AdoptJoinedMap(const MappingResult& result) {
   std::vector<int> number_of(present + 1);
   for (int i = 0; i <= present; ++i) number_of[i] = i > joined ? i - 1 : i;
   number_of[joined] = present - 1;
-  RenumberMaps(number_of, present, result.keyframe_shift);
+  RenumberMaps(number_of, present, result.keyframe_shift, result.landmark_shift);
   for (std::vector<LandmarkId>* ids : {&last_.landmarks, &expected_, &found_}) {
     for (LandmarkId& id : *ids) id = id == kNoId ? kNoId : id + result.landmark_shift;
   }
@@ -107,15 +107,19 @@ void System::SwitchToMap(int finished) {
   std::vector<int> number_of(present + 1);
   std::iota(number_of.begin(), number_of.end(), 0);
   std::swap(number_of[finished], number_of[present]);
-  RenumberMaps(number_of, present, 0);
+  RenumberMaps(number_of, present, 0, 0);
 }
 
-void System::RenumberMaps(const std::vector<int>& number_of, int shifted, KeyframeId shift) {
+void System::RenumberMaps(const std::vector<int>& number_of, int shifted, KeyframeId keyframe_shift,
+                          LandmarkId landmark_shift) {
   for (auto& [index, placement] : placements_) {
-    if (placement.map == shifted) placement.reference += shift;
+    if (placement.map == shifted) {
+      placement.reference += keyframe_shift;
+      for (Sighting& sighting : placement.sightings) sighting.landmark += landmark_shift;
+    }
     placement.map = number_of[placement.map];
   }
-  loops_->Renumber(number_of, shifted, shift);
+  loops_->Renumber(number_of, shifted, keyframe_shift);
 }
 
 void System::StartBundle() {

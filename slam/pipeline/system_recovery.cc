@@ -68,7 +68,6 @@ void System::TrackPendingBackwards(TrackedFrame last) {
       result = TrackWithoutPrediction(*frame.features, local_, pixel_sigma_, options_.tracker);
     }
     if (!result) continue;
-    Place(frame.index, frame.timestamp, result->world_from_camera);
     before = std::move(last);
     last = {frame.index,
             frame.timestamp,
@@ -76,6 +75,7 @@ void System::TrackPendingBackwards(TrackedFrame last) {
             result->world_from_camera,
             std::move(result->landmarks),
             result->num_inliers};
+    Place(last);
   }
   pending_.clear();
 }
@@ -160,8 +160,8 @@ void System::CreateMap(const PendingFrame& first, const PendingFrame& second,
            0};
   last_.num_inliers = static_cast<int>(std::count_if(last_.landmarks.begin(), last_.landmarks.end(),
                                                      [](LandmarkId id) { return id != kNoId; }));
-  Place(first.index, first.timestamp, map_.keyframe(keyframe1).world_from_camera);
-  Place(second.index, second.timestamp, last_.world_from_camera);
+  Place(*before_last_);
+  Place(last_);
   std::erase_if(pending_,
                 [index = first.index](const PendingFrame& p) { return p.index == index; });
   TrackPendingBackwards(last_);

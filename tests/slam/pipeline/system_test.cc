@@ -123,6 +123,12 @@ TEST(SystemSlow, TracksAWholeWalkWithinHalfAPercent) {
   EXPECT_LT(error.worst_rotation, 0.02);
   EXPECT_TRUE(result.maps.front().is_metric);
   EXPECT_NEAR(error.scale, 1.0, 0.02);
+  // Keyframes are frames: both lists say the same of them.
+  ASSERT_GT(result.keyframes.size(), 5u);
+  for (const FramePose& keyframe : result.keyframes) {
+    const Rigid3& frame = result.frames[keyframe.index].world_from_camera;
+    EXPECT_EQ(frame.translation, keyframe.world_from_camera.translation) << keyframe.index;
+  }
 }
 
 TEST(SystemSlow, GivesTheSameBytesForAnyNumberOfThreadsAndEveryTime) {

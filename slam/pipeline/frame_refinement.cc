@@ -1,0 +1,33 @@
+#include "slam/pipeline/frame_refinement.h"
+
+#include "slam/optimization/pose_refinement.h"
+
+namespace orb360 {
+
+std::vector<Sighting> SightingsOf(const TrackedFrame& frame) {
+  std::vector<Sighting> sightings;
+  for (size_t f = 0; f < frame.landmarks.size(); ++f) {
+    if (frame.landmarks[f] == kNoId) continue;
+    sightings.push_back({frame.landmarks[f], frame.features->bearings[f].cast<float>(),
+                         frame.features->keypoints[f].sigma});
+  }
+  return sightings;
+}
+
+Rigid3 RefineFrame(const Map& map, const Rigid3& world_from_camera,
+                   std::span<const Sighting> sightings) {
+  std::vector<PoseObservation> observations;
+  for (const Sighting& sighting : sightings) {
+    const LandmarkId id = map.Resolve(sighting.landmark);
+    if (id == kNoId) continue;
+    observations.push_back(
+        {map.landmark(id).position, sighting.bearing.cast<double>(), sighting.sigma});
+  }
+  const RefinedPose refined = RefinePose(world_from_camera, observations);
+  constexpr int kEnough = 20;
+  const bool is_sure = refined.num_inliers >= kEnough &&
+                       2 * refined.num_inliers >= static_cast<int>(sightings.size());
+  return is_sure ? refined.world_from_camera : world_from_camera;
+}
+
+}  // namespace orb360

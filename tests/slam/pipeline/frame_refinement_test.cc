@@ -1,0 +1,60 @@
+#include "slam/pipeline/frame_refinement.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/slam/pipeline/synthetic_scene.h"
+
+namespace orb360 {
+namespace {
+
+const Rigid3 kTruth{ExpSo3({0.1, -0.2, 0.3}), {0.6, 0.1, 0.0}};
+const Rigid3 kNear{ExpSo3({0.11, -0.2, 0.3}), {0.63, 0.08, 0.02}};
+
+/// A map with all points at their true places, and how a frame between two of its keyframes sees
+/// them.
+struct Sight {
+  SyntheticScene scene{200};
+  Map map = scene.MakeMap({Rigid3(), {Eigen::Quaterniond::Identity(), {1, 0, 0}}}, 200);
+  std::vector<Sighting> sightings;
+
+  explicit Sight(double noise) {
+    TrackedFrame frame;
+    frame.features = scene.See(kTruth, noise);
+    frame.landmarks = map.keyframe(0).landmarks;
+    sightings = SightingsOf(frame);
+  }
+};
+
+void ExpectNear(const Rigid3& pose, const Rigid3& truth, double tolerance) {
+  EXPECT_LT((pose.translation - truth.translation).norm(), tolerance);
+  EXPECT_LT(pose.rotation.angularDistance(truth.rotation), tolerance);
+}
+
+TEST(FrameRefinement, FindsThePoseInWhichTheLandmarksAreSeen) {
+  const Sight exact(0.0);
+  ASSERT_EQ(exact.sightings.size(), 200u);
+  ExpectNear(RefineFrame(exact.map, kNear, exact.sightings), kTruth, 1e-5);  // floats
+  const Sight noisy(1.0);
+  ExpectNear(RefineFrame(noisy.map, kNear, noisy.sightings), kTruth, 3e-3);
+}
+
+TEST(FrameRefinement, FollowsLandmarksThatBecameOthersAndMissesRemovedOnes) {
+  Sight sight(0.0);
+  const LandmarkId first = sight.sightings[0].landmark;
+  const LandmarkId last = sight.sightings.back().landmark;
+  // The last one's place is the first one's now: what was seen as the last is wrong, and left out.
+  sight.map.MergeLandmark(last, first);
+  for (int i = 1; i < 60; ++i) sight.map.RemoveLandmark(sight.sightings[i].landmark);
+  ExpectNear(RefineFrame(sight.map, kNear, sight.sightings), kTruth, 1e-5);
+}
+
+TEST(FrameRefinement, LeavesAPoseWhoseLandmarksAreGone) {
+  Sight sight(0.0);
+  for (int i = 0; i < 120; ++i) sight.map.RemoveLandmark(sight.sightings[i].landmark);
+  ExpectNear(RefineFrame(sight.map, kNear, sight.sightings), kNear, 1e-12);
+  ExpectNear(RefineFrame(sight.map, kNear, std::span(sight.sightings).last(10)), kNear, 1e-12);
+  ExpectNear(RefineFrame(sight.map, kNear, {}), kNear, 1e-12);
+}
+
+}  // namespace
+}  // namespace orb360
