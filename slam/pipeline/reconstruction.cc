@@ -51,7 +51,8 @@ Reconstruction MakeReconstruction(const std::vector<Map>& maps,
   for (FramePose& frame : result.frames) {
     const auto place = position_of.find(frame.index);
     if (place == position_of.end()) continue;
-    frame.world_from_camera = result.keyframes[place->second].world_from_camera;
+    const FramePose& keyframe = result.keyframes[place->second];
+    if (keyframe.map == frame.map) frame.world_from_camera = keyframe.world_from_camera;
   }
   for (const Map& map : maps) {
     for (const CovisibilityEdge& edge : FindCovisibilityEdges(map, kCovisible)) {
