@@ -17,7 +17,7 @@ namespace {
 // side of a street. The exponent is measured (docs/features.md).
 double Weight(const PyramidLevel& level) { return std::pow(level.scale, -4.0); }
 
-std::vector<int> ShareOut(int num_features, const std::vector<PyramidLevel>& levels) {
+std::vector<int> ShareOut(int num_features, const SpherePyramid& levels) {
   double total = 0;
   for (const PyramidLevel& level : levels) total += Weight(level);
   std::vector<int> counts;
@@ -42,7 +42,7 @@ Features OrbExtractor::Extract(const cv::Mat& gray, const cv::Mat& mask) {
   ORB360_CHECK(mask.empty() || (mask.type() == CV_8U && mask.size() == gray.size()), mask.cols,
                mask.rows);
   BuildSpherePyramid(gray, options_.num_levels, &levels_);
-  const std::vector<PyramidLevel>& levels = levels_;
+  const SpherePyramid& levels = levels_;
   const std::vector<int> counts = ShareOut(options_.num_features, levels);
   const uint8_t min_score = static_cast<uint8_t>(options_.min_score);
   const int num_bands = static_cast<int>(levels.size()) * kSphereBands;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -33,9 +34,12 @@ class OrbExtractor {
   /// centre has mask 0 are left out. Features are ordered by level, then row, then column.
   Features Extract(const cv::Mat& gray, const cv::Mat& mask = {});
 
+  /// The pyramid of the last image, which is then no longer here; empty before the first.
+  SpherePyramid TakePyramid() { return std::exchange(levels_, {}); }
+
  private:
   OrbOptions options_;
-  std::vector<PyramidLevel> levels_;
+  SpherePyramid levels_;
   // By level, then band.
   std::vector<SphereBand> bands_;
   std::vector<SphereBand> blurred_;

@@ -59,8 +59,8 @@ PyramidLevel MakeLevel(int width, int height, double scale) {
           cv::Mat(height + 2 * PyramidLevel::kMarginY, width + 2 * PyramidLevel::kMarginX, CV_8U)};
 }
 
-std::vector<PyramidLevel> MakeLevels(int full_width, int full_height, int num_levels) {
-  std::vector<PyramidLevel> levels = {MakeLevel(full_width, full_height, 1.0)};
+SpherePyramid MakeLevels(int full_width, int full_height, int num_levels) {
+  SpherePyramid levels = {MakeLevel(full_width, full_height, 1.0)};
   for (int l = 1; l < num_levels; ++l) {
     // In the first octave a multiple of twice the columns, so that the next divides by them too.
     const bool first_octave = l < kLevelsPerOctave;
@@ -109,11 +109,11 @@ void FillSphereMargin(PyramidLevel* level) {
   }
 }
 
-void BuildSpherePyramid(const cv::Mat& gray, int num_levels, std::vector<PyramidLevel>* result) {
+void BuildSpherePyramid(const cv::Mat& gray, int num_levels, SpherePyramid* result) {
   ORB360_CHECK(gray.type() == CV_8U && gray.cols >= kMinWidth &&
                    gray.rows >= PyramidLevel::kMarginY && num_levels > 0,
                gray.type(), gray.cols, gray.rows, num_levels);
-  std::vector<PyramidLevel>& levels = *result;
+  SpherePyramid& levels = *result;
   const bool reusable = !levels.empty() && levels[0].camera.width() == gray.cols &&
                         levels[0].camera.height() == gray.rows;
   if (!reusable) levels = MakeLevels(gray.cols, gray.rows, num_levels);

@@ -77,6 +77,8 @@ void CheckSizes(const MapArrays& a) {
   RequireSize(a.feature_bits, features, kWords, "feature_bits");
   RequireSize(a.feature_color, features, 3, "feature_color");
   RequireSize(a.feature_landmark, features, 1, "feature_landmark");
+  RequireSize(a.aligned_bearing, features, 3, "aligned_bearing");
+  RequireSize(a.aligned_sigma, features, 1, "aligned_sigma");
   const size_t landmarks = a.max_range.size();
   RequireSize(a.position, landmarks, 3, "position");
   RequireSize(a.mean_direction, landmarks, 3, "mean_direction");
@@ -116,6 +118,11 @@ void CheckNumbers(const MapArrays& a) {
                 a.level[f] < kLevels && IsUnit(Vector(a.bearing, f).norm()) &&
                 a.feature_landmark[f] >= kNoId && a.feature_landmark[f] < num_landmarks,
             "feature", f);
+    const Eigen::Map<const Eigen::Vector3f> aligned(a.aligned_bearing.data() + 3 * f);
+    Require(
+        a.aligned_sigma[f] == 0 ||
+            (a.aligned_sigma[f] > 0 && std::isfinite(a.aligned_sigma[f]) && IsUnit(aligned.norm())),
+        "alignment of feature", f);
   }
   const auto num_keyframes = static_cast<int32_t>(a.frame_index.size());
   for (size_t l = 0; l < a.max_range.size(); ++l) {
@@ -125,6 +132,10 @@ void CheckNumbers(const MapArrays& a) {
                 a.first_keyframe[l] < num_keyframes && a.visible[l] >= 0 && a.found[l] >= 0,
             "landmark", l);
   }
+}
+
+const Observation& ObservationOf(const Map& map, LandmarkId landmark, KeyframeId keyframe) {
+  return *std::ranges::find(map.landmark(landmark).observations, keyframe, &Observation::keyframe);
 }
 
 std::shared_ptr<const Features> FeaturesOf(const MapArrays& a, size_t begin, size_t end) {
@@ -183,6 +194,9 @@ MapArrays ToArrays(const Map& map) {
       AppendAll(features.colors[f], &a.feature_color);
       const LandmarkId seen = keyframe.landmarks[f];
       a.feature_landmark.push_back(seen == kNoId ? kNoId : landmark_number[seen]);
+      const Observation observation = seen == kNoId ? Observation{} : ObservationOf(map, seen, id);
+      AppendAll(observation.aligned_bearing, &a.aligned_bearing);
+      a.aligned_sigma.push_back(observation.aligned_sigma);
     }
     a.features_end.push_back(static_cast<int64_t>(a.angle.size()));
   }
@@ -218,6 +232,9 @@ Map FromArrays(const MapArrays& a) {
       const std::vector<Observation>& seen = map.landmark(id).observations;
       Require(seen.empty() || seen.back().keyframe != k, "landmark seen twice at feature", f);
       map.AddObservation(id, k, static_cast<int>(f - begin));
+      Observation& observation = map.landmark(id).observations.back();
+      observation.aligned_bearing = Eigen::Vector3f(a.aligned_bearing.data() + 3 * f);
+      observation.aligned_sigma = a.aligned_sigma[f];
     }
   }
   for (LandmarkId id = 0; id < map.landmark_end(); ++id) {

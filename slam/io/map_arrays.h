@@ -8,7 +8,8 @@
 namespace orb360 {
 
 /// A map as plain columns, the way it lies in a file: keyframes and landmarks are numbered from 0
-/// without gaps, in the order of their ids. What is removed is not in it.
+/// without gaps, in the order of their ids. What is removed is not in it, nor are pictures and
+/// patches of them.
 struct MapArrays {
   // By keyframe.
   std::vector<int32_t> frame_index;
@@ -25,6 +26,8 @@ struct MapArrays {
   std::vector<uint64_t> feature_bits;     // 4 words
   std::vector<uint8_t> feature_color;     // red green blue
   std::vector<int32_t> feature_landmark;  // -1: none
+  std::vector<float> aligned_bearing;     // x y z; of the observation of that landmark
+  std::vector<float> aligned_sigma;       // 0: not aligned
   // By landmark.
   std::vector<double> position;        // x y z
   std::vector<double> mean_direction;  // x y z
@@ -53,6 +56,8 @@ void ForEachColumn(Arrays& a, const Visit& visit) {
   visit("feature_descriptor", a.feature_bits, 4);
   visit("feature_color", a.feature_color, 3);
   visit("feature_landmark", a.feature_landmark, 1);
+  visit("feature_aligned_bearing", a.aligned_bearing, 3);
+  visit("feature_aligned_sigma", a.aligned_sigma, 1);
   visit("landmark_position", a.position, 3);
   visit("landmark_mean_direction", a.mean_direction, 3);
   visit("landmark_max_range", a.max_range, 1);

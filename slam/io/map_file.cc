@@ -18,7 +18,7 @@ namespace orb360 {
 namespace {
 
 constexpr SealedKind kKind = {"ORB360MP",
-                              1,
+                              2,
                               "map",
                               "`orb360 run --map-out`",
                               "make the map anew with this one",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "nn/base/check.h"
 #include "slam/features/hamming.h"
@@ -53,7 +54,8 @@ KeyframeId Map::AddKeyframe(int frame_index, double timestamp, const Rigid3& wor
                                 world_from_camera,
                                 std::move(features),
                                 std::vector<LandmarkId>(num_features, kNoId),
-                                {}});
+                                {},
+                                nullptr});
   successors_.emplace_back();
   ++num_keyframes_;
   return id;
@@ -278,6 +280,11 @@ void Map::Append(const Map& other) {
     landmarks_.back()->id += first_landmark;
     landmarks_.back()->first_keyframe += first_keyframe;
     for (Observation& o : landmarks_.back()->observations) o.keyframe += first_keyframe;
+    if (theirs->patch) {
+      LandmarkPatch patch = *theirs->patch;
+      patch.keyframe += first_keyframe;
+      landmarks_.back()->patch = std::make_shared<const LandmarkPatch>(patch);
+    }
   }
   for (const LandmarkId theirs : other.merged_into_) {
     merged_into_.push_back(shift(theirs, first_landmark));

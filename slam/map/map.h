@@ -9,6 +9,8 @@
 #include <Eigen/Core>
 
 #include "slam/features/features.h"
+#include "slam/features/patch_alignment.h"
+#include "slam/features/sphere_pyramid.h"
 #include "slam/geometry/rigid3.h"
 
 namespace orb360 {
@@ -21,8 +23,20 @@ inline constexpr int kNoId = -1;
 
 /// One landmark's sighting: feature `feature` of keyframe `keyframe`.
 struct Observation {
-  KeyframeId keyframe;
-  int feature;
+  KeyframeId keyframe = kNoId;
+  int feature = 0;
+  /// Where the keyframe's picture shows the landmark's patch: more exact than the feature. Unit,
+  /// camera frame; with its angular noise, rad, which is 0 where that is not known.
+  Eigen::Vector3f aligned_bearing = Eigen::Vector3f::Zero();
+  float aligned_sigma = 0;
+};
+
+/// A patch of a keyframe's picture around a landmark, with which later pictures are aligned.
+struct LandmarkPatch {
+  KeyframeId keyframe;      // may have been removed since
+  Eigen::Vector3d bearing;  // of the patch's centre, unit, in its camera frame
+  double spacing;           // of its samples on the tangent plane (TangentBasis), rad
+  Patch patch;
 };
 
 /// What is known of a feature's range without any landmark: from completed depth.
@@ -39,6 +53,7 @@ struct Keyframe {
   std::shared_ptr<const Features> features;
   std::vector<LandmarkId> landmarks;     // by feature; kNoId where it sees none
   std::vector<RangePrior> range_priors;  // by feature; empty where its depth is not completed
+  std::shared_ptr<const SpherePyramid> picture;  // kept for a while only
 
   RangePrior PriorOf(int feature) const {
     return range_priors.empty() ? RangePrior{} : range_priors[feature];
@@ -52,10 +67,11 @@ struct Landmark {
   double max_range = 0;            // where it would be seen on pyramid level 0
   Descriptor descriptor{};         // the most typical of its observations'
   Color color{};
-  KeyframeId first_keyframe = kNoId;      // the newest keyframe when it was made
-  std::vector<Observation> observations;  // ordered by keyframe
-  int visible = 1;                        // frames in which it should have been seen
-  int found = 1;                          // and was
+  KeyframeId first_keyframe = kNoId;           // the newest keyframe when it was made
+  std::vector<Observation> observations;       // ordered by keyframe
+  std::shared_ptr<const LandmarkPatch> patch;  // null where no picture that shows it was kept
+  int visible = 1;                             // frames in which it should have been seen
+  int found = 1;                               // and was
 };
 
 /// The range at which a feature of pyramid level l at `range` would be on level 0. Scales grow by
@@ -80,7 +96,8 @@ class Map {
   LandmarkId AddLandmark(const Eigen::Vector3d& position, const Color& color);
   void RemoveLandmark(LandmarkId id);
   /// Moves the observations of `from` to `to` (where a keyframe sees both, `to` keeps its own) and
-  /// removes `from`; Resolve(from) is `to` from now on.
+  /// removes `from`; Resolve(from) is `to` from now on. Moved observations are not aligned with the
+  /// patch of `to`.
   void MergeLandmark(LandmarkId from, LandmarkId to);
 
   /// Contract: neither has an observation of the other yet.

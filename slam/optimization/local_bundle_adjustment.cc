@@ -34,6 +34,31 @@ void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem
   }
 }
 
+// Scales everything about the first pose that is held, so that the cameras are as high over the
+// ground as they should be in the mean. Left to the solver, which has to move each point on its own
+// for that, this would take hundreds of steps.
+void RestoreMeanHeight(BundleProblem* problem) {
+  double sum = 0;
+  double weights = 0;
+  for (const BundleProblem::Height& height : problem->heights) {
+    const Rigid3& pose = problem->world_from_camera[height.pose];
+    const double measured =
+        (pose.rotation * height.normal).dot(pose.translation - problem->points[height.point]);
+    const double weight = 1 / (height.sigma * height.sigma);
+    sum += weight * measured / height.height;
+    weights += weight;
+  }
+  if (weights == 0) return;
+  const double factor = weights / sum;
+  const auto held = std::ranges::find(problem->pose_fixed, uint8_t{1});
+  const Eigen::Vector3d center =
+      problem->world_from_camera[held - problem->pose_fixed.begin()].translation;
+  const auto scale = [&](Eigen::Vector3d* p) { *p = center + factor * (*p - center); };
+  for (Rigid3& pose : problem->world_from_camera) scale(&pose.translation);
+  for (Eigen::Vector3d& point : problem->points) scale(&point);
+  for (BundleProblem::Range& range : problem->ranges) range.range *= factor;
+}
+
 // Ranges of one picture are wrong together: what they have in common is taken off, so that they say
 // how the landmarks lie to each other and not how large the world is, and all together they are as
 // certain as a few measurements.
@@ -59,10 +84,11 @@ void LevelRanges(BundleProblem* problem) {
 }
 
 // Builds, solves and writes back. `fixed` keyframes are held; of the landmarks' observations only
-// those from `moving` and `fixed` take part.
+// those from `moving` and `fixed` take part. `free_scale`: what is held holds no scale.
 void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixed,
             std::span<const LandmarkId> landmarks, const BundleOptions& options,
-            const std::optional<KnownGround>& ground, double height_sigma, Map* map) {
+            const std::optional<KnownGround>& ground, double height_sigma, bool free_scale,
+            Map* map) {
   BundleProblem problem;
   std::vector<int> pose_of(map->keyframe_end(), -1);
   const auto add_pose = [&](KeyframeId id, bool is_fixed) {
@@ -86,8 +112,13 @@ void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixe
       if (pose_of[o.keyframe] < 0) continue;
       const Keyframe& keyframe = map->keyframe(o.keyframe);
       const int pose = pose_of[o.keyframe];
-      problem.observations.push_back({pose, point, keyframe.features->bearings[o.feature],
-                                      keyframe.features->keypoints[o.feature].sigma});
+      if (o.aligned_sigma > 0) {
+        problem.observations.push_back(
+            {pose, point, o.aligned_bearing.cast<double>().normalized(), o.aligned_sigma});
+      } else {
+        problem.observations.push_back({pose, point, keyframe.features->bearings[o.feature],
+                                        keyframe.features->keypoints[o.feature].sigma});
+      }
       if (const RangePrior prior = keyframe.PriorOf(o.feature); prior.sigma > 0) {
         problem.ranges.push_back({pose, point, prior.range, prior.sigma});
       }
@@ -98,6 +129,7 @@ void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixe
   for (size_t i = 0; ground && i < moving.size(); ++i) {
     AddHeights(static_cast<int>(i), *ground, height_sigma, &problem);
   }
+  if (free_scale) RestoreMeanHeight(&problem);
   if (!SolveBundle(options, &problem).usable) return;
 
   for (size_t i = 0; i < moving.size(); ++i) {
@@ -149,7 +181,7 @@ void AdjustLocally(KeyframeId center, const LocalBundleOptions& options,
     moving.erase(oldest);
   }
   Adjust(moving, fixed, landmarks, {.max_iterations = options.max_iterations}, ground,
-         options.height_sigma, map);
+         options.height_sigma, false, map);
 }
 
 void AdjustGlobally(int max_iterations, const std::optional<KnownGround>& ground,
@@ -164,7 +196,7 @@ void AdjustGlobally(int max_iterations, const std::optional<KnownGround>& ground
     }
     Adjust(all.subspan(1), all.first(1), landmarks,
            {.max_iterations = max_iterations, .loss = BundleLoss::kArctan}, ground, height_sigma,
-           map);
+           true, map);
   }
 }
 

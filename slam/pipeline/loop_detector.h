@@ -42,6 +42,9 @@ struct LoopOptions {
   double bundle_frames = 0.5;
   /// Iterations of each round of the bundle adjustment of the whole map.
   int bundle_iterations = 5;
+  /// The camera's height over the ground as LocalBundleOptions::height_sigma, but less certain: all
+  /// keyframes of a map hold its scale together, and a road that is not even would bend their path.
+  double height_sigma = 0.02;
 };
 
 /// One keyframe that sees a place again.

@@ -1,8 +1,10 @@
 #include "slam/pipeline/mapper.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "slam/pipeline/landmark_fusion.h"
+#include "slam/pipeline/observation_alignment.h"
 
 namespace orb360 {
 namespace {
@@ -59,10 +61,20 @@ void CullRedundantKeyframes(KeyframeId newest, const MapperOptions& options, Map
   }
 }
 
+// All but those of the newest keyframes.
+void ForgetPictures(int num_kept, Map* map) {
+  const std::vector<KeyframeId> keyframes = map->KeyframeIds();
+  for (size_t i = 0; i + num_kept < keyframes.size(); ++i) {
+    map->keyframe(keyframes[i]).picture.reset();
+  }
+}
+
 }  // namespace
 
-KeyframeId IntegrateKeyframe(const TrackedFrame& frame, const MapperOptions& options,
-                             const std::optional<KnownGround>& ground, Map* map) {
+KeyframeId IntegrateKeyframe(const TrackedFrame& frame,
+                             std::shared_ptr<const SpherePyramid> picture,
+                             const MapperOptions& options, const std::optional<KnownGround>& ground,
+                             Map* map) {
   const KeyframeId id =
       map->AddKeyframe(frame.index, frame.timestamp, frame.world_from_camera, frame.features);
   for (size_t f = 0; f < frame.landmarks.size(); ++f) {
@@ -74,11 +86,14 @@ KeyframeId IntegrateKeyframe(const TrackedFrame& frame, const MapperOptions& opt
     map->AddObservation(landmark, id, static_cast<int>(f));
     map->UpdateAppearance(landmark);
   }
+  map->keyframe(id).picture = std::move(picture);
   CullRecentLandmarks(id, options, map);
   TriangulateNewLandmarks(id, options.triangulation, map);
   FuseWithNeighbours(id, options.max_fusion_neighbours, map);
+  AlignObservations(id, map);
   AdjustLocally(id, options.bundle, ground, map);
   CullRedundantKeyframes(id, options, map);
+  ForgetPictures(options.kept_pictures, map);
   return id;
 }
 

@@ -19,12 +19,17 @@ struct MapperOptions {
   /// behind leaves and posts, is worth keeping.
   int probation_keyframes = 5;
   double min_found_share = 0.1;
+  /// Pictures are kept of so many keyframes, the newest, to align what they show of landmarks.
+  int kept_pictures = 10;
 };
 
 /// Takes a tracked frame into the map as a keyframe: its observations, culling of doubtful
-/// landmarks, new ones by panoramic triangulation, fusion of duplicates with its neighbours, local
-/// bundle adjustment, culling of redundant keyframes. Returns the keyframe's id.
-KeyframeId IntegrateKeyframe(const TrackedFrame& frame, const MapperOptions& options,
-                             const std::optional<KnownGround>& ground, Map* map);
+/// landmarks, new ones by panoramic triangulation, fusion of duplicates with its neighbours,
+/// alignment with the landmarks' patches where `picture` is not null, local bundle adjustment,
+/// culling of redundant keyframes. Returns the keyframe's id.
+KeyframeId IntegrateKeyframe(const TrackedFrame& frame,
+                             std::shared_ptr<const SpherePyramid> picture,
+                             const MapperOptions& options, const std::optional<KnownGround>& ground,
+                             Map* map);
 
 }  // namespace orb360

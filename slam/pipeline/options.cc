@@ -96,6 +96,9 @@ ConfigSchema MakeConfigSchema(Options* options) {
              "keyframes after which a landmark must have been seen three times", 1, 100);
   schema.Add("mapper.min_found_share", &mapper.min_found_share,
              "share of the frames in which a landmark on probation must be found", 0.0, 1.0);
+  schema.Add("mapper.kept_pictures", &mapper.kept_pictures,
+             "newest keyframes whose pictures are kept, to align what they show of landmarks", 1,
+             1000);
 
   RecoveryOptions& recovery = options->recovery;
   schema.Add("recovery.patience_frames", &recovery.patience_frames,
@@ -158,6 +161,8 @@ ConfigSchema MakeConfigSchema(Options* options) {
              100.0);
   schema.Add("loop.bundle_iterations", &loop.bundle_iterations,
              "iterations of each round of the bundle adjustment of the whole map", 1, 1000);
+  schema.Add("loop.height_sigma", &loop.height_sigma,
+             "scale.height_sigma in the bundle adjustment of the whole map", 0.001, 1.0);
   return schema;
 }
 

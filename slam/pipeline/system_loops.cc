@@ -125,8 +125,7 @@ void System::RenumberMaps(const std::vector<int>& number_of, int shifted, Keyfra
 void System::StartBundle() {
   auto adjust = [map = map_, ground = ReliableGround(), options = options_]() mutable {
     omp_set_num_threads(1);
-    AdjustGlobally(options.loop.bundle_iterations, ground, options.mapper.bundle.height_sigma,
-                   &map);
+    AdjustGlobally(options.loop.bundle_iterations, ground, options.loop.height_sigma, &map);
     return std::move(map);
   };
   const double frames = options_.loop.bundle_frames * map_.num_keyframes();

@@ -57,9 +57,11 @@ void System::StartMapping() {
   // The map moves into the job and comes back with its result; finished maps stay as they are while
   // there is a job.
   auto integrate = [map = std::move(map_), loops = std::move(loops_), finished = &finished_maps_,
+                    picture = std::make_shared<const SpherePyramid>(extractor_.TakePyramid()),
                     keyframe, ground = ReliableGround(), completed, options = options_]() mutable {
     omp_set_num_threads(1);  // the other core goes on tracking
-    const KeyframeId id = IntegrateKeyframe(keyframe, options.mapper, ground, &map);
+    const KeyframeId id =
+        IntegrateKeyframe(keyframe, std::move(picture), options.mapper, ground, &map);
     MappingResult result;
     result.reference = id;
     const Rigid3 correction =

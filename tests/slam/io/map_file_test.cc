@@ -30,6 +30,9 @@ StoredMap Stored() {
   stored.map.RemoveLandmark(7);
   stored.map.landmark(9).visible = 12;
   stored.map.landmark(9).found = 5;
+  Observation& aligned = stored.map.landmark(9).observations.back();
+  aligned.aligned_bearing = {0.48f, 0.6f, 0.64f};
+  aligned.aligned_sigma = 0.0012f;
   return stored;
 }
 
@@ -90,7 +93,10 @@ TEST(MapFile, ReadsBackExactlyWhatWasWritten) {
   EXPECT_EQ(seen.descriptor, stored.map.landmark(9).descriptor);
   EXPECT_EQ(seen.visible, 12);
   EXPECT_EQ(seen.found, 5);
-  EXPECT_EQ(seen.observations.size(), 4u);
+  ASSERT_EQ(seen.observations.size(), 4u);
+  EXPECT_EQ(seen.observations[2].aligned_sigma, 0);
+  EXPECT_EQ(seen.observations[3].aligned_sigma, 0.0012f);
+  EXPECT_EQ(seen.observations[3].aligned_bearing, Eigen::Vector3f(0.48f, 0.6f, 0.64f));
 }
 
 TEST(MapFile, TheSameMapGivesTheSameBytesAgain) {
@@ -116,7 +122,7 @@ TEST(MapFile, RefusesWhatIsDamagedOrOfAnotherKindOrVersion) {
   EXPECT_THAT(refuse("a video"), HasSubstr("is not a map of orb360"));
   bad = good;
   bad[8] = 9;
-  EXPECT_THAT(refuse(bad), AllOf(HasSubstr("version 9"), HasSubstr("reads version 1")));
+  EXPECT_THAT(refuse(bad), AllOf(HasSubstr("version 9"), HasSubstr("reads version 2")));
   EXPECT_THAT(Refusal(folder / "none.h5"), HasSubstr("cannot be read"));
 }
 
@@ -143,6 +149,13 @@ TEST(MapArrays, RefusesColumnsThatAreNotAMap) {
   EXPECT_THAT(refuse([](MapArrays* a) { a->feature_landmark[5] = a->feature_landmark[6]; }),
               HasSubstr("seen twice"));
   EXPECT_THAT(refuse([](MapArrays* a) { a->level[2] = 8; }), HasSubstr("feature 2"));
+  EXPECT_THAT(refuse([](MapArrays* a) { a->aligned_bearing.pop_back(); }), HasSubstr("aligned"));
+  EXPECT_THAT(refuse([](MapArrays* a) { a->aligned_sigma[3] = -1; }),
+              HasSubstr("alignment of feature 3"));
+  EXPECT_THAT(refuse([](MapArrays* a) { a->aligned_sigma[3] = INFINITY; }),
+              HasSubstr("alignment of feature 3"));
+  EXPECT_THAT(refuse([](MapArrays* a) { a->aligned_sigma[3] = 0.001f; }),  // without a direction
+              HasSubstr("alignment of feature 3"));
   EXPECT_THAT(refuse([](MapArrays* a) { a->bearing[3] += 0.1; }), HasSubstr("feature 1"));
   EXPECT_THAT(refuse([](MapArrays* a) { a->max_range[4] = 0.0; }), HasSubstr("landmark 4"));
   EXPECT_THAT(refuse([](MapArrays* a) { a->first_keyframe[4] = 4; }), HasSubstr("landmark 4"));

@@ -1,5 +1,7 @@
 #include "slam/map/map.h"
 
+#include <memory>
+
 #include <gtest/gtest.h>
 
 #include "nn/base/check.h"
@@ -146,6 +148,28 @@ TEST(Map, AppendingKeepsBothMapsAndTheirHistory) {
   EXPECT_EQ(map.landmark(30 + 9).first_keyframe, 4 + other.landmark(9).first_keyframe);
   EXPECT_EQ(map.keyframe(1).landmarks, before.keyframe(1).landmarks);
   EXPECT_EQ(map.keyframe(4 + 1).landmarks[9], 30 + 9);
+}
+
+TEST(Map, AnAppendedPatchStaysWithItsKeyframe) {
+  Map map = SmallMap();
+  Map other = SmallMap();
+  other.landmark(8).patch =
+      std::make_shared<const LandmarkPatch>(LandmarkPatch{3, {0.0, 0.6, 0.8}, 0.01, Patch{}});
+  map.Append(other);
+  EXPECT_EQ(map.landmark(30 + 8).patch->keyframe, 4 + 3);
+  EXPECT_EQ(map.landmark(30 + 8).patch->spacing, 0.01);
+  EXPECT_EQ(other.landmark(8).patch->keyframe, 3);
+}
+
+TEST(Map, WhatWasAlignedWithAPatchIsNotWithThatOfTheLandmarkItJoins) {
+  Map map = SmallMap();
+  const LandmarkId twin = map.AddLandmark({1, 2, 3}, {});
+  map.RemoveObservation(2, 3);
+  map.AddObservation(twin, 3, 36);
+  map.landmark(twin).observations[0].aligned_sigma = 0.001f;
+  map.MergeLandmark(twin, 2);
+  EXPECT_EQ(map.landmark(2).observations[3].feature, 36);
+  EXPECT_EQ(map.landmark(2).observations[3].aligned_sigma, 0);
 }
 
 TEST(Map, LevelsAndRangesAreInverse) {

@@ -105,6 +105,27 @@ TEST(LocalBundleAdjustment, RemovesObservationsThatAreWrong) {
   EXPECT_EQ(map.landmark(20).observations.size(), 4u);
 }
 
+TEST(LocalBundleAdjustment, AlignedBearingsCountInThePlaceOfCorners) {
+  SyntheticScene scene(200);
+  const std::vector<Rigid3> poses = Walk(5, {-0.3, 0.1, 0.0});
+  const Map corners = scene.MakeMap(poses, 180);
+  const auto error_of = [&](Map map) {
+    AdjustLocally(4, {}, {}, &map);
+    return (map.keyframe(4).world_from_camera.translation - poses[4].translation).norm();
+  };
+  Map aligned = corners;
+  for (LandmarkId id = 0; id < 180; ++id) {
+    for (Observation& o : aligned.landmark(id).observations) {
+      const Rigid3 camera_from_world = poses[o.keyframe].Inverse();
+      o.aligned_bearing =
+          (camera_from_world * scene.points[id].position).normalized().cast<float>();
+      o.aligned_sigma = 1e-5f;
+    }
+  }
+  EXPECT_GT(error_of(corners), 1e-4);
+  EXPECT_LT(error_of(aligned), 1e-6);
+}
+
 // Two keyframes close to each other, whose parallax says little of how far points are.
 TEST(LocalBundleAdjustment, RoughRangesHelpWithPointsOfLittleParallax) {
   SyntheticScene scene(300, 6.0, 20.0);
@@ -153,6 +174,19 @@ TEST(LocalBundleAdjustment, GlobalAdjustmentBringsTheWholeMapToRest) {
   const auto truth = [&](int id) { return poses[id].translation; };
   EXPECT_NEAR(distance(found, 0, 2) / distance(found, 0, 4),
               distance(truth, 0, 2) / distance(truth, 0, 4), 0.01);
+}
+
+TEST(LocalBundleAdjustment, GlobalAdjustmentSetsTheScaleByTheHeightAtOnce) {
+  SyntheticScene scene(400);
+  for (int i = 0; i < 150; ++i) {
+    scene.points[i].position = {scene.random.Uniform(-5, 5), scene.random.Uniform(-5, 5), -1.6};
+  }
+  const std::vector<Rigid3> poses = Walk(12, {-0.3, 0.1, 0.0});
+  Map map = scene.MakeMap(poses, 400);
+  map.Transform({1.05, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero()});
+  AdjustGlobally(1, KnownGround{Eigen::Vector3d::UnitZ(), 1.6}, 0.02, &map);
+  const double found = map.keyframe(11).world_from_camera.translation.norm();
+  EXPECT_NEAR(found / poses[11].translation.norm(), 1.0, 0.002);
 }
 
 // As at the ends of a loop, where points that look alike have become one landmark.

@@ -1,6 +1,7 @@
 #include "slam/pipeline/mapper.h"
 
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 #include "slam/pipeline/landmark_fusion.h"
 #include "tests/slam/pipeline/synthetic_scene.h"
@@ -26,8 +27,8 @@ TEST(Mapper, TakesAFrameInAndCorrectsItsPose) {
   const Rigid3 truth = Walk(4, {-0.4, 0.1, 0.0})[3];
   Rigid3 disturbed = truth;
   disturbed.translation += Eigen::Vector3d(0.03, -0.03, 0.02);
-  const KeyframeId id =
-      IntegrateKeyframe(FrameSeeing(scene, scene.See(truth), disturbed, 250), {}, {}, &map);
+  const KeyframeId id = IntegrateKeyframe(FrameSeeing(scene, scene.See(truth), disturbed, 250),
+                                          nullptr, {}, {}, &map);
   map.CheckConsistency();
   EXPECT_EQ(id, 3);
   EXPECT_EQ(map.keyframe(id).frame_index, 40);
@@ -44,7 +45,7 @@ TEST(Mapper, DropsLandmarksThatAreRarelyFound) {
   const Rigid3 pose = Walk(4, {-0.4, 0.1, 0.0})[3];
   TrackedFrame frame = FrameSeeing(scene, scene.See(pose), pose, 300);
   frame.landmarks[doubtful] = kNoId;
-  IntegrateKeyframe(frame, {}, {}, &map);
+  IntegrateKeyframe(frame, nullptr, {}, {}, &map);
   EXPECT_FALSE(map.HasLandmark(doubtful));
 }
 
@@ -54,13 +55,33 @@ TEST(Mapper, RemovesKeyframesThatOthersMakeRedundantAndKeepsTheirPoses) {
   const std::vector<Rigid3> poses = Walk(5, {-0.05, 0.0, 0.0});
   Map map = scene.MakeMap(poses, 300);
   const Rigid3 pose = Walk(6, {-0.05, 0.0, 0.0})[5];
-  IntegrateKeyframe(FrameSeeing(scene, scene.See(pose), pose, 300), {}, {}, &map);
+  IntegrateKeyframe(FrameSeeing(scene, scene.See(pose), pose, 300), nullptr, {}, {}, &map);
   map.CheckConsistency();
   EXPECT_LT(map.num_keyframes(), 6);
   EXPECT_TRUE(map.HasKeyframe(0));  // the gauge
   for (KeyframeId id = 0; id < 5; ++id) {
     EXPECT_LT((map.PoseOf(id).translation - poses[id].translation).norm(), 0.02) << id;
   }
+}
+
+TEST(Mapper, KeepsThePicturesOfTheNewestKeyframesOnly) {
+  SyntheticScene scene(300);
+  const std::vector<Rigid3> poses = Walk(8, {-0.4, 0.1, 0.0});
+  Map map = scene.MakeMap({poses.begin(), poses.begin() + 3}, 250);
+  cv::Mat gray(256, 512, CV_8U);
+  cv::randu(gray, 0, 256);
+  auto picture = std::make_shared<SpherePyramid>();
+  BuildSpherePyramid(gray, 8, picture.get());
+  MapperOptions options;
+  options.redundant_share = 1.1;  // no keyframe goes
+  options.kept_pictures = 2;
+  for (int k = 3; k < 8; ++k) {
+    TrackedFrame frame = FrameSeeing(scene, scene.See(poses[k]), poses[k], 200);
+    for (LandmarkId& id : frame.landmarks) id = map.Resolve(id);
+    IntegrateKeyframe(frame, picture, options, {}, &map);
+  }
+  for (KeyframeId id = 0; id < 8; ++id) EXPECT_EQ(map.keyframe(id).picture != nullptr, id >= 6);
+  EXPECT_EQ(picture.use_count(), 3);
 }
 
 TEST(LandmarkFusion, MergesTwoLandmarksOfOnePoint) {

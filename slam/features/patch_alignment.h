@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "slam/features/sphere_pyramid.h"
+
+namespace orb360 {
+
+/// Gray values around a point, on a square grid.
+struct Patch {
+  /// Samples on each side of the centre that are compared; one more is kept for their gradient.
+  static constexpr int kRadius = 5;
+  static constexpr int kWidth = 2 * kRadius + 3;
+  std::array<uint8_t, kWidth * kWidth> gray;  // row by row
+};
+
+/// Where a patch's samples lie in a picture: sample (x, y), counted from the centre, is at
+/// center + steps * (x, y).
+struct PatchGrid {
+  Eigen::Vector2d center;  // continuous pixel of a pyramid level
+  Eigen::Matrix2d steps;   // pixels
+};
+
+/// Empty where the grid reaches beyond the level's margin.
+std::optional<Patch> SamplePatch(const PyramidLevel& level, const PatchGrid& grid);
+
+/// The centre at which `level` shows what `patch` shows, by Gauss-Newton steps from a guess that is
+/// at most two samples off; the brightness may differ by a factor and an offset. (Inverse
+/// compositional: Baker and Matthews, Lucas-Kanade 20 Years On, IJCV 2004.) Empty where both do not
+/// look alike, where the patch has structure in one direction only, and beyond the level's margin.
+std::optional<Eigen::Vector2d> AlignPatch(const Patch& patch, const PyramidLevel& level,
+                                          const PatchGrid& guess);
+
+}  // namespace orb360

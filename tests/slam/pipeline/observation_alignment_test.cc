@@ -1,0 +1,154 @@
+#include "slam/pipeline/observation_alignment.h"
+
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "slam/features/sphere_pyramid.h"
+#include "slam/geometry/bearing.h"
+#include "slam/geometry/so3.h"
+#include "tests/slam/pipeline/box_room.h"
+
+namespace orb360 {
+namespace {
+
+const EquirectangularCamera kCamera(1024, 512);
+
+// Keyframes in a textured room, with corners found off by half a pixel.
+struct Scene {
+  BoxRoom room{{6.0, 5.0, 3.0}, 8};
+  std::mt19937 random{5};
+  Map map;
+  std::vector<Eigen::Vector3d> shown;  // by landmark: the point in the middle of its patch
+
+  double Uniform(double low, double high) {
+    return low + (high - low) * (random() + 0.5) / 4294967296.0;
+  }
+
+  KeyframeId AddKeyframe(const Rigid3& pose, bool with_picture) {
+    cv::Mat gray;
+    cv::cvtColor(room.Render(kCamera, pose), gray, cv::COLOR_BGR2GRAY);
+    SpherePyramid picture;
+    BuildSpherePyramid(gray, 8, &picture);
+    auto features = std::make_shared<Features>();
+    for (const Eigen::Vector3d& point : shown) {
+      const Eigen::Vector3d seen = pose.Inverse() * point;
+      const Eigen::Vector3d wrong = Eigen::Vector3d(Uniform(-1, 1), Uniform(-1, 1), Uniform(-1, 1))
+                                        .cross(seen.normalized())
+                                        .normalized();
+      const double off = map.num_keyframes() == 0 ? 0 : kCamera.AngleOfPixels(0.5);
+      Keypoint keypoint{};
+      keypoint.pixel.setZero();
+      keypoint.sigma = static_cast<float>(kCamera.AngleOfPixels(0.7));
+      features->keypoints.push_back(keypoint);
+      features->bearings.push_back((seen.normalized() + off * wrong).normalized());
+    }
+    const KeyframeId id =
+        map.AddKeyframe(map.num_keyframes(), 0.1 * map.num_keyframes(), pose, std::move(features));
+    if (with_picture) map.keyframe(id).picture = std::make_shared<SpherePyramid>(picture);
+    for (LandmarkId l = 0; l < map.landmark_end(); ++l) map.AddObservation(l, id, l);
+    return id;
+  }
+
+  // Points on the walls that look like corners, and the first keyframe, from which they are seen.
+  Scene() {
+    cv::Mat gray;
+    cv::cvtColor(room.Render(kCamera, {}), gray, cv::COLOR_BGR2GRAY);
+    std::vector<cv::Point2f> corners;
+    cv::goodFeaturesToTrack(gray(cv::Rect(0, 130, 1024, 252)), corners, 150, 0.1, 15);
+    for (const cv::Point2f& corner : corners) {
+      const Eigen::Vector3d ray = kCamera.Bearing({corner.x + 0.5, corner.y + 130.5});
+      shown.push_back(room.Range({0, 0, 0}, ray) * ray);
+      map.AddLandmark(shown.back(), {});
+    }
+  }
+
+  // Median angle between what the keyframe shows and where it is taken to be, pixels; `share`: of
+  // the observations that are aligned.
+  double Error(KeyframeId id, bool aligned, double* share = nullptr) const {
+    std::vector<double> errors;
+    const Keyframe& keyframe = map.keyframe(id);
+    for (LandmarkId l = 0; l < map.landmark_end(); ++l) {
+      for (const Observation& o : map.landmark(l).observations) {
+        if (o.keyframe != id || (aligned && o.aligned_sigma == 0)) continue;
+        const Eigen::Vector3d bearing = aligned ? Eigen::Vector3d(o.aligned_bearing.cast<double>())
+                                                : keyframe.features->bearings[o.feature];
+        errors.push_back(AngleBetween(keyframe.world_from_camera.Inverse() * shown[l], bearing) /
+                         kCamera.AngleOfPixels(1.0));
+      }
+    }
+    if (share != nullptr) *share = errors.size() / static_cast<double>(map.num_landmarks());
+    if (errors.empty()) return -1;
+    std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
+    return errors[errors.size() / 2];
+  }
+};
+
+const Rigid3 kStep{ExpSo3({0.05, -0.04, 0.3}), {-0.5, 0.2, 0.1}};
+
+TEST(AlignObservations, BringsCornersToAFifthOfTheirErrorFromAnyDirection) {
+  Scene scene;
+  AlignObservations(scene.AddKeyframe({}, true), &scene.map);
+  const KeyframeId second = scene.AddKeyframe(kStep, true);
+  AlignObservations(second, &scene.map);
+  double share = 0;
+  EXPECT_NEAR(scene.Error(second, false), 0.5, 1e-3);
+  EXPECT_LT(scene.Error(second, true, &share), 0.1);
+  EXPECT_GT(share, 0.8);
+  for (LandmarkId l = 0; l < scene.map.landmark_end(); ++l) {
+    const Observation& o = scene.map.landmark(l).observations[1];
+    const float corner = scene.map.keyframe(second).features->keypoints[o.feature].sigma;
+    EXPECT_LT(o.aligned_sigma, 0.5f * corner);
+  }
+}
+
+TEST(AlignObservations, AlignsWhatOlderKeyframesShowWithThePatchOfANewLandmark) {
+  Scene scene;
+  const KeyframeId older = scene.AddKeyframe(kStep, true);
+  const KeyframeId gone = scene.AddKeyframe({ExpSo3({0, 0, 0.1}), {0.2, 0, 0}}, false);
+  const KeyframeId newest = scene.AddKeyframe({}, true);
+  AlignObservations(newest, &scene.map);
+  double share = 0;
+  // The newest keyframe's corners are half a pixel off: that is where its patches are.
+  for (LandmarkId l = 0; l < scene.map.landmark_end(); ++l) {
+    const Landmark& landmark = scene.map.landmark(l);
+    ASSERT_NE(landmark.patch, nullptr);
+    EXPECT_EQ(landmark.patch->keyframe, newest);
+    const Eigen::Vector3d ray = scene.map.keyframe(newest).features->bearings[l];
+    scene.shown[l] = scene.room.Range({0, 0, 0}, ray) * ray;
+  }
+  EXPECT_LT(scene.Error(older, true, &share), 0.1);
+  EXPECT_GT(share, 0.8);
+  scene.Error(gone, true, &share);
+  EXPECT_EQ(share, 0);  // its picture was not kept
+}
+
+TEST(AlignObservations, LeavesWhatLooksDifferent) {
+  Scene scene;
+  AlignObservations(scene.AddKeyframe({}, true), &scene.map);
+  const KeyframeId second = scene.AddKeyframe(kStep, true);
+  // Another room's picture.
+  cv::Mat gray;
+  cv::cvtColor(BoxRoom({6.0, 5.0, 3.0}, 99).Render(kCamera, kStep), gray, cv::COLOR_BGR2GRAY);
+  SpherePyramid picture;
+  BuildSpherePyramid(gray, 8, &picture);
+  scene.map.keyframe(second).picture = std::make_shared<SpherePyramid>(picture);
+  AlignObservations(second, &scene.map);
+  double share = 0;
+  scene.Error(second, true, &share);
+  EXPECT_LT(share, 0.05);
+}
+
+TEST(AlignObservations, ANeverKeptPictureChangesNothing) {
+  Scene scene;
+  const KeyframeId id = scene.AddKeyframe({}, false);
+  AlignObservations(id, &scene.map);
+  for (LandmarkId l = 0; l < scene.map.landmark_end(); ++l) {
+    EXPECT_EQ(scene.map.landmark(l).patch, nullptr);
+  }
+}
+
+}  // namespace
+}  // namespace orb360
