@@ -24,8 +24,9 @@ constexpr double kPatchNoise = 0.5;
 // The level on which samples `spacing` rad apart are nearest to one pixel apart.
 const PyramidLevel& LevelFor(const SpherePyramid& picture, double spacing) {
   const double scale = spacing / picture.front().camera.AngleOfPixels(1.0);
-  const auto level = std::lround(std::log(scale) / std::log(RangeAtLevelZero(1.0, 1)));
-  return picture[std::clamp<long>(level, 0, static_cast<long>(picture.size()) - 1)];
+  const double level = std::round(std::log(scale) / std::log(RangeAtLevelZero(1.0, 1)));
+  return picture[static_cast<size_t>(
+      std::clamp(level, 0.0, static_cast<double>(picture.size()) - 1))];
 }
 
 // The grid around the direction of `point`, whose steps are `steps` in the camera frame. None on
@@ -61,6 +62,7 @@ void Align(const Map& map, const Landmark& landmark, Observation* observation) {
   const double range = position.norm();
   const Eigen::Quaterniond camera_from_reference =
       keyframe.world_from_camera.rotation.conjugate() * reference.rotation;
+  if (!(range > 0)) return;
   const double footprint = patch.spacing * reference_range;
   const double spacing = footprint / range;
   const PyramidLevel& level = LevelFor(*keyframe.picture, spacing);

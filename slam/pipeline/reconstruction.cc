@@ -7,6 +7,14 @@
 
 namespace orb360 {
 
+void Renumber(const MapRenumbering& maps, Placement* placement) {
+  if (placement->map == maps.shifted) {
+    placement->reference += maps.keyframe_shift;
+    for (Sighting& sighting : placement->sightings) sighting.landmark += maps.landmark_shift;
+  }
+  placement->map = maps.number_of[placement->map];
+}
+
 Reconstruction MakeReconstruction(const std::vector<Map>& maps,
                                   const std::map<int, Placement>& placements) {
   Reconstruction result;

@@ -22,6 +22,15 @@ struct Placement {
   std::vector<Sighting> sightings;  // landmarks of the map by which the pose was found
 };
 
+/// How maps are called after one has been joined to another, or changed places with it.
+struct MapRenumbering {
+  std::vector<int> number_of;  // new by old
+  int shifted = 0;             // old number of the map whose ids grow
+  KeyframeId keyframe_shift = 0;
+  LandmarkId landmark_shift = 0;
+};
+void Renumber(const MapRenumbering& maps, Placement* placement);
+
 struct FramePose {
   int index;         // in the sequence; negative: of a run that a loaded map was made in
   double timestamp;  // s

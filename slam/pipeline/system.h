@@ -127,8 +127,7 @@ class System {
   void AdoptBundle();
   void SwitchToMap(int finished);
   void AdoptJoinedMap(const MappingResult& result);
-  void RenumberMaps(const std::vector<int>& number_of, int shifted, KeyframeId keyframe_shift,
-                    LandmarkId landmark_shift);
+  void RenumberMaps(const MapRenumbering& maps);
   void ScalePlacements(const std::vector<Similarity3>& corrections);
   void ScalePlacement(int frame_index, double factor, Placement* placement);
   void MoveTracked(const Similarity3& correction);

@@ -80,10 +80,11 @@ void System::AdoptJoinedMap(const MappingResult& result) {
   for (auto& [index, placement] : placements_) {
     if (placement.map == present) ScalePlacement(index, result.correction.scale, &placement);
   }
-  std::vector<int> number_of(present + 1);
-  for (int i = 0; i <= present; ++i) number_of[i] = i > joined ? i - 1 : i;
-  number_of[joined] = present - 1;
-  RenumberMaps(number_of, present, result.keyframe_shift, result.landmark_shift);
+  MapRenumbering maps{std::vector<int>(present + 1), present, result.keyframe_shift,
+                      result.landmark_shift};
+  for (int i = 0; i <= present; ++i) maps.number_of[i] = i > joined ? i - 1 : i;
+  maps.number_of[joined] = present - 1;
+  RenumberMaps(maps);
   for (std::vector<LandmarkId>* ids : {&last_.landmarks, &expected_, &found_}) {
     for (LandmarkId& id : *ids) id = id == kNoId ? kNoId : id + result.landmark_shift;
   }
@@ -104,22 +105,15 @@ void System::SwitchToMap(int finished) {
   std::swap(ground_, grounds_[finished]);
   dense_grounds_.clear();
   const int present = static_cast<int>(finished_maps_.size());
-  std::vector<int> number_of(present + 1);
-  std::iota(number_of.begin(), number_of.end(), 0);
-  std::swap(number_of[finished], number_of[present]);
-  RenumberMaps(number_of, present, 0, 0);
+  MapRenumbering maps{.number_of = std::vector<int>(present + 1)};
+  std::iota(maps.number_of.begin(), maps.number_of.end(), 0);
+  std::swap(maps.number_of[finished], maps.number_of[present]);
+  RenumberMaps(maps);
 }
 
-void System::RenumberMaps(const std::vector<int>& number_of, int shifted, KeyframeId keyframe_shift,
-                          LandmarkId landmark_shift) {
-  for (auto& [index, placement] : placements_) {
-    if (placement.map == shifted) {
-      placement.reference += keyframe_shift;
-      for (Sighting& sighting : placement.sightings) sighting.landmark += landmark_shift;
-    }
-    placement.map = number_of[placement.map];
-  }
-  loops_->Renumber(number_of, shifted, keyframe_shift);
+void System::RenumberMaps(const MapRenumbering& maps) {
+  for (auto& [index, placement] : placements_) Renumber(maps, &placement);
+  loops_->Renumber(maps.number_of, maps.shifted, maps.keyframe_shift);
 }
 
 void System::StartBundle() {
