@@ -124,7 +124,6 @@ std::optional<Eigen::Vector2d> AlignPatch(const Patch& patch, const PyramidLevel
   const Eigen::Matrix2d inverse = wanted.structure.inverse();
   const Values& w = Weights();
   Eigen::Vector2d shift = Eigen::Vector2d::Zero();  // samples
-  double correlation = 0;
   for (int i = 0; i < kMaxSteps; ++i) {
     const PatchGrid grid{guess.center + guess.steps * shift, guess.steps};
     Values seen;
@@ -133,16 +132,17 @@ std::optional<Eigen::Vector2d> AlignPatch(const Patch& patch, const PyramidLevel
     const double variance = (w * seen.square()).sum();
     const double product = (w * seen * wanted.values).sum();
     if (!(variance > 0)) return std::nullopt;
-    correlation = product / std::sqrt(variance * wanted.variance);
+    const double correlation = product / std::sqrt(variance * wanted.variance);
     const Values error = w * (static_cast<float>(product / variance) * seen - wanted.values);
     const Eigen::Vector2d step = inverse * Eigen::Vector2d((error * wanted.gradient_x).sum(),
                                                            (error * wanted.gradient_y).sum());
     shift -= step;
     if (!(shift.norm() <= kMaxShift)) return std::nullopt;
-    if (step.norm() < kEnough) break;
+    if (step.norm() >= kEnough) continue;
+    if (!(correlation >= kMinCorrelation)) return std::nullopt;
+    return guess.center + guess.steps * shift;
   }
-  if (!(correlation >= kMinCorrelation)) return std::nullopt;
-  return guess.center + guess.steps * shift;
+  return std::nullopt;
 }
 
 }  // namespace orb360

@@ -73,6 +73,13 @@ void Map::RemoveKeyframe(KeyframeId id, KeyframeId successor) {
   --num_keyframes_;
 }
 
+void Map::ForgetPictures(int num_kept) {
+  int num_newer = 0;
+  for (KeyframeId id = keyframe_end() - 1; id >= 0; --id) {
+    if (HasKeyframe(id) && num_newer++ >= num_kept) keyframes_[id]->picture.reset();
+  }
+}
+
 LandmarkId Map::AddLandmark(const Eigen::Vector3d& position, const Color& color) {
   Landmark landmark;
   landmark.id = landmark_end();

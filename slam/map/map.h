@@ -81,7 +81,8 @@ double RangeAtLevelZero(double range, int level);
 int PredictLevel(double max_range, double range);
 
 /// The map: keyframes, landmarks, and who sees whom. A value with one owner (no locking): whoever
-/// works on it has it. Copying copies everything but the features, which are shared.
+/// works on it has it. Copying copies everything but features, pictures and patches, which are
+/// shared.
 ///
 /// Invariant: landmark l lists the observation (k, f) exactly when keyframe k has l at feature f.
 class Map {
@@ -91,6 +92,9 @@ class Map {
   /// Removes a keyframe and its observations. Its pose lives on relative to `successor`, another
   /// keyframe: PoseOf(id) follows the successor from now on.
   void RemoveKeyframe(KeyframeId id, KeyframeId successor);
+
+  /// Releases the pictures of all keyframes but the newest `num_kept`.
+  void ForgetPictures(int num_kept);
 
   /// A landmark without observations.
   LandmarkId AddLandmark(const Eigen::Vector3d& position, const Color& color);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "slam/geometry/ground_plane.h"
 #include "slam/optimization/bearing_residual.h"
@@ -38,18 +39,22 @@ void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem
 // ground as they should be in the mean. Left to the solver, which has to move each point on its own
 // for that, this would take hundreds of steps.
 void RestoreMeanHeight(BundleProblem* problem) {
+  constexpr size_t kEnough = 5;  // poses that see the ground, as many as it takes to find it
+  std::set<int> poses;
   double sum = 0;
-  double weights = 0;
+  double squares = 0;
   for (const BundleProblem::Height& height : problem->heights) {
     const Rigid3& pose = problem->world_from_camera[height.pose];
     const double measured =
-        (pose.rotation * height.normal).dot(pose.translation - problem->points[height.point]);
+        (pose.rotation * height.normal).dot(pose.translation - problem->points[height.point]) /
+        height.height;
     const double weight = 1 / (height.sigma * height.sigma);
-    sum += weight * measured / height.height;
-    weights += weight;
+    sum += weight * measured;
+    squares += weight * measured * measured;
+    poses.insert(height.pose);
   }
-  if (weights == 0) return;
-  const double factor = weights / sum;
+  if (poses.size() < kEnough) return;
+  const double factor = sum / squares;  // least squares of factor * measured - 1
   const auto held = std::ranges::find(problem->pose_fixed, uint8_t{1});
   const Eigen::Vector3d center =
       problem->world_from_camera[held - problem->pose_fixed.begin()].translation;
@@ -81,6 +86,10 @@ void LevelRanges(BundleProblem* problem) {
       problem->ranges[i].sigma *= factor;
     }
   }
+}
+
+Observation& ObservationOf(Map* map, LandmarkId landmark, KeyframeId keyframe) {
+  return *std::ranges::find(map->landmark(landmark).observations, keyframe, &Observation::keyframe);
 }
 
 // Builds, solves and writes back. `fixed` keyframes are held; of the landmarks' observations only
@@ -139,9 +148,18 @@ void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixe
     map->landmark(landmarks[i]).position = problem.points[i];
   }
   for (size_t i = 0; i < sources.size(); ++i) {
-    if (SquaredResidual(problem, problem.observations[i]) > kChiSquared95) {
-      map->RemoveObservation(sources[i].landmark, sources[i].keyframe);
+    BundleProblem::Observation& observed = problem.observations[i];
+    if (SquaredResidual(problem, observed) <= kChiSquared95) continue;
+    // What is wrong may be no more than its alignment.
+    Observation& source = ObservationOf(map, sources[i].landmark, sources[i].keyframe);
+    if (source.aligned_sigma > 0) {
+      source.aligned_sigma = 0;
+      const Features& features = *map->keyframe(source.keyframe).features;
+      observed.bearing = features.bearings[source.feature];
+      observed.sigma = features.keypoints[source.feature].sigma;
+      if (SquaredResidual(problem, observed) <= kChiSquared95) continue;
     }
+    map->RemoveObservation(sources[i].landmark, sources[i].keyframe);
   }
   for (const LandmarkId id : landmarks) {
     if (map->landmark(id).observations.size() < 2) map->RemoveLandmark(id);

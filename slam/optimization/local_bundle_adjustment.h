@@ -37,8 +37,9 @@ struct KnownGround {
 void AdjustLocally(KeyframeId center, const LocalBundleOptions& options,
                    const std::optional<KnownGround>& ground, Map* map);
 
-/// The same for the whole map; its first keyframe is held. In two rounds of `max_iterations` each:
-/// at the ends of a loop, landmarks that merely look alike have become one, and a few dozen of them
+/// The same for the whole map; its first keyframe is held. Where enough keyframes see the ground,
+/// the map is scaled to the height in the mean first. In two rounds of `max_iterations` each: at
+/// the ends of a loop, landmarks that merely look alike have become one, and a few dozen of them
 /// bend the map. The first round finds what is wrong, the second does without it.
 void AdjustGlobally(int max_iterations, const std::optional<KnownGround>& ground,
                     double height_sigma, Map* map);

@@ -61,14 +61,6 @@ void CullRedundantKeyframes(KeyframeId newest, const MapperOptions& options, Map
   }
 }
 
-// All but those of the newest keyframes.
-void ForgetPictures(int num_kept, Map* map) {
-  const std::vector<KeyframeId> keyframes = map->KeyframeIds();
-  for (size_t i = 0; i + num_kept < keyframes.size(); ++i) {
-    map->keyframe(keyframes[i]).picture.reset();
-  }
-}
-
 }  // namespace
 
 KeyframeId IntegrateKeyframe(const TrackedFrame& frame,
@@ -93,7 +85,7 @@ KeyframeId IntegrateKeyframe(const TrackedFrame& frame,
   AlignObservations(id, map);
   AdjustLocally(id, options.bundle, ground, map);
   CullRedundantKeyframes(id, options, map);
-  ForgetPictures(options.kept_pictures, map);
+  map->ForgetPictures(options.kept_pictures);
   return id;
 }
 

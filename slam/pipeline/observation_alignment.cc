@@ -21,18 +21,26 @@ constexpr double kAlignedNoise = 0.35;
 // all that are aligned with it are off in the same way, and agree with each other.
 constexpr double kPatchNoise = 0.5;
 
+// A patch seen from so much farther away is less than three pixels of the picture wide.
+constexpr double kMinStep = 0.25;  // pixels of level 0
+
 // The level on which samples `spacing` rad apart are nearest to one pixel apart.
 const PyramidLevel& LevelFor(const SpherePyramid& picture, double spacing) {
   const double scale = spacing / picture.front().camera.AngleOfPixels(1.0);
-  const double level = std::round(std::log(scale) / std::log(RangeAtLevelZero(1.0, 1)));
+  const double level_ratio = RangeAtLevelZero(1.0, 1);
+  const double level = std::round(std::log(scale) / std::log(level_ratio));
   return picture[static_cast<size_t>(
       std::clamp(level, 0.0, static_cast<double>(picture.size()) - 1))];
 }
 
-// The grid around the direction of `point`, whose steps are `steps` in the camera frame. None on
-// the polar axis.
+// The grid around the direction of `point`, whose steps are `steps` in the camera frame, about
+// `spacing` rad. None so near a pole that lines are bent by half a sample at the patch's rim: by
+// tan(latitude) / 2 times the square of their length.
 std::optional<PatchGrid> GridAt(const PyramidLevel& level, const Eigen::Vector3d& point,
-                                const Eigen::Matrix<double, 3, 2>& steps) {
+                                const Eigen::Matrix<double, 3, 2>& steps, double spacing) {
+  constexpr double kSquaredRadius = Patch::kRadius * Patch::kRadius;
+  const double horizontal = point.head<2>().norm();
+  if (kSquaredRadius * spacing * std::abs(point.z()) > horizontal) return std::nullopt;
   PatchGrid grid;
   Eigen::Matrix<double, 2, 3> jacobian;
   if (!level.camera.Project(point, &grid.center, &jacobian)) return std::nullopt;
@@ -45,7 +53,8 @@ std::shared_ptr<const LandmarkPatch> PatchOf(const Keyframe& keyframe, int featu
   const Eigen::Vector3d& bearing = keyframe.features->bearings[feature];
   const double spacing = found_on.camera.AngleOfPixels(1.0 / kSamplesPerPixel);
   const PyramidLevel& level = LevelFor(*keyframe.picture, spacing);
-  const std::optional<PatchGrid> grid = GridAt(level, bearing, spacing * TangentBasis(bearing));
+  const std::optional<PatchGrid> grid =
+      GridAt(level, bearing, spacing * TangentBasis(bearing), spacing);
   if (!grid) return nullptr;
   const std::optional<Patch> patch = SamplePatch(level, *grid);
   if (!patch) return nullptr;
@@ -62,13 +71,14 @@ void Align(const Map& map, const Landmark& landmark, Observation* observation) {
   const double range = position.norm();
   const Eigen::Quaterniond camera_from_reference =
       keyframe.world_from_camera.rotation.conjugate() * reference.rotation;
-  if (!(range > 0)) return;
   const double footprint = patch.spacing * reference_range;
   const double spacing = footprint / range;
+  const double pixel = keyframe.picture->front().camera.AngleOfPixels(1.0);
+  if (!(range > 0 && spacing > kMinStep * pixel)) return;
   const PyramidLevel& level = LevelFor(*keyframe.picture, spacing);
-  std::optional<PatchGrid> guess =
-      GridAt(level, position,
-             camera_from_reference.toRotationMatrix() * footprint * TangentBasis(patch.bearing));
+  std::optional<PatchGrid> guess = GridAt(
+      level, position,
+      camera_from_reference.toRotationMatrix() * footprint * TangentBasis(patch.bearing), spacing);
   if (!guess) return;
   guess->center = level.camera.Project(keyframe.features->bearings[observation->feature]);
   const std::optional<Eigen::Vector2d> center = AlignPatch(patch.patch, level, *guess);
@@ -76,6 +86,24 @@ void Align(const Map& map, const Landmark& landmark, Observation* observation) {
   const double corner_noise = keyframe.features->keypoints[observation->feature].sigma;
   observation->aligned_bearing = level.camera.Bearing(*center).cast<float>();
   observation->aligned_sigma = static_cast<float>(kAlignedNoise * corner_noise);
+}
+
+// Bundle adjustment may have found since that the keyframe with the patch shows something else.
+void DropWrongPatch(const Map& map, Landmark* landmark) {
+  if (!landmark->patch || !map.HasKeyframe(landmark->patch->keyframe)) return;
+  const KeyframeId owner = landmark->patch->keyframe;
+  if (std::ranges::find(landmark->observations, owner, &Observation::keyframe) !=
+      landmark->observations.end())
+    return;
+  landmark->patch.reset();
+  for (Observation& observation : landmark->observations) observation.aligned_sigma = 0;
+}
+
+// What was aligned with a patch that a stored map has not kept does not fit another one.
+bool MayGetPatch(const Landmark& landmark) {
+  return !landmark.patch && std::ranges::all_of(landmark.observations, [](const Observation& o) {
+    return o.aligned_sigma == 0;
+  });
 }
 
 }  // namespace
@@ -86,7 +114,8 @@ void AlignObservations(KeyframeId id, Map* map) {
   for (size_t f = 0; f < keyframe.landmarks.size(); ++f) {
     if (keyframe.landmarks[f] == kNoId) continue;
     Landmark& landmark = map->landmark(keyframe.landmarks[f]);
-    const bool is_new = !landmark.patch;
+    DropWrongPatch(*map, &landmark);
+    const bool is_new = MayGetPatch(landmark);
     if (is_new) landmark.patch = PatchOf(keyframe, static_cast<int>(f));
     if (!landmark.patch) continue;
     for (Observation& observation : landmark.observations) {

@@ -10,7 +10,8 @@ namespace orb360 {
 /// A landmark without a patch gets that of the keyframe, and what other keyframes show of it is
 /// aligned with it; for the others the keyframe's own observation is aligned. The surface is taken
 /// to face the camera that the patch is from. Observations that do not look like the patch, whose
-/// picture is not kept or that lie near the poles stay as they are.
+/// picture is not kept, that lie near the poles or are seen from too far away stay as they are, and
+/// so does what was aligned with a patch that a stored map has not kept.
 void AlignObservations(KeyframeId id, Map* map);
 
 }  // namespace orb360

@@ -101,6 +101,7 @@ void System::FollowCorrection(const MappingResult& result) {
 void System::SwitchToMap(int finished) {
   if (bundle_) AdoptBundle();
   CountSightings(&map_);
+  map_.ForgetPictures(0);
   std::swap(map_, finished_maps_[finished]);
   std::swap(ground_, grounds_[finished]);
   dense_grounds_.clear();
@@ -117,13 +118,15 @@ void System::RenumberMaps(const MapRenumbering& maps) {
 }
 
 void System::StartBundle() {
-  auto adjust = [map = map_, ground = ReliableGround(), options = options_]() mutable {
+  Map before = map_;
+  before.ForgetPictures(0);
+  auto adjust = [map = before, ground = ReliableGround(), options = options_]() mutable {
     omp_set_num_threads(1);
     AdjustGlobally(options.loop.bundle_iterations, ground, options.loop.height_sigma, &map);
     return std::move(map);
   };
   const double frames = options_.loop.bundle_frames * map_.num_keyframes();
-  bundle_ = BundleJob{std::async(std::launch::async, std::move(adjust)), map_,
+  bundle_ = BundleJob{std::async(std::launch::async, std::move(adjust)), std::move(before),
                       num_processed_ + static_cast<int>(std::ceil(frames))};
 }
 
@@ -131,6 +134,13 @@ void System::AdoptBundle() {
   const Map adjusted = bundle_->adjusted.get();
   const std::vector<Similarity3> corrections = AdoptAdjustment(bundle_->before, adjusted, &map_);
   bundle_.reset();
+  if (loop_) {  // found meanwhile, in the unit before
+    for (Revisit& revisit : loop_->revisits) {
+      const double of_place = loop_->finished_map ? 1.0 : corrections[revisit.place].scale;
+      revisit.place_from_keyframe.scale *= of_place / corrections[revisit.keyframe].scale;
+      revisit.place_from_keyframe.translation *= of_place;
+    }
+  }
   const KeyframeId reference = map_.LivingKeyframe(local_.reference);
   MoveTracked(corrections[reference]);
   ScalePlacements(corrections);

@@ -172,6 +172,7 @@ void System::ScalePlacement(int frame_index, double factor, Placement* placement
 }
 
 void System::FinishMap() {
+  map_.ForgetPictures(0);
   finished_maps_.push_back(std::move(map_));
   grounds_.push_back(ground_);
   map_ = Map();

@@ -184,6 +184,23 @@ TEST(OrbExtractor, LeavesOutWhatTheMaskHides) {
   }
 }
 
+TEST(OrbExtractor, APyramidThatWasTakenStaysAsItIs) {
+  const cv::Mat image = Picture(Eigen::Quaterniond::Identity());
+  OrbExtractor extractor(Thousand());
+  const Features features = extractor.Extract(image);
+  const SpherePyramid taken = extractor.TakePyramid();
+  EXPECT_TRUE(extractor.TakePyramid().empty());
+  const Features other = extractor.Extract(Roll(image, 300));
+  const Features again = extractor.Extract(image);
+  EXPECT_EQ(again.descriptors, features.descriptors);
+  SpherePyramid fresh;
+  BuildSpherePyramid(image, static_cast<int>(taken.size()), &fresh);
+  ASSERT_EQ(fresh.size(), taken.size());
+  for (size_t l = 0; l < taken.size(); ++l) {
+    EXPECT_EQ(cv::norm(taken[l].padded, fresh[l].padded, cv::NORM_INF), 0) << l;
+  }
+}
+
 TEST(OrbExtractor, DoesNotDependOnTheNumberOfThreads) {
   const cv::Mat image = Picture(Eigen::Quaterniond::Identity());
   OrbExtractor extractor(Thousand());

@@ -161,6 +161,20 @@ TEST(Map, AnAppendedPatchStaysWithItsKeyframe) {
   EXPECT_EQ(other.landmark(8).patch->keyframe, 3);
 }
 
+TEST(Map, ForgetsThePicturesOfAllButTheNewestKeyframes) {
+  Map map = SmallMap();
+  for (const KeyframeId id : map.KeyframeIds()) {
+    map.keyframe(id).picture = std::make_shared<const SpherePyramid>();
+  }
+  map.RemoveKeyframe(2, 1);
+  map.ForgetPictures(2);
+  EXPECT_EQ(map.keyframe(0).picture, nullptr);
+  EXPECT_NE(map.keyframe(1).picture, nullptr);
+  EXPECT_NE(map.keyframe(3).picture, nullptr);
+  map.ForgetPictures(0);
+  EXPECT_EQ(map.keyframe(3).picture, nullptr);
+}
+
 TEST(Map, WhatWasAlignedWithAPatchIsNotWithThatOfTheLandmarkItJoins) {
   Map map = SmallMap();
   const LandmarkId twin = map.AddLandmark({1, 2, 3}, {});

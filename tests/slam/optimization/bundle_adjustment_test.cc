@@ -126,6 +126,18 @@ TEST(LocalBundleAdjustment, AlignedBearingsCountInThePlaceOfCorners) {
   EXPECT_LT(error_of(aligned), 1e-6);
 }
 
+TEST(LocalBundleAdjustment, AnAlignmentThatIsWrongGoesAndItsCornerStays) {
+  SyntheticScene scene(200);
+  Map map = scene.MakeMap(Walk(5, {-0.3, 0.1, 0.0}), 180);
+  Observation& wrong = map.landmark(20).observations[2];
+  const Eigen::Vector3d corner = map.keyframe(2).features->bearings[20];
+  wrong.aligned_bearing = (corner + 0.01 * corner.unitOrthogonal()).normalized().cast<float>();
+  wrong.aligned_sigma = 1e-3f;
+  AdjustLocally(4, {}, {}, &map);
+  ASSERT_EQ(map.keyframe(2).landmarks[20], 20);
+  EXPECT_EQ(map.landmark(20).observations[2].aligned_sigma, 0);
+}
+
 // Two keyframes close to each other, whose parallax says little of how far points are.
 TEST(LocalBundleAdjustment, RoughRangesHelpWithPointsOfLittleParallax) {
   SyntheticScene scene(300, 6.0, 20.0);
@@ -183,9 +195,11 @@ TEST(LocalBundleAdjustment, GlobalAdjustmentSetsTheScaleByTheHeightAtOnce) {
   }
   const std::vector<Rigid3> poses = Walk(12, {-0.3, 0.1, 0.0});
   Map map = scene.MakeMap(poses, 400);
-  map.Transform({1.05, Eigen::Quaterniond::Identity(), Eigen::Vector3d::Zero()});
+  const Eigen::Vector3d origin(7, -3, 5);
+  map.Transform({1.05, Eigen::Quaterniond::Identity(), origin});
   AdjustGlobally(1, KnownGround{Eigen::Vector3d::UnitZ(), 1.6}, 0.02, &map);
-  const double found = map.keyframe(11).world_from_camera.translation.norm();
+  EXPECT_EQ(map.keyframe(0).world_from_camera.translation, origin);
+  const double found = (map.keyframe(11).world_from_camera.translation - origin).norm();
   EXPECT_NEAR(found / poses[11].translation.norm(), 1.0, 0.002);
 }
 

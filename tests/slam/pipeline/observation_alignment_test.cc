@@ -22,6 +22,7 @@ struct Scene {
   std::mt19937 random{5};
   Map map;
   std::vector<Eigen::Vector3d> shown;  // by landmark: the point in the middle of its patch
+  uint8_t level = 0;                   // on which features are found
 
   double Uniform(double low, double high) {
     return low + (high - low) * (random() + 0.5) / 4294967296.0;
@@ -41,7 +42,8 @@ struct Scene {
       const double off = map.num_keyframes() == 0 ? 0 : kCamera.AngleOfPixels(0.5);
       Keypoint keypoint{};
       keypoint.pixel.setZero();
-      keypoint.sigma = static_cast<float>(kCamera.AngleOfPixels(0.7));
+      keypoint.level = level;
+      keypoint.sigma = static_cast<float>(kCamera.AngleOfPixels(0.7 * RangeAtLevelZero(1, level)));
       features->keypoints.push_back(keypoint);
       features->bearings.push_back((seen.normalized() + off * wrong).normalized());
     }
@@ -52,7 +54,7 @@ struct Scene {
     return id;
   }
 
-  // Points on the walls that look like corners, and the first keyframe, from which they are seen.
+  // Points on the walls that look like corners from the origin.
   Scene() {
     cv::Mat gray;
     cv::cvtColor(room.Render(kCamera, {}), gray, cv::COLOR_BGR2GRAY);
@@ -102,6 +104,43 @@ TEST(AlignObservations, BringsCornersToAFifthOfTheirErrorFromAnyDirection) {
     const float corner = scene.map.keyframe(second).features->keypoints[o.feature].sigma;
     EXPECT_LT(o.aligned_sigma, 0.5f * corner);
   }
+}
+
+TEST(AlignObservations, WarpsThePatchHoweverTheCameraIsHeldAndWhereverItIs) {
+  for (const uint8_t level : {0, 5}) {
+    Scene scene;
+    scene.level = level;
+    AlignObservations(scene.AddKeyframe({}, true), &scene.map);
+    // Rolled by a quarter turn, and a metre and a half nearer to one wall.
+    const KeyframeId second = scene.AddKeyframe({ExpSo3({1.57, 0.2, 0.4}), {-1.5, 0.4, 0.3}}, true);
+    AlignObservations(second, &scene.map);
+    double share = 0;
+    const double error = scene.Error(second, true, &share);
+    EXPECT_LT(error, 0.125 * RangeAtLevelZero(1, level)) << int{level};
+    EXPECT_GT(share, 0.4) << int{level};
+  }
+}
+
+TEST(AlignObservations, AWrongPatchGoesWithItsObservation) {
+  Scene scene;
+  const KeyframeId first = scene.AddKeyframe({}, true);
+  AlignObservations(first, &scene.map);
+  scene.map.RemoveObservation(3, first);
+  const KeyframeId second = scene.AddKeyframe(kStep, true);
+  AlignObservations(second, &scene.map);
+  EXPECT_EQ(scene.map.landmark(3).patch->keyframe, second);
+  EXPECT_EQ(scene.map.landmark(4).patch->keyframe, first);
+}
+
+TEST(AlignObservations, WhatIsAlignedWithAPatchThatWasNotKeptGetsNoOther) {
+  Scene scene;
+  const KeyframeId first = scene.AddKeyframe({}, true);
+  AlignObservations(first, &scene.map);
+  scene.map.landmark(3).patch.reset();  // as in a map that was read from a file
+  const KeyframeId second = scene.AddKeyframe(kStep, true);
+  AlignObservations(second, &scene.map);
+  EXPECT_EQ(scene.map.landmark(3).patch, nullptr);
+  EXPECT_EQ(scene.map.landmark(3).observations[1].aligned_sigma, 0);
 }
 
 TEST(AlignObservations, AlignsWhatOlderKeyframesShowWithThePatchOfANewLandmark) {

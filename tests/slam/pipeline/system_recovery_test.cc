@@ -141,8 +141,20 @@ TEST(SystemSlow, GoesOnInAMapOfAnEarlierRun) {
   System earlier(kHallCamera, SmallOptions(), {});
   for (int i = 0; i < 60; ++i) earlier.Process(MakeFrame(i, room.Render(kHallCamera, TruePose(i))));
   earlier.Finish();
+  const Map& map = earlier.maps().front();
+  int aligned = 0;
+  int observed = 0;
+  for (LandmarkId id = 0; id < map.landmark_end(); ++id) {
+    if (!map.HasLandmark(id)) continue;
+    for (const Observation& o : map.landmark(id).observations) {
+      ++observed;
+      aligned += o.aligned_sigma > 0;
+    }
+  }
+  EXPECT_GT(aligned, 0.6 * observed);
+  for (const KeyframeId id : map.KeyframeIds()) EXPECT_EQ(map.keyframe(id).picture, nullptr);
   System later(kHallCamera, SmallOptions(), {});
-  later.StartIn(earlier.maps().front(), earlier.grounds().front(), /*is_kept=*/false);
+  later.StartIn(map, earlier.grounds().front(), /*is_kept=*/false);
   std::vector<double> frames;
   for (int i = 0; i < 60; ++i) {
     frames.push_back(50 + i);
