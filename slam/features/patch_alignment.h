@@ -1,22 +1,13 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <optional>
 
 #include <Eigen/Core>
 
+#include "slam/features/patch.h"
 #include "slam/features/sphere_pyramid.h"
 
 namespace orb360 {
-
-/// Gray values around a point, on a square grid.
-struct Patch {
-  /// Samples on each side of the centre that are compared; one more is kept for their gradient.
-  static constexpr int kRadius = 5;
-  static constexpr int kWidth = 2 * kRadius + 3;
-  std::array<uint8_t, kWidth * kWidth> gray;  // row by row
-};
 
 /// Where a patch's samples lie in a picture: sample (x, y), counted from the centre, is at
 /// center + steps * (x, y).

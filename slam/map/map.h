@@ -9,11 +9,14 @@
 #include <Eigen/Core>
 
 #include "slam/features/features.h"
-#include "slam/features/patch_alignment.h"
-#include "slam/features/sphere_pyramid.h"
+#include "slam/features/patch.h"
 #include "slam/geometry/rigid3.h"
 
 namespace orb360 {
+
+// Pictures are kept here and not looked at: what a map is made of does without OpenCV.
+struct PyramidLevel;
+using SpherePyramid = std::vector<PyramidLevel>;  // sphere_pyramid.h
 
 /// Keyframes and landmarks refer to each other by id: the index in their map, never used again
 /// after removal.

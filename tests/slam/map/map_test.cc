@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "nn/base/check.h"
+#include "slam/features/sphere_pyramid.h"
 #include "tests/slam/pipeline/synthetic_scene.h"
 
 namespace orb360 {

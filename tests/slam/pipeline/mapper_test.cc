@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include "slam/features/sphere_pyramid.h"
 #include "slam/pipeline/landmark_fusion.h"
 #include "tests/slam/pipeline/synthetic_scene.h"
 
