@@ -1,6 +1,7 @@
 #include "slam/io/map_arrays.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -61,7 +62,15 @@ bool AreFinite(std::span<const T> values) {
   return std::ranges::all_of(values, [](T v) { return std::isfinite(v); });
 }
 
+// Zero, and not minus zero: it is not kept, and the same file is to be written again.
+bool IsBlank(float value) { return std::bit_cast<uint32_t>(value) == 0; }
+
 bool IsUnit(double norm) { return std::abs(norm - 1.0) < kUnit; }
+
+bool IsAlignment(const Eigen::Vector3f& bearing, float sigma) {
+  if (sigma == 0) return bearing.allFinite();
+  return sigma > 0 && std::isfinite(sigma) && IsUnit(bearing.norm());
+}
 
 void CheckSizes(const MapArrays& a) {
   const size_t keyframes = a.frame_index.size();
@@ -119,10 +128,10 @@ void CheckNumbers(const MapArrays& a) {
                 a.feature_landmark[f] >= kNoId && a.feature_landmark[f] < num_landmarks,
             "feature", f);
     const Eigen::Map<const Eigen::Vector3f> aligned(a.aligned_bearing.data() + 3 * f);
-    Require(
-        a.aligned_sigma[f] == 0 ||
-            (a.aligned_sigma[f] > 0 && std::isfinite(a.aligned_sigma[f]) && IsUnit(aligned.norm())),
-        "alignment of feature", f);
+    Require(a.feature_landmark[f] == kNoId ? IsBlank(aligned.x()) && IsBlank(aligned.y()) &&
+                                                 IsBlank(aligned.z()) && IsBlank(a.aligned_sigma[f])
+                                           : IsAlignment(aligned, a.aligned_sigma[f]),
+            "alignment of feature", f);
   }
   const auto num_keyframes = static_cast<int32_t>(a.frame_index.size());
   for (size_t l = 0; l < a.max_range.size(); ++l) {

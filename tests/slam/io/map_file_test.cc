@@ -154,6 +154,8 @@ TEST(MapArrays, RefusesColumnsThatAreNotAMap) {
               HasSubstr("alignment of feature 3"));
   EXPECT_THAT(refuse([](MapArrays* a) { a->aligned_sigma[3] = INFINITY; }),
               HasSubstr("alignment of feature 3"));
+  EXPECT_THAT(refuse([](MapArrays* a) { a->aligned_bearing[3 * 50] = 1; }),  // sees no landmark
+              HasSubstr("alignment of feature 50"));
   EXPECT_THAT(refuse([](MapArrays* a) { a->aligned_sigma[3] = 0.001f; }),  // without a direction
               HasSubstr("alignment of feature 3"));
   EXPECT_THAT(refuse([](MapArrays* a) { a->bearing[3] += 0.1; }), HasSubstr("feature 1"));
