@@ -143,10 +143,6 @@ void CheckNumbers(const MapArrays& a) {
   }
 }
 
-const Observation& ObservationOf(const Map& map, LandmarkId landmark, KeyframeId keyframe) {
-  return *std::ranges::find(map.landmark(landmark).observations, keyframe, &Observation::keyframe);
-}
-
 std::shared_ptr<const Features> FeaturesOf(const MapArrays& a, size_t begin, size_t end) {
   auto features = std::make_shared<Features>();
   for (size_t f = begin; f < end; ++f) {
@@ -203,7 +199,8 @@ MapArrays ToArrays(const Map& map) {
       AppendAll(features.colors[f], &a.feature_color);
       const LandmarkId seen = keyframe.landmarks[f];
       a.feature_landmark.push_back(seen == kNoId ? kNoId : landmark_number[seen]);
-      const Observation observation = seen == kNoId ? Observation{} : ObservationOf(map, seen, id);
+      const Observation observation =
+          seen == kNoId ? Observation{} : *map.landmark(seen).FindObservation(id);
       AppendAll(observation.aligned_bearing, &a.aligned_bearing);
       a.aligned_sigma.push_back(observation.aligned_sigma);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "nn/base/check.h"
 #include "slam/features/hamming.h"
@@ -41,6 +42,15 @@ double RangeAtLevelZero(double range, int level) {
 
 int PredictLevel(double max_range, double range) {
   return static_cast<int>(std::lround(kLevelsPerOctave * std::log2(max_range / range)));
+}
+
+const Observation* Landmark::FindObservation(KeyframeId from) const {
+  const auto place = std::ranges::find(observations, from, &Observation::keyframe);
+  return place == observations.end() ? nullptr : &*place;
+}
+
+Observation* Landmark::FindObservation(KeyframeId from) {
+  return const_cast<Observation*>(std::as_const(*this).FindObservation(from));
 }
 
 KeyframeId Map::AddKeyframe(int frame_index, double timestamp, const Rigid3& world_from_camera,
@@ -110,10 +120,8 @@ void Map::MergeLandmark(LandmarkId from, LandmarkId to) {
   RemoveLandmark(from);
   merged_into_[from] = to;
   for (const Observation& observation : moved) {
-    const bool sees_target =
-        std::any_of(target.observations.begin(), target.observations.end(),
-                    [&](const Observation& o) { return o.keyframe == observation.keyframe; });
-    if (!sees_target) AddObservation(to, observation.keyframe, observation.feature);
+    if (target.FindObservation(observation.keyframe) != nullptr) continue;
+    AddObservation(to, observation.keyframe, observation.feature);
   }
 }
 
@@ -132,8 +140,7 @@ void Map::AddObservation(LandmarkId landmark_id, KeyframeId keyframe_id, int fea
 
 void Map::RemoveObservation(LandmarkId landmark_id, KeyframeId keyframe_id) {
   std::vector<Observation>& observations = landmark(landmark_id).observations;
-  const auto place = std::find_if(observations.begin(), observations.end(),
-                                  [&](const Observation& o) { return o.keyframe == keyframe_id; });
+  const auto place = std::ranges::find(observations, keyframe_id, &Observation::keyframe);
   ORB360_CHECK(place != observations.end(), landmark_id, keyframe_id);
   keyframe(keyframe_id).landmarks[place->feature] = kNoId;
   observations.erase(place);

@@ -75,6 +75,10 @@ struct Landmark {
   std::shared_ptr<const LandmarkPatch> patch;  // null where no picture that shows it was kept
   int visible = 1;                             // frames in which it should have been seen
   int found = 1;                               // and was
+
+  /// Null where the keyframe does not see it.
+  const Observation* FindObservation(KeyframeId from) const;
+  Observation* FindObservation(KeyframeId from);
 };
 
 /// The range at which a feature of pyramid level l at `range` would be on level 0. Scales grow by

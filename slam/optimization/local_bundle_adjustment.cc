@@ -36,8 +36,8 @@ void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem
 }
 
 // Scales everything about the first pose that is held, so that the cameras are as high over the
-// ground as they should be in the mean. Left to the solver, which has to move each point on its own
-// for that, this would take hundreds of steps.
+// ground as they should be in the mean. The solver, which has to move each point on its own for
+// that, would need many steps.
 void RestoreMeanHeight(BundleProblem* problem) {
   constexpr size_t kEnough = 5;  // poses that see the ground, as many as it takes to find it
   std::set<int> poses;
@@ -88,8 +88,10 @@ void LevelRanges(BundleProblem* problem) {
   }
 }
 
-Observation& ObservationOf(Map* map, LandmarkId landmark, KeyframeId keyframe) {
-  return *std::ranges::find(map->landmark(landmark).observations, keyframe, &Observation::keyframe);
+// What the corner shows, without any alignment.
+BundleProblem::Observation CornerOf(const Keyframe& keyframe, int feature, int pose, int point) {
+  return {pose, point, keyframe.features->bearings[feature],
+          keyframe.features->keypoints[feature].sigma};
 }
 
 // Builds, solves and writes back. `fixed` keyframes are held; of the landmarks' observations only
@@ -125,8 +127,7 @@ void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixe
         problem.observations.push_back(
             {pose, point, o.aligned_bearing.cast<double>().normalized(), o.aligned_sigma});
       } else {
-        problem.observations.push_back({pose, point, keyframe.features->bearings[o.feature],
-                                        keyframe.features->keypoints[o.feature].sigma});
+        problem.observations.push_back(CornerOf(keyframe, o.feature, pose, point));
       }
       if (const RangePrior prior = keyframe.PriorOf(o.feature); prior.sigma > 0) {
         problem.ranges.push_back({pose, point, prior.range, prior.sigma});
@@ -151,12 +152,11 @@ void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixe
     BundleProblem::Observation& observed = problem.observations[i];
     if (SquaredResidual(problem, observed) <= kChiSquared95) continue;
     // What is wrong may be no more than its alignment.
-    Observation& source = ObservationOf(map, sources[i].landmark, sources[i].keyframe);
+    Observation& source = *map->landmark(sources[i].landmark).FindObservation(sources[i].keyframe);
     if (source.aligned_sigma > 0) {
       source.aligned_sigma = 0;
-      const Features& features = *map->keyframe(source.keyframe).features;
-      observed.bearing = features.bearings[source.feature];
-      observed.sigma = features.keypoints[source.feature].sigma;
+      observed =
+          CornerOf(map->keyframe(source.keyframe), source.feature, observed.pose, observed.point);
       if (SquaredResidual(problem, observed) <= kChiSquared95) continue;
     }
     map->RemoveObservation(sources[i].landmark, sources[i].keyframe);

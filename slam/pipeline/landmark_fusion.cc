@@ -15,11 +15,6 @@ namespace {
 constexpr double kSearchSigmas = 3.0;
 constexpr int kMaxDistance = 50;  // differing bits
 
-bool Sees(const Landmark& landmark, KeyframeId keyframe) {
-  return std::any_of(landmark.observations.begin(), landmark.observations.end(),
-                     [&](const Observation& o) { return o.keyframe == keyframe; });
-}
-
 }  // namespace
 
 std::vector<LandmarkId> LandmarksSeenBy(std::span<const KeyframeId> keyframes, const Map& map) {
@@ -51,8 +46,9 @@ void FuseLandmarks(KeyframeId target, std::span<const LandmarkId> ids, double ra
   const Rigid3 camera_from_world = keyframe.world_from_camera.Inverse();
   std::vector<int> candidates;
   for (const LandmarkId id : ids) {
-    if (!map->HasLandmark(id) || Sees(map->landmark(id), target)) continue;
+    if (!map->HasLandmark(id)) continue;
     const Landmark& landmark = map->landmark(id);
+    if (landmark.FindObservation(target) != nullptr) continue;
     int distance = NearestTwo::kNone;
     bool expected = false;
     const int feature = FindFeature(

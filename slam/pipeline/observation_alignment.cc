@@ -91,10 +91,7 @@ void Align(const Map& map, const Landmark& landmark, Observation* observation) {
 // Bundle adjustment may have found since that the keyframe with the patch shows something else.
 void DropWrongPatch(const Map& map, Landmark* landmark) {
   if (!landmark->patch || !map.HasKeyframe(landmark->patch->keyframe)) return;
-  const KeyframeId owner = landmark->patch->keyframe;
-  if (std::ranges::find(landmark->observations, owner, &Observation::keyframe) !=
-      landmark->observations.end())
-    return;
+  if (landmark->FindObservation(landmark->patch->keyframe) != nullptr) return;
   landmark->patch.reset();
   for (Observation& observation : landmark->observations) observation.aligned_sigma = 0;
 }

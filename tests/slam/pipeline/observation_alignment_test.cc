@@ -121,6 +121,35 @@ TEST(AlignObservations, WarpsThePatchHoweverTheCameraIsHeldAndWhereverItIs) {
   }
 }
 
+TEST(AlignObservations, TakesNoPatchBesideAPole) {
+  Scene scene;
+  for (LandmarkId l = 0; l < scene.map.landmark_end(); ++l) {
+    const double off = kCamera.AngleOfPixels(1.0 + 0.05 * l) * 3.0;  // of the ceiling's middle, m
+    scene.shown[l] = {off, 0.5 * off, 3.0};
+  }
+  AlignObservations(scene.AddKeyframe({}, true), &scene.map);
+  for (LandmarkId l = 0; l < scene.map.landmark_end(); ++l) {
+    EXPECT_EQ(scene.map.landmark(l).patch, nullptr) << l;
+  }
+}
+
+TEST(AlignObservations, LeavesWhatIsSeenFromMuchFartherAway) {
+  Scene scene;
+  AlignObservations(scene.AddKeyframe({Eigen::Quaterniond::Identity(), {4.8, 0, 0}}, true),
+                    &scene.map);
+  const KeyframeId second = scene.AddKeyframe({Eigen::Quaterniond::Identity(), {-4.0, 0, 0}}, true);
+  AlignObservations(second, &scene.map);
+  int checked = 0;
+  for (LandmarkId l = 0; l < scene.map.landmark_end(); ++l) {
+    if (scene.shown[l].x() < 5.99 || (scene.shown[l] - Eigen::Vector3d(4.8, 0, 0)).norm() > 4) {
+      continue;
+    }
+    ++checked;
+    EXPECT_EQ(scene.map.landmark(l).observations[1].aligned_sigma, 0) << l;
+  }
+  EXPECT_GT(checked, 5);
+}
+
 TEST(AlignObservations, AWrongPatchGoesWithItsObservation) {
   Scene scene;
   const KeyframeId first = scene.AddKeyframe({}, true);
