@@ -1,12 +1,12 @@
 #include "slam/io/range_store.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <opencv2/imgcodecs.hpp>
+#include <zstd.h>
 
 #include "nn/base/check.h"
 #include "slam/io/output_file.h"
@@ -25,14 +26,38 @@ constexpr double kStepsPerUnit = 1024.0;  // of the natural logarithm
 constexpr int kCodeOfOne = 32 * 1024;     // The middle: any unit of length has room.
 constexpr int kMaxCode = 65535;
 constexpr int kColorQuality = 95;  // of JPEG
+constexpr int kZstdLevel = 1;      // the fastest: tracking waits for it
 
-/// Lengths of the three encoded images that follow.
-using Header = std::array<std::uint32_t, 3>;
+struct Header {
+  std::uint32_t width;
+  std::uint32_t height;
+  std::uint32_t packed_bytes;  // of what Pack makes; the colours as JPEG follow
+  std::uint32_t color_bytes;
+};
 
-/// Code of a range; 0 for none.
-std::uint16_t Encode(float range) {
-  const double code = std::round(std::log(static_cast<double>(range)) * kStepsPerUnit) + kCodeOfOne;
-  return static_cast<std::uint16_t>(std::clamp(code, 1.0, static_cast<double>(kMaxCode)));
+struct CodedDepth {
+  cv::Mat ranges;       // CV_16UC1: codes, 0 for none
+  cv::Mat confidences;  // CV_8UC1: in 1/255; those of ranges are not 0
+};
+
+cv::Mat IsPositive(const cv::Mat& values) {
+  return (values > 0.0f) & (values <= std::numeric_limits<float>::max());
+}
+
+CodedDepth Encode(const DenseDepth& depth) {
+  const cv::Mat known = IsPositive(depth.range) & IsPositive(depth.confidence);
+  const cv::Mat unknown = ~known;
+  CodedDepth coded;
+  cv::Mat logarithms(depth.range.size(), CV_32FC1, 1.0f);
+  depth.range.copyTo(logarithms, known);
+  cv::log(logarithms, logarithms);
+  logarithms.convertTo(coded.ranges, CV_16U, kStepsPerUnit, kCodeOfOne);
+  coded.ranges = cv::max(coded.ranges, 1);
+  coded.ranges.setTo(0, unknown);
+  depth.confidence.convertTo(coded.confidences, CV_8U, 255.0);
+  coded.confidences = cv::max(coded.confidences, 1);
+  coded.confidences.setTo(0, unknown);
+  return coded;
 }
 
 const std::vector<float>& RangeOfCode() {
@@ -47,22 +72,73 @@ const std::vector<float>& RangeOfCode() {
   return table;
 }
 
-bool IsPositive(float value) { return value > 0.0f && std::isfinite(value); }
-
-/// 1/255 is the least confidence of a pixel with a range.
-std::uint8_t EncodeConfidence(float confidence) {
-  return static_cast<std::uint8_t>(std::clamp(std::round(confidence * 255.0f), 1.0f, 255.0f));
+/// The differences of neighbours in a row, of which most are small; their signs are in the lowest
+/// bit, so that their upper bytes are alike and, in a plane of their own, pack well.
+std::string Pack(const CodedDepth& coded) {
+  const size_t pixels = coded.ranges.total();
+  std::string planes(3 * pixels, '\0');
+  char* low = planes.data();
+  char* high = low + pixels;
+  char* level = high + pixels;
+  for (int row = 0; row < coded.ranges.rows; ++row) {
+    const std::uint16_t* code = coded.ranges.ptr<std::uint16_t>(row);
+    const std::uint8_t* confidence = coded.confidences.ptr<std::uint8_t>(row);
+    std::uint16_t left = 0;
+    std::uint8_t left_confidence = 0;
+    for (int column = 0; column < coded.ranges.cols; ++column) {
+      const auto difference = static_cast<std::int16_t>(code[column] - left);
+      const auto folded = static_cast<std::uint16_t>((difference << 1) ^ (difference >> 15));
+      *low++ = static_cast<char>(folded & 0xff);
+      *high++ = static_cast<char>(folded >> 8);
+      *level++ = static_cast<char>(confidence[column] - left_confidence);
+      left = code[column];
+      left_confidence = confidence[column];
+    }
+  }
+  std::string packed(ZSTD_compressBound(planes.size()), '\0');
+  const size_t bytes =
+      ZSTD_compress(packed.data(), packed.size(), planes.data(), planes.size(), kZstdLevel);
+  ORB360_CHECK(!ZSTD_isError(bytes), ZSTD_getErrorName(bytes));
+  packed.resize(bytes);
+  return packed;
 }
 
-cv::Mat Decode(std::string_view data, int type) {
-  const cv::Mat bytes(1, static_cast<int>(data.size()), CV_8UC1, const_cast<char*>(data.data()));
-  cv::Mat image;
-  try {
-    if (!data.empty()) image = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-  } catch (const cv::Exception&) {
-    image.release();
+/// Of what Pack has made; images without pixels where it is damaged.
+CodedDepth Unpack(std::string_view packed, int width, int height) {
+  const size_t pixels = static_cast<size_t>(width) * static_cast<size_t>(height);
+  std::string planes(3 * pixels, '\0');
+  if (ZSTD_decompress(planes.data(), planes.size(), packed.data(), packed.size()) !=
+      planes.size()) {
+    return {};
   }
-  return image.type() == type ? image : cv::Mat();
+  const char* low = planes.data();
+  const char* high = low + pixels;
+  const char* level = high + pixels;
+  CodedDepth coded{cv::Mat(height, width, CV_16UC1), cv::Mat(height, width, CV_8UC1)};
+  for (int row = 0; row < height; ++row) {
+    std::uint16_t* code = coded.ranges.ptr<std::uint16_t>(row);
+    std::uint8_t* confidence = coded.confidences.ptr<std::uint8_t>(row);
+    std::uint16_t left = 0;
+    std::uint8_t left_confidence = 0;
+    for (int column = 0; column < width; ++column) {
+      const int folded = static_cast<std::uint8_t>(*low++) | static_cast<std::uint8_t>(*high++)
+                                                                 << 8;
+      left = static_cast<std::uint16_t>(left + ((folded >> 1) ^ -(folded & 1)));
+      left_confidence = static_cast<std::uint8_t>(left_confidence + *level++);
+      code[column] = left;
+      confidence[column] = left_confidence;
+    }
+  }
+  return coded;
+}
+
+cv::Mat DecodeColor(std::string_view jpeg) {
+  const cv::Mat bytes(1, static_cast<int>(jpeg.size()), CV_8UC1, const_cast<char*>(jpeg.data()));
+  try {
+    return jpeg.empty() ? cv::Mat() : cv::imdecode(bytes, cv::IMREAD_COLOR);
+  } catch (const cv::Exception&) {
+    return {};
+  }
 }
 
 }  // namespace
@@ -90,33 +166,17 @@ void RangeStore::Put(int frame_index, const DenseDepth& depth) const {
                depth.range.type(), depth.confidence.type(), depth.color.type());
   ORB360_CHECK(!size.empty() && depth.confidence.size() == size && depth.color.size() == size, size,
                depth.confidence.size(), depth.color.size());
-  cv::Mat codes(size, CV_16UC1);
-  cv::Mat confidences(size, CV_8UC1);
-  for (int row = 0; row < size.height; ++row) {
-    const float* range = depth.range.ptr<float>(row);
-    const float* confidence = depth.confidence.ptr<float>(row);
-    std::uint16_t* code = codes.ptr<std::uint16_t>(row);
-    std::uint8_t* level = confidences.ptr<std::uint8_t>(row);
-    for (int column = 0; column < size.width; ++column) {
-      const bool is_known = IsPositive(range[column]) && IsPositive(confidence[column]);
-      code[column] = is_known ? Encode(range[column]) : std::uint16_t{0};
-      level[column] = is_known ? EncodeConfidence(confidence[column]) : std::uint8_t{0};
-    }
-  }
-  std::array<std::vector<unsigned char>, 3> images;
-  cv::imencode(".png", codes, images[0]);
-  cv::imencode(".png", confidences, images[1]);
-  cv::imencode(".jpg", depth.color, images[2], {cv::IMWRITE_JPEG_QUALITY, kColorQuality});
-  Header header{};
-  for (size_t i = 0; i < images.size(); ++i) {
-    header[i] = static_cast<std::uint32_t>(images[i].size());
-  }
+  const std::string packed = Pack(Encode(depth));
+  std::vector<unsigned char> color;
+  cv::imencode(".jpg", depth.color, color, {cv::IMWRITE_JPEG_QUALITY, kColorQuality});
+  const Header header{
+      static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height),
+      static_cast<std::uint32_t>(packed.size()), static_cast<std::uint32_t>(color.size())};
   // Nobody needs these files after a crash: no waiting for the disk.
   OutputFile file(PathOf(frame_index));
-  file.Write({reinterpret_cast<const char*>(header.data()), sizeof header});
-  for (const std::vector<unsigned char>& image : images) {
-    file.Write({reinterpret_cast<const char*>(image.data()), image.size()});
-  }
+  file.Write({reinterpret_cast<const char*>(&header), sizeof header});
+  file.Write(packed);
+  file.Write({reinterpret_cast<const char*>(color.data()), color.size()});
 }
 
 bool RangeStore::Contains(int frame_index) const {
@@ -133,21 +193,19 @@ DenseDepth RangeStore::Get(int frame_index) const {
   };
   Header header{};
   if (bytes.size() < sizeof header) throw damaged();
-  std::memcpy(header.data(), bytes.data(), sizeof header);
-  std::string_view rest = std::string_view(bytes).substr(sizeof header);
-  if (std::uint64_t{header[0]} + header[1] + header[2] != rest.size()) throw damaged();
-  const auto next = [&rest, &header](size_t i, int type) {
-    const cv::Mat image = Decode(rest.substr(0, header[i]), type);
-    rest.remove_prefix(header[i]);
-    return image;
-  };
-  const cv::Mat codes = next(0, CV_16UC1);
-  const cv::Mat confidences = next(1, CV_8UC1);
+  std::memcpy(&header, bytes.data(), sizeof header);
+  const std::string_view rest = std::string_view(bytes).substr(sizeof header);
+  if (std::uint64_t{header.packed_bytes} + header.color_bytes != rest.size()) throw damaged();
   DenseDepth depth;
-  depth.color = next(2, CV_8UC3);
-  if (codes.empty() || confidences.size() != codes.size() || depth.color.size() != codes.size()) {
+  depth.color = DecodeColor(rest.substr(header.packed_bytes));
+  const cv::Size size = depth.color.size();
+  if (size.empty() ||
+      size != cv::Size(static_cast<int>(header.width), static_cast<int>(header.height))) {
     throw damaged();
   }
+  const auto [codes, confidences] =
+      Unpack(rest.substr(0, header.packed_bytes), size.width, size.height);
+  if (codes.empty()) throw damaged();
   depth.range.create(codes.size(), CV_32FC1);
   const std::vector<float>& ranges = RangeOfCode();
   for (int row = 0; row < codes.rows; ++row) {
