@@ -57,21 +57,21 @@ std::vector<bool> FindHidden(const std::vector<Projection>& projections,
 }  // namespace
 
 double RangeError(const Map& map, const Landmark& landmark) {
-  // Largest angle between any observation and the first, and the second end of the widest pair
-  // from there: within a factor of two of the widest angle, in linear time.
-  const auto direction = [&](const Observation& o) -> Eigen::Vector3d {
-    return map.keyframe(o.keyframe).world_from_camera.translation - landmark.position;
+  const auto toward_camera = [&](const Observation& o) -> Eigen::Vector3d {
+    return (map.PoseOf(o.keyframe).translation - landmark.position).normalized();
   };
-  const auto widest = [&](const Eigen::Vector3d& from) {
-    std::pair<double, Eigen::Vector3d> best{0.0, from};
+  const auto farthest_from = [&](const Eigen::Vector3d& direction) {
+    std::pair<double, Eigen::Vector3d> best{1.0, direction};  // with the cosine
     for (const Observation& o : landmark.observations) {
-      const double angle = AngleBetween(from, direction(o));
-      if (angle > best.first) best = {angle, direction(o)};
+      const Eigen::Vector3d other = toward_camera(o);
+      if (const double cosine = direction.dot(other); cosine < best.first) best = {cosine, other};
     }
-    return best;
+    return best.second;
   };
-  const Eigen::Vector3d end = widest(direction(landmark.observations.front())).second;
-  const double parallax = widest(end).first;
+  // From the observation farthest from the first to that farthest from there: within a factor of
+  // two of the widest angle, in linear time.
+  const Eigen::Vector3d end = farthest_from(toward_camera(landmark.observations.front()));
+  const double parallax = AngleBetween(end, farthest_from(end));
   if (!(parallax > 0)) return std::numeric_limits<double>::infinity();
 
   double squared_noise = 0;
@@ -79,10 +79,10 @@ double RangeError(const Map& map, const Landmark& landmark) {
   for (const Observation& o : landmark.observations) {
     const Keyframe& keyframe = map.keyframe(o.keyframe);
     const double sigma = keyframe.features->keypoints[o.feature].sigma;
-    const double residual = AngleBetween(keyframe.world_from_camera.Inverse() * landmark.position,
-                                         keyframe.features->bearings[o.feature]);
+    const Eigen::Vector3d observed =
+        keyframe.world_from_camera.rotation * keyframe.features->bearings[o.feature];
     squared_noise += sigma * sigma;
-    squared_residuals += residual * residual;
+    squared_residuals += (observed + toward_camera(o)).squaredNorm();  // of the chord
   }
   const double count = static_cast<double>(landmark.observations.size());
   // Two components of noise make up a residual.
@@ -102,8 +102,7 @@ std::vector<SparsePoint> ProjectLandmarks(const Map& map, KeyframeId id,
     const Eigen::Vector3d point = camera_from_world * landmark.position;
     const double range = point.norm();
     if (!(range > 0)) continue;
-    const bool seen = std::any_of(landmark.observations.begin(), landmark.observations.end(),
-                                  [&](const Observation& o) { return o.keyframe == id; });
+    const bool seen = landmark.FindObservation(id) != nullptr;
     projections.push_back({landmark_id, point / range, range, seen});
   }
   const std::vector<bool> hidden = FindHidden(projections, options);
