@@ -115,7 +115,7 @@ std::vector<SparsePoint> ProjectLandmarks(const Map& map, KeyframeId id,
     const double error =
         RangeError(map, map.landmark(projection.landmark)) / options.half_confidence_error;
     const double confidence = 1.0 / (1.0 + error * error);
-    if (!(confidence > 0)) continue;
+    if (!(confidence >= options.min_confidence)) continue;
     const Eigen::Vector2d pixel = camera.Project(projection.bearing);
     int& slot = nearest.at<int>(std::min(static_cast<int>(pixel.y()), camera.height() - 1),
                                 std::min(static_cast<int>(pixel.x()), camera.width() - 1));

@@ -17,11 +17,14 @@ struct SparseDepthOptions {
   double occlusion_angle = 0.03;
   /// ... than this share of its range.
   double occlusion_ratio = 0.8;
-  /// Landmarks found in less than this share of the frames that should show them are moving, or
-  /// wrong.
-  double min_found_share = 0.5;
+  /// Landmarks found in less than this share of the frames that should show them are moving,
+  /// hidden from here, or wrong.
+  double min_found_share = 0.8;
   /// Confidence is 1/2 where the standard deviation of the range is this share of the range.
   double half_confidence_error = 0.1;
+  /// Less confidence than this is mostly that of wrong landmarks, which the network trusts too
+  /// much.
+  double min_confidence = 0.5;
 };
 
 /// A landmark seen from a keyframe.
@@ -29,7 +32,7 @@ struct SparsePoint {
   LandmarkId landmark;
   Eigen::Vector2d pixel;  // of the camera asked for
   double range;           // along the ray, in the map's units
-  double confidence;      // in (0, 1], see RangeError
+  double confidence;      // at most 1, see RangeError
 };
 
 /// Standard deviation of a landmark's range from a keyframe as a share of the range: the angular

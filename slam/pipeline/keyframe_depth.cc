@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <utility>
 
 #include "nn/base/check.h"
@@ -17,20 +18,32 @@ void KeyframeDepth::Start(const Keyframe& keyframe, const cv::Mat& color,
   ORB360_CHECK(!job_);
   if (static_cast<int>(points.size()) < options_.min_points) return;
   scales_[keyframe.frame_index] = 1;
+  std::promise<Found> found;
+  job_ = Job{found.get_future(), keyframe.frame_index, num_frames + options_.adoption_frames};
   auto complete = [this, index = keyframe.frame_index, features = keyframe.features,
-                   landmarks = keyframe.landmarks, color, points = std::move(points)] {
-    DenseDepth depth = completer_->Complete(color, RenderSparseDepth(points, completer_->camera()));
-    Found found{SampleRangePriors(depth, *features, landmarks),
-                FindGround(depth, Eigen::Vector3d::UnitZ(), options_.ground)};
+                   landmarks = keyframe.landmarks, color, points = std::move(points),
+                   found = std::move(found), previous = std::move(stored_)]() mutable {
+    DenseDepth depth;
+    try {
+      if (previous.valid()) previous.get();
+      depth = completer_->Complete(color, RenderSparseDepth(points, completer_->camera()));
+      found.set_value({SampleRangePriors(depth, *features, landmarks),
+                       FindGround(depth, Eigen::Vector3d::UnitZ(), options_.ground)});
+    } catch (...) {
+      found.set_exception(std::current_exception());
+      return;
+    }
     sink_(index, std::move(depth));
-    return found;
   };
-  job_ = Job{std::async(std::launch::async, std::move(complete)), keyframe.frame_index,
-             num_frames + options_.adoption_frames};
+  stored_ = std::async(std::launch::async, std::move(complete));
 }
 
 bool KeyframeDepth::IsRunning() const {
-  return job_ && job_->found.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+  return stored_.valid() && stored_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+}
+
+void KeyframeDepth::Flush() {
+  if (stored_.valid()) stored_.get();
 }
 
 KeyframeDepth::Completed KeyframeDepth::Take() {

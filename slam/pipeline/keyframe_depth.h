@@ -45,8 +45,11 @@ class KeyframeDepth {
   bool is_pending() const { return job_.has_value(); }
   bool IsDue(int num_frames) const { return job_ && num_frames >= job_->due; }
   bool IsRunning() const;
-  /// Waits for the keyframe that is pending. Throws what the sink has thrown.
+  /// Waits for the keyframe that is pending, but not for its sink. Throws what went wrong, with
+  /// the sinks of those before as well.
   Completed Take();
+  /// Waits for all sinks. Throws what the last one has thrown.
+  void Flush();
 
   /// The unit of the keyframe's map has become larger by 1 / factor; without effect on others than
   /// those that were started.
@@ -69,6 +72,7 @@ class KeyframeDepth {
   const DepthSink sink_;
   const DepthOptions options_;
   std::optional<Job> job_;
+  std::future<void> stored_;  // of the newest keyframe: the sink is done
   std::map<int, double> scales_;
 };
 

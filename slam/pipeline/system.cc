@@ -181,6 +181,7 @@ void System::Place(const TrackedFrame& frame) {
 Reconstruction System::Finish() {
   if (job_) AdoptMapping();
   if (depth_ && depth_->is_pending()) AdoptCompletion();
+  if (depth_) depth_->Flush();
   if (bundle_) AdoptBundle();
   if (loop_) {  // found by the last keyframe
     StartLoopCorrection();

@@ -1,5 +1,8 @@
 #include "slam/depth/sparse_depth.h"
 
+#include <algorithm>
+#include <set>
+
 #include <gtest/gtest.h>
 
 #include "tests/slam/pipeline/synthetic_scene.h"
@@ -53,14 +56,36 @@ TEST(SparseDepth, DropsWhatIsHiddenUnlessTheKeyframeSawItItself) {
   EXPECT_FALSE(holds_hidden());
 }
 
-TEST(SparseDepth, DropsLandmarksThatMove) {
+TEST(SparseDepth, DropsLandmarksThatAreOftenNotFound) {
   SyntheticScene scene(100);
-  Map map = scene.MakeMap(Walk(3, {-0.5, 0.2, 0.0}), 100);
+  Map map = scene.MakeMap(Walk(3, {-0.5, 0.2, 0.0}), 100, 0.0);
+  const auto holds = [&](LandmarkId id) {
+    const auto points = ProjectLandmarks(map, 1, kCamera, {});
+    return std::ranges::count(points, id, &SparsePoint::landmark) == 1;
+  };
   map.landmark(5).visible = 10;
-  map.landmark(5).found = 4;
-  for (const SparsePoint& point : ProjectLandmarks(map, 1, kCamera, {})) {
-    EXPECT_NE(point.landmark, 5);
+  map.landmark(5).found = 9;
+  EXPECT_TRUE(holds(5));
+  map.landmark(5).found = 7;
+  EXPECT_FALSE(holds(5));
+}
+
+TEST(SparseDepth, DropsWhatIsKnownTooBadly) {
+  SyntheticScene scene(300);
+  const Map map = scene.MakeMap(Walk(2, {-0.2, 0.1, 0.0}), 300);
+  const SparseDepthOptions options;
+  std::set<LandmarkId> taken;
+  for (const SparsePoint& point : ProjectLandmarks(map, 1, kCamera, options)) {
+    taken.insert(point.landmark);
+    EXPECT_LE(RangeError(map, map.landmark(point.landmark)), options.half_confidence_error);
   }
+  int dropped = 0;
+  for (LandmarkId id = 0; id < map.landmark_end(); ++id) {
+    if (taken.contains(id) || !map.HasLandmark(id)) continue;
+    dropped += RangeError(map, map.landmark(id)) > options.half_confidence_error;
+  }
+  EXPECT_GT(taken.size(), 20u);
+  EXPECT_GT(dropped, 20);
 }
 
 TEST(SparseDepth, ErrorOfTheRangeIsWhatNoiseMakesOfIt) {
@@ -98,7 +123,7 @@ TEST(SparseDepth, ConfidenceGrowsWithParallaxAndObservations) {
   const auto mean = [](const std::vector<SparsePoint>& points) {
     double sum = 0;
     for (const SparsePoint& point : points) {
-      EXPECT_GT(point.confidence, 0.0);
+      EXPECT_GE(point.confidence, 0.5);
       EXPECT_LE(point.confidence, 1.0);
       sum += point.confidence;
     }

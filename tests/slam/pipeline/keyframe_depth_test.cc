@@ -1,6 +1,7 @@
 #include "slam/pipeline/keyframe_depth.h"
 
 #include <cmath>
+#include <future>
 #include <utility>
 #include <vector>
 
@@ -68,6 +69,7 @@ TEST_F(KeyframeDepthTest, TellsTheRangesOfFeaturesAndTheGroundWhenDue) {
   EXPECT_TRUE(depth.IsDue(105));
   const KeyframeDepth::Completed completed = depth.Take();
   EXPECT_FALSE(depth.is_pending());
+  depth.Flush();
   EXPECT_FALSE(depth.IsRunning());
   EXPECT_EQ(completed.frame_index, kFrame);
   ASSERT_EQ(completed.priors.size(), 1u);
@@ -101,12 +103,30 @@ TEST_F(KeyframeDepthTest, LeavesOutAKeyframeWithTooFewPoints) {
   EXPECT_TRUE(depth.scales().empty());
 }
 
-TEST_F(KeyframeDepthTest, PassesOnWhatTheSinkThrows) {
+TEST_F(KeyframeDepthTest, PassesOnWhatTheSinkThrowsWithTheNextKeyframeOrInTheEnd) {
   KeyframeDepth depth(
       &completer_, [](int, const DenseDepth&) { throw UserError("the disk is full"); }, options_);
   depth.Start(keyframe_, Picture(), Points(), 0);
+  EXPECT_NO_THROW(depth.Take());
+  EXPECT_FALSE(depth.is_pending());
+  depth.Start(keyframe_, Picture(), Points(), 0);
   EXPECT_THROW(depth.Take(), UserError);
   EXPECT_FALSE(depth.is_pending());
+  depth.Start(keyframe_, Picture(), Points(), 0);
+  EXPECT_NO_THROW(depth.Take());
+  EXPECT_THROW(depth.Flush(), UserError);
+}
+
+TEST_F(KeyframeDepthTest, TellsWhatIsCompletedWhileTheSinkIsStillAtIt) {
+  std::promise<void> may_end;
+  KeyframeDepth depth(
+      &completer_, [&](int, const DenseDepth&) { may_end.get_future().wait(); }, options_);
+  depth.Start(keyframe_, Picture(), Points(), 0);
+  EXPECT_EQ(depth.Take().frame_index, kFrame);
+  EXPECT_TRUE(depth.IsRunning());
+  may_end.set_value();
+  depth.Flush();
+  EXPECT_FALSE(depth.IsRunning());
 }
 
 }  // namespace
