@@ -2,7 +2,8 @@
 // that the camera comes back to are recognised before the first wrong one (recall at a precision of
 // 100 %), apart for the same and the opposite direction, and how long a query takes.
 //
-// place_recall SEQUENCE...: sequences are separate places of one index.
+// Sequences are separate places of one index. With --vocabulary, a tree of words trained on other
+// sequences is measured in the same way.
 
 #include <algorithm>
 #include <cstdio>
@@ -14,8 +15,10 @@
 #include <string>
 #include <vector>
 
+#include <CLI/CLI.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "apps/place_recall/binary_vocabulary.h"
 #include "slam/features/orb_extractor.h"
 #include "slam/features/place_recognition.h"
 #include "slam/io/trajectory.h"
@@ -80,13 +83,18 @@ void Report(const std::vector<Query>& queries) {
   }
 }
 
-void Measure(const std::vector<std::string>& folders) {
+std::vector<View> ReadSequences(const std::vector<std::string>& folders) {
+  std::vector<View> views;
+  for (size_t s = 0; s < folders.size(); ++s) ReadViews(folders[s], static_cast<int>(s), &views);
+  return views;
+}
+
+/// `Index` learns places and scores them, as PlaceIndex does.
+template <typename Index>
+void Measure(const std::vector<View>& views, Index index) {
   constexpr double kNear = 5.0;     // m: the place is the same
   constexpr double kAway = 10.0;    // m: the place is another one
   constexpr double kBefore = 50.0;  // m of travel: the place was left
-  std::vector<View> views;
-  for (size_t s = 0; s < folders.size(); ++s) ReadViews(folders[s], static_cast<int>(s), &views);
-  PlaceIndex index;
   std::vector<Query> queries;
   double seconds = 0;
   for (const View& view : views) {
@@ -135,12 +143,33 @@ void Measure(const std::vector<std::string>& folders) {
   std::printf("%zu views, %.2f ms a query\n", views.size(), 1e3 * seconds / views.size());
 }
 
+// As large as a file of 4 MB could be: 10^5 words of 32 bytes, and the nodes above them.
+constexpr int kBranches = 10;
+constexpr int kDepth = 5;
+
+void MeasureVocabulary(const std::vector<View>& views, const std::vector<std::string>& training) {
+  std::vector<std::vector<Descriptor>> trained_on;
+  for (View& view : ReadSequences(training)) trained_on.push_back(std::move(view.descriptors));
+  const BinaryVocabulary vocabulary(trained_on, kBranches, kDepth);
+  std::printf("\na vocabulary of %d words, trained on %zu views\n", vocabulary.num_words(),
+              trained_on.size());
+  Measure(views, VocabularyIndex(&vocabulary));
+}
+
 }  // namespace
 }  // namespace orb360
 
 int main(int argc, char** argv) {
+  CLI::App app("Measures how well places are recognised on sequences with ground truth.");
+  std::vector<std::string> sequences;
+  std::vector<std::string> training;
+  app.add_option("sequences", sequences, "Folders of sequences")->required();
+  app.add_option("--vocabulary", training, "Other sequences, to train a vocabulary on");
+  CLI11_PARSE(app, argc, argv);
   try {
-    orb360::Measure({argv + 1, argv + argc});
+    const std::vector<orb360::View> views = orb360::ReadSequences(sequences);
+    orb360::Measure(views, orb360::PlaceIndex());
+    if (!training.empty()) orb360::MeasureVocabulary(views, training);
     return EXIT_SUCCESS;
   } catch (const std::exception& error) {
     std::cerr << "place_recall: " << error.what() << '\n';

@@ -7,8 +7,8 @@
 namespace orb360 {
 
 /// Dense depth of keyframes, kept on disk while a run lasts: about 0.5 MB for a keyframe of
-/// 1024 x 512 pixels, and no memory. Frames are named by their index in the sequence, so keyframes of
-/// several maps can share a store.
+/// 1024 x 512 pixels, and no memory. Frames are named by their index in the sequence, so keyframes
+/// of several maps can share a store.
 ///
 /// Ranges come back with an error of at most 0.05 % (their logarithms are rounded to 2^-10, in 16
 /// bits), from e^-32 to e^31 units of length; confidences rounded to 1/255, but not to 0; colours
