@@ -19,6 +19,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "apps/place_recall/binary_vocabulary.h"
+#include "nn/base/check.h"
 #include "slam/features/orb_extractor.h"
 #include "slam/features/place_recognition.h"
 #include "slam/io/trajectory.h"
@@ -85,7 +86,12 @@ void Report(const std::vector<Query>& queries) {
 
 std::vector<View> ReadSequences(const std::vector<std::string>& folders) {
   std::vector<View> views;
-  for (size_t s = 0; s < folders.size(); ++s) ReadViews(folders[s], static_cast<int>(s), &views);
+  for (size_t s = 0; s < folders.size(); ++s) {
+    const size_t before = views.size();
+    ReadViews(folders[s], static_cast<int>(s), &views);
+    if (views.size() == before)
+      throw UserError(folders[s] + ": has no pictures rgb/000000.jpg ...");
+  }
   return views;
 }
 

@@ -32,7 +32,7 @@ struct SparsePoint {
   LandmarkId landmark;
   Eigen::Vector2d pixel;  // of the camera asked for
   double range;           // along the ray, in the map's units
-  double confidence;      // at most 1, see RangeError
+  double confidence;      // from min_confidence to 1, see RangeError
 };
 
 /// Standard deviation of a landmark's range from a keyframe as a share of the range: the angular

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -26,7 +27,7 @@ constexpr double kStepsPerUnit = 1024.0;  // of the natural logarithm
 constexpr int kCodeOfOne = 32 * 1024;     // The middle: any unit of length has room.
 constexpr int kMaxCode = 65535;
 constexpr int kColorQuality = 95;  // of JPEG
-constexpr int kZstdLevel = 1;      // the fastest: tracking waits for it
+constexpr int kZstdLevel = 1;      // the fastest: tracking and mapping want the cores
 
 struct Header {
   std::uint32_t width;
@@ -95,9 +96,14 @@ std::string Pack(const CodedDepth& coded) {
       left_confidence = confidence[column];
     }
   }
+  const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(),
+                                                                     &ZSTD_freeCCtx);
+  ORB360_CHECK(context != nullptr);
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kZstdLevel);
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
   std::string packed(ZSTD_compressBound(planes.size()), '\0');
   const size_t bytes =
-      ZSTD_compress(packed.data(), packed.size(), planes.data(), planes.size(), kZstdLevel);
+      ZSTD_compress2(context.get(), packed.data(), packed.size(), planes.data(), planes.size());
   ORB360_CHECK(!ZSTD_isError(bytes), ZSTD_getErrorName(bytes));
   packed.resize(bytes);
   return packed;

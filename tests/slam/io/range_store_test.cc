@@ -1,6 +1,8 @@
 #include "slam/io/range_store.h"
 
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 
@@ -103,6 +105,24 @@ TEST(RangeStore, SaysWhatIsDamaged) {
               whole.substr(0, static_cast<size_t>(share * static_cast<double>(whole.size()))));
     EXPECT_THAT(MessageOf<UserError>([&] { store.Get(1); }), testing::HasSubstr("damaged"));
   }
+  std::uint32_t packed = 0;  // bytes of ranges and confidences, behind a header of 16
+  std::memcpy(&packed, whole.data() + 8, sizeof packed);
+  ASSERT_GT(packed, 50u);
+  WriteText(folder / "store/1", whole);
+  const DenseDepth read = store.Get(1);
+  size_t noticed = 0;
+  for (size_t place = 16 + 6; place < 16 + packed; ++place) {  // behind zstd's own header
+    std::string changed = whole;
+    changed[place] = static_cast<char>(changed[place] ^ 4);
+    WriteText(folder / "store/1", changed);
+    try {
+      // A bit may be one of those that fill up a byte.
+      EXPECT_EQ(cv::norm(store.Get(1).range, read.range, cv::NORM_INF), 0) << place;
+    } catch (const UserError&) {
+      ++noticed;
+    }
+  }
+  EXPECT_GT(noticed, (packed - 6) * 9 / 10);
   EXPECT_THAT(MessageOf<UserError>([&] { store.Get(2); }), testing::HasSubstr("gone"));
   WriteText(folder / "file", "");
   EXPECT_THAT(MessageOf<UserError>([&] { RangeStore(folder / "file/store"); }),
