@@ -66,6 +66,41 @@ TEST(LoadImage, NoPrefixOfAFileGivesAPicture) {
   }
 }
 
+// The picture as OpenCV alone decodes it.
+cv::Mat DecodedByOpenCv(const std::filesystem::path& path) {
+  return cv::imread(path.string(), cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+}
+
+TEST(LoadImage, JpegGivesThePixelsOfOpenCv) {
+  const TempFolder folder;
+  cv::Mat grey;
+  cv::extractChannel(Picture(), grey, 0);
+  cv::imwrite((folder / "grey.jpg").string(), grey);
+  cv::imwrite((folder / "low.jpg").string(), Picture(), {cv::IMWRITE_JPEG_QUALITY, 40});
+  cv::imwrite((folder / "progressive.jpg").string(), Picture(), {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
+  for (const char* name : {"grey.jpg", "low.jpg", "progressive.jpg"}) {
+    const LoadedImage loaded = LoadImage(folder / name);
+    ASSERT_EQ(loaded.image.type(), CV_8UC3) << name << loaded.problem;
+    EXPECT_EQ(cv::norm(loaded.image, DecodedByOpenCv(folder / name), cv::NORM_INF), 0) << name;
+  }
+}
+
+TEST(LoadImage, JpegOfMorePixelsThanCanBeIsAProblemAndNoCrash) {
+  const TempFolder folder;
+  cv::imwrite((folder / "a.jpg").string(), Picture());
+  std::string data = ReadText(folder / "a.jpg");
+  const size_t frame = data.find("\xff\xc0");  // marker, length, bits, height, width
+  ASSERT_NE(frame, std::string::npos);
+  data.replace(frame + 5, 4, "\xff\xf0\xff\xf0");
+  WriteText(folder / "huge.jpg", data);
+  EXPECT_EQ(LoadImage(folder / "huge.jpg").problem, "cannot be decoded");
+}
+
+TEST(LoadImage, FolderIsAProblemToName) {
+  const TempFolder folder;
+  EXPECT_FALSE(LoadImage(folder.path()).problem.empty());
+}
+
 TEST(LoadImage, FloatingPointPixelsAreAProblemToName) {
   const TempFolder folder;
   cv::imwrite((folder / "a.tiff").string(), cv::Mat(kSize, CV_32FC3, cv::Scalar(0.5, 0.5, 0.5)));
