@@ -5,8 +5,6 @@
 
 #include "nn/base/aligned_vector.h"
 
-#undef HWY_DISABLED_TARGETS
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "benchmarks/nn/fma_peak.cc"
 #include <hwy/foreach_target.h>

@@ -4,9 +4,6 @@
 
 #include "nn/base/check.h"
 
-// Vectors of unknown length cannot stand in arrays.
-#undef HWY_DISABLED_TARGETS
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "nn/kernels/convex_upsample.cc"
 #include <hwy/foreach_target.h>

@@ -69,20 +69,19 @@ HWY_INLINE Sighting LookAlong(const DepthView& view, V x, V y, V z) {
   const VI left_wrapped = Wrap(left, width);
   const VI right_wrapped = Wrap(hn::Add(left, one), width);
   const float* inverse = view.inverse_ranges().data();
-  const auto gather = [&](VI row, VI column, VI turn) HWY_ATTR {
-    return hn::GatherIndex(d, inverse, hn::Add(row, Wrap(hn::Add(column, turn), width)));
+  const auto gather = [&](VI start, VI at, VI turn) HWY_ATTR {
+    return hn::GatherIndex(d, inverse, hn::Add(start, Wrap(hn::Add(at, turn), width)));
   };
   const V upper_left = gather(upper, left_wrapped, upper_turn);
   const V upper_right = gather(upper, right_wrapped, upper_turn);
   const V lower_left = gather(lower, left_wrapped, lower_turn);
   const V lower_right = gather(lower, right_wrapped, lower_turn);
 
-  Sighting seen;
   const auto is_upper = hn::Lt(bottom_share, Constant(0.5f));
   const auto is_left = hn::Lt(right_share, Constant(0.5f));
-  seen.row = hn::IfThenElse(hn::RebindMask(di, is_upper), hn::Max(top, zero),
-                            hn::Min(hn::Add(top, one), bottom_row));
-  seen.column = hn::IfThenElse(hn::RebindMask(di, is_left), left_wrapped, right_wrapped);
+  const VI row = hn::IfThenElse(hn::RebindMask(di, is_upper), hn::Max(top, zero),
+                                hn::Min(hn::Add(top, one), bottom_row));
+  const VI column = hn::IfThenElse(hn::RebindMask(di, is_left), left_wrapped, right_wrapped);
   const V nearest = hn::IfThenElse(is_upper, hn::IfThenElse(is_left, upper_left, upper_right),
                                    hn::IfThenElse(is_left, lower_left, lower_right));
   const V least = hn::Min(hn::Min(upper_left, upper_right), hn::Min(lower_left, lower_right));
@@ -92,17 +91,17 @@ HWY_INLINE Sighting LookAlong(const DepthView& view, V x, V y, V z) {
   const auto is_one_surface = hn::Lt(most, hn::Mul(Constant(kEdgeRatio), least));
   const V above = hn::MulAdd(right_share, hn::Sub(upper_right, upper_left), upper_left);
   const V below = hn::MulAdd(right_share, hn::Sub(lower_right, lower_left), lower_left);
-  seen.inverse_range = hn::IfThenElse(
+  const V inverse_range = hn::IfThenElse(
       is_one_surface, hn::MulAdd(bottom_share, hn::Sub(below, above), above), nearest);
 
-  const VI pixel = hn::Add(hn::Mul(seen.row, width), seen.column);
+  const VI pixel = hn::Add(hn::Mul(row, width), column);
   const auto words = hn::GatherIndex(du, view.confidence_levels().data(), hn::ShiftRight<2>(pixel));
   const auto byte = hn::BitCast(du, hn::ShiftLeft<3>(hn::And(pixel, hn::Set(di, 3))));
   const auto level = hn::And(hn::Shr(words, byte), hn::Set(du, 255));
   const V confidence = hn::Max(hn::ConvertTo(d, hn::BitCast(di, level)), Constant(0.5f));
-  seen.error =
+  const V error =
       hn::Max(Constant(view.min_error()), hn::Sub(hn::Div(Constant(255), confidence), Constant(1)));
-  return seen;
+  return {inverse_range, error, row, column};
 }
 
 /// The largest of 1 / range of a pixel and the eight around it; infinite where one is unknown.

@@ -53,10 +53,12 @@ HWY_INLINE Corner LoadCorner(const Vertex* vertices) {
 }
 
 HWY_INLINE V3 LoadPosition(const std::array<float, 4>* positions) {
-  V3 p;
+  V x;
+  V y;
+  V z;
   V unused;
-  hn::LoadInterleaved4(D(), positions->data(), p.x, p.y, p.z, unused);
-  return p;
+  hn::LoadInterleaved4(D(), positions->data(), x, y, z, unused);
+  return {x, y, z};
 }
 
 /// log2(x) for positive x, within 0.09: enough to choose a mip level.
