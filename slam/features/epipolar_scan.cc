@@ -16,6 +16,26 @@ namespace orb360 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+using D = hn::CappedTag<float, BearingColumns::kMostLanes>;
+using V = hn::Vec<D>;
+
+struct V3 {
+  V x, y, z;
+};
+
+HWY_INLINE V Dot(const Eigen::Vector3f& a, const V3& b) {
+  const D d;
+  return hn::MulAdd(hn::Set(d, a.x()), b.x,
+                    hn::MulAdd(hn::Set(d, a.y()), b.y, hn::Mul(hn::Set(d, a.z()), b.z)));
+}
+
+/// The lanes that are set.
+HWY_INLINE unsigned Bits(hn::Mask<D> mask) {
+  uint8_t bytes[8] = {};
+  hn::StoreMaskBits(D(), mask, bytes);
+  return bytes[0] | (bytes[1] << 8);
+}
+
 void FindOnArc(const BearingColumns& bearings, const EpipolarArc& arc, std::vector<int>* indices) {
   // Component of the epipole across the direction of infinity: the way along the arc.
   const Eigen::Vector3f along =
@@ -28,39 +48,56 @@ void FindOnArc(const BearingColumns& bearings, const EpipolarArc& arc, std::vect
   const float min_cosine = static_cast<float>(std::cos(arc.max_parallax));
   const float max_epipole = static_cast<float>(arc.max_epipole_cosine);
 
-  const hn::CappedTag<float, 16> d;
+  const D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const int count = bearings.size();
-  indices->resize(count);
-  int found = 0;
-  for (int i = 0; i < count; i += lanes) {
-    const auto x = hn::LoadU(d, bearings.x() + i);
-    const auto y = hn::LoadU(d, bearings.y() + i);
-    const auto z = hn::LoadU(d, bearings.z() + i);
-    const auto dot = [&](const Eigen::Vector3f& v) HWY_ATTR {
-      return hn::MulAdd(hn::Set(d, v.x()), x,
-                        hn::MulAdd(hn::Set(d, v.y()), y, hn::Mul(hn::Set(d, v.z()), z)));
-    };
-    // One radian around infinity is less than a quarter of the sphere.
-    const auto near = hn::Ge(dot(infinity), hn::Set(d, min_cosine));
-    if (hn::AllFalse(d, near)) continue;
-    const auto both = hn::Add(hn::LoadU(d, bearings.variance() + i), hn::Set(d, variance));
-    const auto off_plane = dot(normal);
-    const auto near_plane =
-        hn::Le(hn::Mul(off_plane, off_plane), hn::Mul(hn::Set(d, squared_sigmas), both));
-    if (hn::AllFalse(d, near_plane)) continue;
-    // One standard deviation beyond infinity is noise.
-    const auto forward = hn::Ge(dot(along), hn::Neg(hn::Sqrt(both)));
-    const auto off_epipole = hn::Lt(hn::Abs(dot(epipole)), hn::Set(d, max_epipole));
-    const auto mask = hn::And(hn::And(near_plane, forward), hn::And(near, off_epipole));
-    if (hn::AllFalse(d, mask)) continue;
-    uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, mask, bits);
-    for (unsigned rest = bits[0] | (bits[1] << 8); rest != 0; rest &= rest - 1) {
-      (*indices)[found++] = bearings.index(i + __builtin_ctz(rest));
+  // A cell may hold such bearings if its circle reaches to the plane, and to within max_parallax of
+  // infinity.
+  const float margin =
+      static_cast<float>(arc.max_sigmas) * std::sqrt(variance + bearings.max_variance());
+  const auto plane_sine = hn::Set(d, std::sin(margin));
+  const auto plane_cosine = hn::Set(d, std::cos(margin));
+  const auto near_sine = hn::Set(d, static_cast<float>(std::sin(arc.max_parallax)));
+  const auto near_cosine = hn::Set(d, min_cosine);
+  const BearingColumns::Cells& cells = bearings.cells();
+  const int* first = cells.first.data();
+  const float* xs = bearings.x();
+  const float* ys = bearings.y();
+  const float* zs = bearings.z();
+  const float* variances = bearings.variance();
+  const int num_cells = static_cast<int>(cells.first.size()) - 1;
+  indices->clear();
+  for (int c = 0; c < num_cells; c += lanes) {
+    const V3 center = {hn::LoadU(d, cells.x.data() + c), hn::LoadU(d, cells.y.data() + c),
+                       hn::LoadU(d, cells.z.data() + c)};
+    const auto sine = hn::LoadU(d, cells.sine.data() + c);
+    const auto cosine = hn::LoadU(d, cells.cosine.data() + c);
+    const auto is_near =
+        hn::Ge(Dot(infinity, center), hn::NegMulAdd(near_sine, sine, hn::Mul(near_cosine, cosine)));
+    const auto is_on_plane = hn::Le(hn::Abs(Dot(normal, center)),
+                                    hn::MulAdd(plane_cosine, sine, hn::Mul(plane_sine, cosine)));
+    for (unsigned on_arc = Bits(hn::And(is_near, is_on_plane)); on_arc != 0; on_arc &= on_arc - 1) {
+      const int cell = c + __builtin_ctz(on_arc);
+      for (int i = first[cell]; i < first[cell + 1]; i += lanes) {
+        const V3 bearing = {hn::LoadU(d, xs + i), hn::LoadU(d, ys + i), hn::LoadU(d, zs + i)};
+        const auto of_cell = hn::FirstN(d, static_cast<size_t>(first[cell + 1] - i));
+        // One radian around infinity is less than a quarter of the sphere.
+        const auto near = hn::Ge(Dot(infinity, bearing), near_cosine);
+        const auto both = hn::Add(hn::LoadU(d, variances + i), hn::Set(d, variance));
+        const auto off_plane = Dot(normal, bearing);
+        const auto near_plane =
+            hn::Le(hn::Mul(off_plane, off_plane), hn::Mul(hn::Set(d, squared_sigmas), both));
+        const auto in_band = hn::And(hn::And(near, near_plane), of_cell);
+        if (hn::AllFalse(d, in_band)) continue;
+        // One standard deviation beyond infinity is noise.
+        const auto forward = hn::Ge(Dot(along, bearing), hn::Neg(hn::Sqrt(both)));
+        const auto off_epipole = hn::Lt(hn::Abs(Dot(epipole, bearing)), hn::Set(d, max_epipole));
+        const auto is_found = hn::And(in_band, hn::And(forward, off_epipole));
+        for (unsigned found = Bits(is_found); found != 0; found &= found - 1) {
+          indices->push_back(bearings.index(i + __builtin_ctz(found)));
+        }
+      }
     }
   }
-  indices->resize(found);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -94,23 +131,50 @@ int CellOnCube(const Eigen::Vector3d& bearing) {
 BearingColumns::BearingColumns(std::span<const Eigen::Vector3d> bearings,
                                std::span<const double> sigmas)
     : index_(bearings.size()) {
-  constexpr size_t kLongestVector = 16;  // lanes
-  const size_t padded = (bearings.size() + kLongestVector - 1) / kLongestVector * kLongestVector;
-  for (std::vector<float>* column : {&x_, &y_, &z_, &variance_}) column->resize(padded, 0.0f);
-  std::vector<int> cells(bearings.size());
-  std::array<int, kCells + 1> next = {};  // position of a cell's next bearing
-  for (size_t i = 0; i < bearings.size(); ++i) {
-    cells[i] = CellOnCube(bearings[i]);
-    ++next[cells[i] + 1];
+  for (std::vector<float>* column : {&x_, &y_, &z_, &variance_}) {
+    column->resize(bearings.size() + kMostLanes);
   }
-  std::partial_sum(next.begin(), next.end(), next.begin());
+  std::vector<int> of_bearing(bearings.size());
+  cells_.first.resize(kCells + 1);
   for (size_t i = 0; i < bearings.size(); ++i) {
-    const int at = next[cells[i]]++;
+    of_bearing[i] = CellOnCube(bearings[i]);
+    ++cells_.first[of_bearing[i] + 1];
+  }
+  std::partial_sum(cells_.first.begin(), cells_.first.end(), cells_.first.begin());
+  std::vector<int> next = cells_.first;
+  for (size_t i = 0; i < bearings.size(); ++i) {
+    const int at = next[of_bearing[i]]++;
     index_[at] = static_cast<int>(i);
     x_[at] = static_cast<float>(bearings[i].x());
     y_[at] = static_cast<float>(bearings[i].y());
     z_[at] = static_cast<float>(bearings[i].z());
     variance_[at] = static_cast<float>(sigmas[i] * sigmas[i]);
+    max_variance_ = std::max(max_variance_, variance_[at]);
+  }
+  EncloseCells();
+}
+
+void BearingColumns::EncloseCells() {
+  constexpr float kRounding = 1e-3F;  // rad
+  for (std::vector<float>* column :
+       {&cells_.x, &cells_.y, &cells_.z, &cells_.sine, &cells_.cosine}) {
+    column->resize(kCells + kMostLanes);
+  }
+  for (int c = 0; c < kCells; ++c) {
+    const auto bearing = [this](int i) { return Eigen::Vector3f(x_[i], y_[i], z_[i]); };
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (int i = cells_.first[c]; i < cells_.first[c + 1]; ++i) sum += bearing(i);
+    const Eigen::Vector3f center = sum.normalized();
+    float least_cosine = 1;
+    for (int i = cells_.first[c]; i < cells_.first[c + 1]; ++i) {
+      least_cosine = std::min(least_cosine, center.dot(bearing(i)));
+    }
+    const float radius = std::acos(least_cosine) + kRounding;
+    cells_.x[c] = center.x();
+    cells_.y[c] = center.y();
+    cells_.z[c] = center.z();
+    cells_.sine[c] = std::sin(radius);
+    cells_.cosine[c] = std::cos(radius);
   }
 }
 

@@ -7,23 +7,37 @@
 
 namespace orb360 {
 
-/// Bearings as columns, for scans over all of them. Neighbours on the sphere stand together, so
-/// that most vectors hold nothing near a given arc and are passed over. Columns are longer than
-/// size() by up to a vector, filled with zero bearings, which lie on no arc.
+/// Bearings as columns, for scans over all of them. Neighbours on the sphere stand together in
+/// cells, most of which are far from a given arc and are passed over. All columns are longer than
+/// what they hold by up to a vector.
 class BearingColumns {
  public:
+  static constexpr int kMostLanes = 16;  // of the longest vector
+
   BearingColumns(std::span<const Eigen::Vector3d> bearings, std::span<const double> sigmas);
 
-  int size() const { return static_cast<int>(index_.size()); }
   int index(int position) const { return index_[position]; }  // in what the columns were made from
   const float* x() const { return x_.data(); }
   const float* y() const { return y_.data(); }
   const float* z() const { return z_.data(); }
   const float* variance() const { return variance_.data(); }  // of the angle, rad^2
+  float max_variance() const { return max_variance_; }
+
+  /// Circles on the sphere, each around the bearings of a cell.
+  struct Cells {
+    std::vector<float> x, y, z;       // centre
+    std::vector<float> sine, cosine;  // of the radius
+    std::vector<int> first;           // position of a cell's first bearing, and the end
+  };
+  const Cells& cells() const { return cells_; }
 
  private:
+  void EncloseCells();
+
   std::vector<int> index_;
   std::vector<float> x_, y_, z_, variance_;
+  float max_variance_ = 0;
+  Cells cells_;
 };
 
 /// Where the match of a bearing of camera 1 may lie in camera 2: near its epipolar plane, and on

@@ -236,14 +236,15 @@ TEST(EpipolarScan, FindsExactlyTheBearingsOnTheArc) {
   RandomGeometry random(5);
   std::vector<Eigen::Vector3d> bearings;
   std::vector<double> sigmas;
+  const Eigen::Vector3d crowded = random.Bearing();
   for (int i = 0; i < 1003; ++i) {
-    bearings.push_back(random.Bearing());
+    bearings.push_back(i % 3 != 0 ? random.Bearing() : random.Noisy(crowded, 0.3));
     sigmas.push_back(random.Uniform(0.01, 0.03));
   }
   const BearingColumns columns(bearings, sigmas);
-  for (int trial = 0; trial < 20; ++trial) {
+  for (int trial = 0; trial < 100; ++trial) {
     EpipolarArc arc;
-    arc.infinity = random.Bearing();
+    arc.infinity = trial % 2 != 0 ? random.Bearing() : random.Noisy(crowded, 0.5);
     arc.epipole = random.Bearing();
     arc.normal = arc.infinity.cross(arc.epipole).normalized();
     arc.variance = 1e-4;
