@@ -19,6 +19,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, BearingColumns::kMostLanes>;
 using V = hn::Vec<D>;
 
+namespace {
+
 struct V3 {
   V x, y, z;
 };
@@ -36,6 +38,8 @@ HWY_INLINE unsigned Bits(hn::Mask<D> mask) {
   return bytes[0] | (bytes[1] << 8);
 }
 
+}  // namespace
+
 void FindOnArc(const BearingColumns& bearings, const EpipolarArc& arc, std::vector<int>* indices) {
   // Component of the epipole across the direction of infinity: the way along the arc.
   const Eigen::Vector3f along =
@@ -52,10 +56,10 @@ void FindOnArc(const BearingColumns& bearings, const EpipolarArc& arc, std::vect
   const int lanes = static_cast<int>(hn::Lanes(d));
   // A cell may hold such bearings if its circle reaches to the plane, and to within max_parallax of
   // infinity.
-  const float margin =
-      static_cast<float>(arc.max_sigmas) * std::sqrt(variance + bearings.max_variance());
-  const auto plane_sine = hn::Set(d, std::sin(margin));
-  const auto plane_cosine = hn::Set(d, std::cos(margin));
+  const float margin = std::min(
+      1.0F, static_cast<float>(arc.max_sigmas) * std::sqrt(variance + bearings.max_variance()));
+  const auto plane_sine = hn::Set(d, margin);
+  const auto plane_cosine = hn::Set(d, std::sqrt(1 - margin * margin));
   const auto near_sine = hn::Set(d, static_cast<float>(std::sin(arc.max_parallax)));
   const auto near_cosine = hn::Set(d, min_cosine);
   const BearingColumns::Cells& cells = bearings.cells();
@@ -73,8 +77,11 @@ void FindOnArc(const BearingColumns& bearings, const EpipolarArc& arc, std::vect
     const auto cosine = hn::LoadU(d, cells.cosine.data() + c);
     const auto is_near =
         hn::Ge(Dot(infinity, center), hn::NegMulAdd(near_sine, sine, hn::Mul(near_cosine, cosine)));
-    const auto is_on_plane = hn::Le(hn::Abs(Dot(normal, center)),
-                                    hn::MulAdd(plane_cosine, sine, hn::Mul(plane_sine, cosine)));
+    // All of them where the plane's surroundings and the circle make a quarter of the sphere.
+    const auto is_on_plane =
+        hn::Or(hn::Le(hn::Abs(Dot(normal, center)),
+                      hn::MulAdd(plane_cosine, sine, hn::Mul(plane_sine, cosine))),
+               hn::Ge(plane_sine, cosine));
     for (unsigned on_arc = Bits(hn::And(is_near, is_on_plane)); on_arc != 0; on_arc &= on_arc - 1) {
       const int cell = c + __builtin_ctz(on_arc);
       for (int i = first[cell]; i < first[cell + 1]; i += lanes) {
@@ -114,6 +121,7 @@ namespace {
 // Cells on the faces of a cube around the sphere, about 20 degrees wide, numbered along each face.
 constexpr int kCellsPerEdge = 4;
 constexpr int kCells = 6 * kCellsPerEdge * kCellsPerEdge;
+static_assert(kCells % BearingColumns::kMostLanes == 0);  // vectors of cells hold nothing else
 
 int CellOnCube(const Eigen::Vector3d& bearing) {
   int axis = 0;
@@ -158,7 +166,7 @@ void BearingColumns::EncloseCells() {
   constexpr float kRounding = 1e-3F;  // rad
   for (std::vector<float>* column :
        {&cells_.x, &cells_.y, &cells_.z, &cells_.sine, &cells_.cosine}) {
-    column->resize(kCells + kMostLanes);
+    column->resize(kCells);
   }
   for (int c = 0; c < kCells; ++c) {
     const auto bearing = [this](int i) { return Eigen::Vector3f(x_[i], y_[i], z_[i]); };

@@ -8,8 +8,8 @@
 namespace orb360 {
 
 /// Bearings as columns, for scans over all of them. Neighbours on the sphere stand together in
-/// cells, most of which are far from a given arc and are passed over. All columns are longer than
-/// what they hold by up to a vector.
+/// cells, most of which are far from a given arc and are passed over. Columns are a vector longer
+/// than what they hold.
 class BearingColumns {
  public:
   static constexpr int kMostLanes = 16;  // of the longest vector

@@ -73,8 +73,8 @@ std::string ReadBytes(std::ifstream& file, size_t most) {
   return data;
 }
 
-/// The pictures that OpenCV's decoder gives, in three fifths of its time. Empty for what is not a
-/// JPEG file or not an ordinary one (CMYK, damaged beyond use, of a billion pixels).
+/// The picture that OpenCV's decoder gives, in three fifths of its time. Empty for what is not a
+/// JPEG file or not an ordinary one (CMYK, damaged, of a billion pixels).
 cv::Mat DecodeJpeg(std::string_view data) {
   constexpr int64_t kMaxPixels = int64_t{1} << 30;  // OpenCV's limit
   if (!data.starts_with(kJpegSignature)) return {};
@@ -90,17 +90,16 @@ cv::Mat DecodeJpeg(std::string_view data) {
     return {};
   }
   cv::Mat image(height, width, CV_8UC3);
-  const bool is_decoded =
-      tjDecompress2(decoder.get(), bytes, data.size(), image.data, width,
-                    static_cast<int>(image.step), height, TJPF_BGR, TJFLAG_ACCURATEDCT) == 0 ||
-      tjGetErrorCode(decoder.get()) == TJERR_WARNING;
-  return is_decoded ? image : cv::Mat();
+  const int failed = tjDecompress2(decoder.get(), bytes, data.size(), image.data, width,
+                                   static_cast<int>(image.step), height, TJPF_BGR,
+                                   TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING);
+  return failed != 0 ? cv::Mat() : image;
 }
 
 /// As LoadImage says, in any depth; empty where there is no picture.
 cv::Mat Decode(const std::string& data) {
   if (cv::Mat image = DecodeJpeg(data); !image.empty()) return image;
-  // The decoder takes what it reads for its own, but leaves it alone.
+  // cv::Mat has no constructor for data that is only read.
   const cv::Mat bytes(1, static_cast<int>(data.size()), CV_8U, const_cast<char*>(data.data()));
   return cv::imdecode(bytes,
                       cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);

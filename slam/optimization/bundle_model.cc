@@ -71,7 +71,7 @@ const ceres::LossFunction* BundleModel::LossOf(BundleTerms::Kind kind) const {
 }
 
 double BundleModel::Evaluate(const BundleEstimate& estimate, NormalEquations* equations) const {
-  constexpr size_t kBlock = 32 * kMostTerms;  // small enough for the first cache
+  constexpr size_t kBlock = 16 * kMostTerms;  // rows of 24 KB: small enough for the first cache
   const BundlePlaces places = PlacesOf(estimate);
   std::vector<double> squared(kBlock);
   std::vector<double> weights(kBlock);

@@ -1,7 +1,9 @@
 #include "slam/optimization/bundle_terms.h"
 
+#include <cstddef>
 #include <cstdint>
 
+#include "nn/base/check.h"
 #include "slam/optimization/point_residual.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -20,6 +22,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, kMostTerms>;
 using DI = hn::RebindToSigned<D>;
 using V = hn::Vec<D>;
+
+namespace {
 
 struct V3 {
   V x, y, z;
@@ -72,9 +76,9 @@ HWY_INLINE void ForEachRow(const BundleTerms& terms, size_t at, const V3& seen, 
     }
     case BundleTerms::kRange: {
       const V squared = Dot(seen, seen);
-      // Highway's logarithm of zero is a number.
-      const V log_squared =
-          hn::IfThenElse(hn::Gt(squared, hn::Zero(d)), hn::Log(d, squared), hn::Inf(d));
+      // Highway's logarithms of zero and infinity are numbers.
+      const auto is_finite = hn::And(hn::Gt(squared, hn::Zero(d)), hn::Lt(squared, hn::Inf(d)));
+      const V log_squared = hn::IfThenElse(is_finite, hn::Log(d, squared), hn::Inf(d));
       const V log_range = hn::Mul(hn::Set(d, 0.5), log_squared);
       const V residual = hn::Mul(known(1), hn::Sub(log_range, known(0)));
       take(size_t{0}, Row{residual, Scaled(seen, hn::Div(known(1), squared))});
@@ -82,6 +86,8 @@ HWY_INLINE void ForEachRow(const BundleTerms& terms, size_t at, const V3& seen, 
     }
   }
 }
+
+}  // namespace
 
 void EvaluateTerms(const BundleTerms& terms, size_t begin, const BundlePlaces& places,
                    double* squared, size_t size, TermRow* rows) {
@@ -126,7 +132,7 @@ void EvaluateTerms(const BundleTerms& terms, size_t begin, const BundlePlaces& p
                                       hn::MulAdd(row.by_seen.y, y.y, hn::Mul(row.by_seen.z, z.y))),
                            hn::MulAdd(row.by_seen.x, x.z,
                                       hn::MulAdd(row.by_seen.y, y.z, hn::Mul(row.by_seen.z, z.z)))};
-      double* out = rows[i * terms.num_rows() + number].by_pose.data();
+      auto* out = reinterpret_cast<double*>(&rows[i * terms.num_rows() + number]);
       const V zero = hn::Zero(d);
       const V columns[] = {by_turn.x,     by_turn.y,     by_turn.z,  row.by_seen.x,
                            row.by_seen.y, row.by_seen.z, zero,       zero,
@@ -147,7 +153,11 @@ namespace {
 
 HWY_EXPORT(EvaluateTerms);
 
-static_assert(sizeof(TermRow) == 12 * sizeof(double));  // filled as an array of numbers
+// Rows are filled as arrays of twelve numbers.
+static_assert(sizeof(TermRow) == 12 * sizeof(double));
+static_assert(offsetof(TermRow, by_pose) == 0);
+static_assert(offsetof(TermRow, by_point) == 8 * sizeof(double));
+static_assert(offsetof(TermRow, residual) == 11 * sizeof(double));
 
 template <typename Terms>
 BundleTerms Located(BundleTerms::Kind kind, const Terms& of_problem) {
@@ -196,6 +206,8 @@ std::array<BundleTerms, 3> MakeBundleTerms(const BundleProblem& problem) {
 
 void EvaluateTerms(const BundleTerms& terms, size_t begin, const BundlePlaces& places,
                    std::span<double> squared, std::span<TermRow> rows) {
+  ORB360_CHECK(squared.size() % kMostTerms == 0 && begin + squared.size() < terms.size + kMostTerms,
+               squared.size(), begin, terms.size);
   HWY_DYNAMIC_DISPATCH(EvaluateTerms)
   (terms, begin, places, squared.data(), squared.size(), rows.empty() ? nullptr : rows.data());
 }

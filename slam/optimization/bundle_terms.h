@@ -48,8 +48,9 @@ struct BundleTerms {
 std::array<BundleTerms, 3> MakeBundleTerms(const BundleProblem& problem);
 
 /// Squared residuals of the terms from `begin`, a multiple of kMostTerms, on; not finite where
-/// there is none. `rows`, unless empty, are filled as well, each term's together. Both have room
-/// for whole vectors: a multiple of kMostTerms.
+/// there is none. `rows`, unless empty, are filled as well, each term's together. There is room
+/// for whole vectors: `squared` is a multiple of kMostTerms long, and reaches past the last term by
+/// less than that.
 void EvaluateTerms(const BundleTerms& terms, size_t begin, const BundlePlaces& places,
                    std::span<double> squared, std::span<TermRow> rows);
 

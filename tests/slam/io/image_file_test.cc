@@ -85,13 +85,40 @@ TEST(LoadImage, JpegGivesThePixelsOfOpenCv) {
   }
 }
 
+TEST(LoadImage, DamagedJpegGivesThePictureOfOpenCvOrNone) {
+  const TempFolder folder;
+  int num_pictures = 0;
+  int num_problems = 0;
+  for (const int progressive : {0, 1}) {
+    cv::imwrite((folder / "whole.jpg").string(), Picture(),
+                {cv::IMWRITE_JPEG_PROGRESSIVE, progressive});
+    const std::string whole = ReadText(folder / "whole.jpg");
+    for (size_t at = 100; at + 2 < whole.size(); at += 37) {
+      std::string data = whole;
+      data.replace(at, 2, "\xff\x3c");  // a marker that does not exist, or a wrong code
+      WriteText(folder / "damaged.jpg", data);
+      const LoadedImage loaded = LoadImage(folder / "damaged.jpg");
+      if (loaded.image.empty()) {
+        ++num_problems;
+        continue;
+      }
+      ++num_pictures;
+      const cv::Mat expected = DecodedByOpenCv(folder / "damaged.jpg");
+      ASSERT_EQ(loaded.image.size(), expected.size()) << at;
+      EXPECT_EQ(cv::norm(loaded.image, expected, cv::NORM_INF), 0) << at;
+    }
+  }
+  EXPECT_GT(num_pictures, 10);
+  EXPECT_GT(num_problems, 0);
+}
+
 TEST(LoadImage, JpegOfMorePixelsThanCanBeIsAProblemAndNoCrash) {
   const TempFolder folder;
   cv::imwrite((folder / "a.jpg").string(), Picture());
   std::string data = ReadText(folder / "a.jpg");
   const size_t frame = data.find("\xff\xc0");  // marker, length, bits, height, width
   ASSERT_NE(frame, std::string::npos);
-  data.replace(frame + 5, 4, "\xff\xf0\xff\xf0");
+  data.replace(frame + 5, 4, "\x90\x90\x90\x90");  // 37008 each way: more than OpenCV takes
   WriteText(folder / "huge.jpg", data);
   EXPECT_EQ(LoadImage(folder / "huge.jpg").problem, "cannot be decoded");
 }

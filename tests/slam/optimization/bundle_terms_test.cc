@@ -1,5 +1,6 @@
 #include "slam/optimization/bundle_terms.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -52,12 +53,15 @@ void ForEachEvaluated(const BundleProblem& problem, const Check& check) {
     ASSERT_NE(terms.size % kMostTerms, 0) << "or the last block is full";
     constexpr size_t kBlock = 2 * kMostTerms;
     for (size_t begin = 0; begin < terms.size; begin += kBlock) {
-      std::vector<double> squared(kBlock);
-      std::vector<TermRow> rows(kBlock * terms.num_rows());
+      const size_t whole_vectors =
+          (std::min(kBlock, terms.size - begin) + kMostTerms - 1) / kMostTerms * kMostTerms;
+      std::vector<double> squared(whole_vectors);
+      std::vector<TermRow> rows(whole_vectors * terms.num_rows());
       EvaluateTerms(terms, begin, places, squared, rows);
-      std::vector<double> squared_alone(kBlock);
+      std::vector<double> squared_alone(whole_vectors);
       EvaluateTerms(terms, begin, places, squared_alone, {});
-      EXPECT_EQ(std::memcmp(squared.data(), squared_alone.data(), kBlock * sizeof(double)), 0);
+      EXPECT_EQ(std::memcmp(squared.data(), squared_alone.data(), whole_vectors * sizeof(double)),
+                0);
       for (size_t i = 0; i < kBlock && begin + i < terms.size; ++i) {
         check(terms, begin + i, squared[i], &rows[i * terms.num_rows()]);
       }
@@ -123,6 +127,19 @@ TEST(EvaluateTerms, GivesDerivativesThatAgreeWithFiniteDifferences) {
         EXPECT_EQ(rows[i].by_pose[7], 0);
       }
     });
+  });
+}
+
+TEST(EvaluateTerms, PointBeyondAllNumbersHasNoFiniteRange) {
+  BundleProblem problem = OddWalk(4);
+  problem.points[0] = {1e200, 0, 0};
+  ForEachDispatchTarget([&] {
+    ForEachEvaluated(problem,
+                     [&](const BundleTerms& terms, size_t t, double squared, const TermRow*) {
+                       if (terms.point[t] == 0 && terms.kind == BundleTerms::kRange) {
+                         EXPECT_FALSE(std::isfinite(squared));
+                       }
+                     });
   });
 }
 
