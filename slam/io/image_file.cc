@@ -74,9 +74,8 @@ std::string ReadBytes(std::ifstream& file, size_t most) {
 }
 
 /// The picture that OpenCV's decoder gives, in three fifths of its time. Empty for what is not a
-/// JPEG file or not an ordinary one (CMYK, damaged, of a billion pixels).
+/// JPEG file or not an ordinary one (CMYK, damaged).
 cv::Mat DecodeJpeg(std::string_view data) {
-  constexpr int64_t kMaxPixels = int64_t{1} << 30;  // OpenCV's limit
   if (!data.starts_with(kJpegSignature)) return {};
   const std::unique_ptr<void, decltype(&tjDestroy)> decoder(tjInitDecompress(), &tjDestroy);
   const auto* bytes = reinterpret_cast<const unsigned char*>(data.data());
@@ -85,8 +84,7 @@ cv::Mat DecodeJpeg(std::string_view data) {
   int sampling = 0;
   int colors = 0;
   if (!decoder ||
-      tjDecompressHeader3(decoder.get(), bytes, data.size(), &width, &height, &sampling, &colors) ||
-      int64_t{width} * height > kMaxPixels) {
+      tjDecompressHeader3(decoder.get(), bytes, data.size(), &width, &height, &sampling, &colors)) {
     return {};
   }
   cv::Mat image(height, width, CV_8UC3);

@@ -248,8 +248,9 @@ TEST(EpipolarScan, FindsExactlyTheBearingsOnTheArc) {
     arc.epipole = random.Bearing();
     arc.normal = arc.infinity.cross(arc.epipole).normalized();
     arc.variance = 1e-4;
-    arc.max_sigmas = trial % 5 != 0 ? 3.0 : 20.0;
-    arc.max_parallax = 1.2;
+    const bool is_wide = trial % 5 == 0;  // most of a half of the sphere
+    arc.max_sigmas = is_wide ? 35.0 : 3.0;
+    arc.max_parallax = is_wide ? 1.5 : 1.2;
     arc.max_epipole_cosine = std::cos(0.05);
     // Distances from every threshold; those within rounding of one are not judged.
     constexpr double kRounding = 1e-5;
@@ -261,7 +262,8 @@ TEST(EpipolarScan, FindsExactlyTheBearingsOnTheArc) {
       const double both = std::sqrt(arc.variance + sigmas[i] * sigmas[i]);
       const double margin =
           std::min({arc.max_sigmas * both - std::abs(arc.normal.dot(bearings[i])),
-                    along.dot(bearings[i]) + both, arc.infinity.dot(bearings[i]) - std::cos(1.2),
+                    along.dot(bearings[i]) + both,
+                    arc.infinity.dot(bearings[i]) - std::cos(arc.max_parallax),
                     arc.max_epipole_cosine - std::abs(arc.epipole.dot(bearings[i]))});
       if (margin > kRounding) certain.push_back(static_cast<int>(i));
       if (margin > -kRounding) possible.push_back(static_cast<int>(i));
