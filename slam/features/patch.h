@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 
+#include <Eigen/Core>
+
 namespace orb360 {
 
 /// Gray values around a point, on a square grid.
@@ -11,6 +13,13 @@ struct Patch {
   static constexpr int kRadius = 5;
   static constexpr int kWidth = 2 * kRadius + 3;
   std::array<uint8_t, kWidth * kWidth> gray;  // row by row
+};
+
+/// How the inverse range of the surface in a patch grows from sample to sample, as a share of that
+/// at the centre: 0 where the surface faces the camera. A plane's does so evenly.
+struct PatchSlope {
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();  // inverse of its covariance
 };
 
 }  // namespace orb360

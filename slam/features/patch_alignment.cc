@@ -1,5 +1,7 @@
 #include "slam/features/patch_alignment.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Dense>
@@ -12,6 +14,10 @@ constexpr int kCount = kSide * kSide;
 constexpr double kMaxShift = 2.0;        // samples
 constexpr double kMinCorrelation = 0.8;  // normalized, of the weighted gray values
 constexpr double kMinRoundness = 0.01;   // of the smaller to the larger eigenvalue of the structure
+// Of gray values: how little two pictures of the same differ by, squared, and how many errors of
+// their own a patch's samples have, which lie half a pixel apart.
+constexpr double kLeastNoise = 4.0;
+constexpr double kIndependent = 15.0;
 constexpr int kMaxSteps = 15;
 constexpr double kEnough = 0.01;  // samples that a step moves, to be the last
 
@@ -76,15 +82,20 @@ void Sample(const PyramidLevel& level, const PatchGrid& grid, int radius, const 
   }
 }
 
-// A patch as the steps need it: values and gradients about their weighted means.
-struct Template {
-  Values values;
-  Values gradient_x;  // per sample
-  Values gradient_y;
-  double variance;
-  Eigen::Matrix2d structure;
+float Mean(const Values& values) { return (Weights() * values).sum(); }
 
-  explicit Template(const Patch& patch) {
+float MeanProduct(const Values& a, const Values& b) { return (Weights() * a * b).sum(); }
+
+// A patch as the steps need it: values about their weighted mean, and how they change with what is
+// looked for: the centre, in samples, and the surface's slope.
+struct Template {
+  using Columns = std::array<Values, 4>;
+  Values values;
+  Columns by_parameter;  // x, y, slope x, slope y
+  Eigen::Matrix4d structure;
+
+  // `moved`: by how many samples a slope of one moves a sample that is one away from the centre.
+  Template(const Patch& patch, const Eigen::Vector2f& moved) {
     const auto at = [&](int x, int y) {
       return static_cast<float>(patch.gray[y * Patch::kWidth + x]);
     };
@@ -92,15 +103,58 @@ struct Template {
       for (int x = 0; x < kSide; ++x) {
         const int i = y * kSide + x;
         values[i] = at(x + 1, y + 1);
-        gradient_x[i] = 0.5f * (at(x + 2, y + 1) - at(x, y + 1));
-        gradient_y[i] = 0.5f * (at(x + 1, y + 2) - at(x + 1, y));
+        by_parameter[0][i] = 0.5f * (at(x + 2, y + 1) - at(x, y + 1));
+        by_parameter[1][i] = 0.5f * (at(x + 1, y + 2) - at(x + 1, y));
+        const float along = moved.x() * by_parameter[0][i] + moved.y() * by_parameter[1][i];
+        by_parameter[2][i] = along * static_cast<float>(x - Patch::kRadius);
+        by_parameter[3][i] = along * static_cast<float>(y - Patch::kRadius);
       }
     }
-    const Values& w = Weights();
-    for (Values* column : {&values, &gradient_x, &gradient_y}) *column -= (w * *column).sum();
-    variance = (w * values.square()).sum();
-    const double mixed = (w * gradient_x * gradient_y).sum();
-    structure << (w * gradient_x.square()).sum(), mixed, mixed, (w * gradient_y.square()).sum();
+    values -= Mean(values);
+    // What another brightness explains tells nothing of where things are: a ramp that is stretched
+    // looks like one with less contrast.
+    const float variance = MeanProduct(values, values);
+    for (Values& column : by_parameter) {
+      column -= Mean(column);
+      column -= MeanProduct(column, values) / variance * values;
+    }
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j <= i; ++j) {
+        structure(i, j) = structure(j, i) = MeanProduct(by_parameter[i], by_parameter[j]);
+      }
+    }
+  }
+
+  // Enough structure in every direction to tell where the centre is.
+  bool IsDistinct() const {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(structure.topLeftCorner<2, 2>());
+    return eigen.eigenvalues()[0] > kMinRoundness * eigen.eigenvalues()[1];
+  }
+
+  // What a picture with such noise tells of the slope, whatever the centre is.
+  Eigen::Matrix2d SlopeInformation(double squared_noise) const {
+    const Eigen::Matrix2d mixed = structure.topRightCorner<2, 2>();
+    return (structure.bottomRightCorner<2, 2>() -
+            mixed.transpose() * structure.topLeftCorner<2, 2>().inverse() * mixed) /
+           squared_noise;
+  }
+};
+
+// A picture's gray values on a grid, compared with a template.
+struct Comparison {
+  Values error;          // after the brightness is made the template's
+  double correlation;    // not a number where one of both is even
+  double squared_noise;  // of the mean of all errors
+
+  Comparison(const Template& wanted, const PyramidLevel& level, const PatchGrid& grid) {
+    Values seen;
+    Sample(level, grid, Patch::kRadius, [&](int index, float gray) { seen[index] = gray; });
+    seen -= Mean(seen);
+    const float variance = MeanProduct(seen, seen);
+    const float product = MeanProduct(seen, wanted.values);
+    correlation = product / std::sqrt(variance * MeanProduct(wanted.values, wanted.values));
+    error = product / variance * seen - wanted.values;
+    squared_noise = std::max<double>(MeanProduct(error, error), kLeastNoise) / kIndependent;
   }
 };
 
@@ -115,32 +169,37 @@ std::optional<Patch> SamplePatch(const PyramidLevel& level, const PatchGrid& gri
   return patch;
 }
 
-std::optional<Eigen::Vector2d> AlignPatch(const Patch& patch, const PyramidLevel& level,
-                                          const PatchGrid& guess) {
+std::optional<AlignedPatch> AlignPatch(const Patch& patch, const PyramidLevel& level,
+                                       const PatchGrid& guess, const Eigen::Vector2d& stretch,
+                                       const PatchSlope& slope) {
   if (!IsInside(level, guess, Patch::kRadius + kMaxShift)) return std::nullopt;
-  const Template wanted(patch);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(wanted.structure);
-  if (!(eigen.eigenvalues()[0] > kMinRoundness * eigen.eigenvalues()[1])) return std::nullopt;
-  const Eigen::Matrix2d inverse = wanted.structure.inverse();
-  const Values& w = Weights();
-  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  // samples
+  if (!(guess.steps.determinant() > 0)) return std::nullopt;  // seen from behind
+  const Eigen::Matrix2d samples_from_pixels = guess.steps.inverse();
+  const Template wanted(patch, (samples_from_pixels * stretch).cast<float>());
+  if (!wanted.IsDistinct()) return std::nullopt;
+  PatchGrid grid = guess;
+  Eigen::Vector2d added_slope = Eigen::Vector2d::Zero();
   for (int i = 0; i < kMaxSteps; ++i) {
-    const PatchGrid grid{guess.center + guess.steps * shift, guess.steps};
-    Values seen;
-    Sample(level, grid, Patch::kRadius, [&](int index, float gray) { seen[index] = gray; });
-    seen -= (w * seen).sum();
-    const double variance = (w * seen.square()).sum();
-    const double product = (w * seen * wanted.values).sum();
-    if (!(variance > 0)) return std::nullopt;
-    const double correlation = product / std::sqrt(variance * wanted.variance);
-    const Values error = w * (static_cast<float>(product / variance) * seen - wanted.values);
-    const Eigen::Vector2d step = inverse * Eigen::Vector2d((error * wanted.gradient_x).sum(),
-                                                           (error * wanted.gradient_y).sum());
-    shift -= step;
-    if (!(shift.norm() <= kMaxShift)) return std::nullopt;
-    if (step.norm() >= kEnough) continue;
-    if (!(correlation >= kMinCorrelation)) return std::nullopt;
-    return guess.center + guess.steps * shift;
+    const Comparison seen(wanted, level, grid);
+    if (!std::isfinite(seen.correlation)) return std::nullopt;
+    const Eigen::Matrix2d prior = seen.squared_noise * slope.information;
+    Eigen::Matrix4d normal = wanted.structure;
+    normal.bottomRightCorner<2, 2>() += prior;
+    Eigen::Vector4d gradient;
+    for (int k = 0; k < 4; ++k) gradient[k] = MeanProduct(seen.error, wanted.by_parameter[k]);
+    gradient.tail<2>() += prior * added_slope;
+    const Eigen::Vector4d step = normal.ldlt().solve(gradient);
+    grid.center -= grid.steps * step.head<2>();
+    added_slope -= step.tail<2>();
+    grid.steps = guess.steps + stretch * added_slope.transpose();
+    const double shift = (samples_from_pixels * (grid.center - guess.center)).norm();
+    if (!(shift <= kMaxShift && grid.steps.determinant() > 0)) return std::nullopt;
+    if (!IsInside(level, grid, Patch::kRadius)) return std::nullopt;
+    if (step.head<2>().norm() >= kEnough) continue;
+    if (!(seen.correlation >= kMinCorrelation)) return std::nullopt;
+    return AlignedPatch{grid.center,
+                        {slope.mean + added_slope,
+                         slope.information + wanted.SlopeInformation(seen.squared_noise)}};
   }
   return std::nullopt;
 }

@@ -19,11 +19,19 @@ struct PatchGrid {
 /// Empty where the grid reaches beyond the level's margin.
 std::optional<Patch> SamplePatch(const PyramidLevel& level, const PatchGrid& grid);
 
+struct AlignedPatch {
+  Eigen::Vector2d center;  // continuous pixel
+  PatchSlope slope;        // with what this picture adds
+};
+
 /// The centre at which `level` shows what `patch` shows, by Gauss-Newton steps from a guess that is
 /// at most two samples off; the brightness may differ by a factor and an offset. (Inverse
-/// compositional: Baker and Matthews, Lucas-Kanade 20 Years On, IJCV 2004.) Empty where both do not
-/// look alike, where the patch has structure in one direction only, and beyond the level's margin.
-std::optional<Eigen::Vector2d> AlignPatch(const Patch& patch, const PyramidLevel& level,
-                                          const PatchGrid& guess);
+/// compositional: Baker and Matthews, Lucas-Kanade 20 Years On, IJCV 2004.) The surface's slope is
+/// estimated with it: where it is `s` more than the mean, the steps are stretch * s^T more than the
+/// guess'. Empty where both do not look alike, where the patch has structure in one direction only,
+/// beyond the level's margin, and from behind the surface.
+std::optional<AlignedPatch> AlignPatch(const Patch& patch, const PyramidLevel& level,
+                                       const PatchGrid& guess, const Eigen::Vector2d& stretch,
+                                       const PatchSlope& slope);
 
 }  // namespace orb360

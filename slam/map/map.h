@@ -32,6 +32,7 @@ struct Observation {
   /// camera frame; with its angular noise, rad, which is 0 where that is not known.
   Eigen::Vector3f aligned_bearing = Eigen::Vector3f::Zero();
   float aligned_sigma = 0;
+  bool is_compared = false;  // with the landmark's patch, whether they could be aligned or not
 };
 
 /// A patch of a keyframe's picture around a landmark, with which later pictures are aligned.
@@ -73,6 +74,7 @@ struct Landmark {
   KeyframeId first_keyframe = kNoId;           // the newest keyframe when it was made
   std::vector<Observation> observations;       // ordered by keyframe
   std::shared_ptr<const LandmarkPatch> patch;  // null where no picture that shows it was kept
+  PatchSlope patch_slope;                      // of the surface in it
   int visible = 1;                             // frames in which it should have been seen
   int found = 1;                               // and was
 
@@ -107,8 +109,8 @@ class Map {
   LandmarkId AddLandmark(const Eigen::Vector3d& position, const Color& color);
   void RemoveLandmark(LandmarkId id);
   /// Moves the observations of `from` to `to` (where a keyframe sees both, `to` keeps its own) and
-  /// removes `from`; Resolve(from) is `to` from now on. Moved observations are not aligned with the
-  /// patch of `to`.
+  /// removes `from`; Resolve(from) is `to` from now on. Moved observations are not compared with
+  /// the patch of `to` yet.
   void MergeLandmark(LandmarkId from, LandmarkId to);
 
   /// Contract: neither has an observation of the other yet.

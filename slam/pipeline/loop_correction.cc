@@ -5,6 +5,7 @@
 #include "slam/map/covisibility.h"
 #include "slam/optimization/pose_graph.h"
 #include "slam/pipeline/landmark_fusion.h"
+#include "slam/pipeline/observation_alignment.h"
 
 namespace orb360 {
 namespace {
@@ -51,6 +52,7 @@ void FuseEnds(const std::vector<Revisit>& revisits, Map* map) {
   for (const KeyframeId id : past) {
     FuseLandmarks(id, LandmarksSeenBy(present, *map), kFusionSigmas, map);
   }
+  for (const KeyframeId id : present) AlignObservations(id, std::nullopt, map);
 }
 
 void FillRemoved(const Map& map, std::vector<Similarity3>* corrections) {

@@ -82,7 +82,7 @@ KeyframeId IntegrateKeyframe(const TrackedFrame& frame,
   CullRecentLandmarks(id, options, map);
   TriangulateNewLandmarks(id, options.triangulation, map);
   FuseWithNeighbours(id, options.max_fusion_neighbours, map);
-  AlignObservations(id, map);
+  AlignObservations(id, ground, map);
   AdjustLocally(id, options.bundle, ground, map);
   CullRedundantKeyframes(id, options, map);
   map->ForgetPictures(options.kept_pictures);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
@@ -41,6 +42,18 @@ Patch PatchAt(const PyramidLevel& level, const Eigen::Vector2d& center) {
   return SamplePatch(level, {center, kSteps}).value();
 }
 
+// Without a surface that could have a slope: as from one place.
+std::optional<Eigen::Vector2d> AlignFlat(const Patch& patch, const PyramidLevel& level,
+                                         const PatchGrid& guess) {
+  PatchSlope slope;
+  slope.information.setIdentity();
+  const auto aligned = AlignPatch(patch, level, guess, Eigen::Vector2d::Zero(), slope);
+  if (!aligned) return std::nullopt;
+  EXPECT_EQ(aligned->slope.mean, slope.mean);
+  EXPECT_EQ(aligned->slope.information, slope.information);
+  return aligned->center;
+}
+
 TEST(SamplePatch, BlendsTheFourPixelsAroundEachSample) {
   const PyramidLevel level = Draw([](const Eigen::Vector2d& p) { return p.x() - 0.5 * p.y(); });
   const Eigen::Vector2d center(140.25, 50.5);
@@ -60,7 +73,7 @@ TEST(AlignPatch, FindsAShiftOfAFractionOfAPixelUnderOtherLight) {
        {Eigen::Vector2d(0.31, -0.44), Eigen::Vector2d(-0.62, 0.13)}) {
     const PyramidLevel moved =
         Draw([&](const Eigen::Vector2d& p) -> double { return 30 + 0.6 * Clouds(p - shift); });
-    const auto found = AlignPatch(patch, moved, {kCenter, kSteps});
+    const auto found = AlignFlat(patch, moved, {kCenter, kSteps});
     ASSERT_TRUE(found.has_value());
     EXPECT_LT((*found - kCenter - shift).norm(), 0.03) << shift.transpose();
   }
@@ -74,9 +87,67 @@ TEST(AlignPatch, FindsWhatIsTurnedLargerAndSlanted) {
   const Eigen::Matrix2d inverse = warp.inverse();
   const PyramidLevel warped = Draw(
       [&](const Eigen::Vector2d& p) -> double { return Clouds(kCenter + inverse * (p - truth)); });
-  const auto found = AlignPatch(patch, warped, {truth + Eigen::Vector2d(0.5, -0.4), warp * kSteps});
+  const auto found = AlignFlat(patch, warped, {truth + Eigen::Vector2d(0.5, -0.4), warp * kSteps});
   ASSERT_TRUE(found.has_value());
   EXPECT_LT((*found - truth).norm(), 0.05);
+}
+
+// A plane whose steps are `stretch` times its slope more than those of one that faces the camera.
+struct Slanted {
+  Eigen::Vector2d stretch{4.0, 1.5};  // pixels
+  Eigen::Vector2d slope{0.03, -0.05};
+  Eigen::Vector2d truth{60.2, 70.6};
+  Patch patch = PatchAt(Draw(Clouds), kCenter);
+  PyramidLevel level = Draw([this](const Eigen::Vector2d& p) -> double {
+    const Eigen::Matrix2d from_samples = kSteps + stretch * slope.transpose();
+    return Clouds(kCenter + kSteps * from_samples.inverse() * (p - truth));
+  });
+
+  std::optional<AlignedPatch> Align(const Eigen::Vector2d& mean, double sigma) const {
+    const PatchGrid guess{truth + Eigen::Vector2d(0.4, -0.3), kSteps + stretch * mean.transpose()};
+    return AlignPatch(patch, level, guess, stretch,
+                      {mean, Eigen::Matrix2d::Identity() / (sigma * sigma)});
+  }
+};
+
+TEST(AlignPatch, FindsTheSlopeOfASurfaceWithItsCentre) {
+  const Slanted scene;
+  const auto found = scene.Align(Eigen::Vector2d::Zero(), 0.2);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_LT((found->center - scene.truth).norm(), 0.03);
+  const Eigen::Vector2d error = found->slope.mean - scene.slope;
+  EXPECT_LT(error.norm(), 0.1 * scene.slope.norm());
+  // It is as certain as that.
+  EXPECT_LT(error.dot(found->slope.information * error), 9.2);  // chi squared, 99 %
+}
+
+TEST(AlignPatch, KeepsASlopeThatIsKnown) {
+  const Slanted scene;
+  const auto found = scene.Align(scene.slope, 1e-6);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_LT((found->center - scene.truth).norm(), 0.03);
+  EXPECT_LT((found->slope.mean - scene.slope).norm(), 1e-4);
+}
+
+TEST(AlignPatch, GivesTheSlopeOnlyWhatThePictureTellsOfIt) {
+  const Slanted scene;
+  const auto found = scene.Align(Eigen::Vector2d::Zero(), 0.2);
+  ASSERT_TRUE(found.has_value());
+  const Eigen::Matrix2d added = found->slope.information - Eigen::Matrix2d::Identity() / 0.04;
+  EXPECT_GT(added.eigenvalues().real().minCoeff(), 0);
+  Slanted nearby;  // from half as far away from where the patch was taken
+  nearby.stretch *= 0.5;
+  nearby.slope *= 2;  // looks the same
+  const auto less = nearby.Align(Eigen::Vector2d::Zero(), 0.2);
+  ASSERT_TRUE(less.has_value());
+  const Eigen::Matrix2d quarter = less->slope.information - Eigen::Matrix2d::Identity() / 0.04;
+  EXPECT_LT((4 * quarter - added).norm(), 0.2 * added.norm());
+}
+
+TEST(AlignPatch, RefusesASurfaceSeenFromBehind) {
+  const Slanted scene;
+  const PatchGrid mirrored{scene.truth, kSteps * Eigen::Vector2d(1, -1).asDiagonal()};
+  EXPECT_FALSE(AlignFlat(scene.patch, scene.level, mirrored).has_value());
 }
 
 TEST(AlignPatch, GoesOnAcrossTheSeam) {
@@ -87,7 +158,7 @@ TEST(AlignPatch, GoesOnAcrossTheSeam) {
     });
   };
   const Patch patch = PatchAt(rolled(kCenter.x()), kCenter);
-  const auto found = AlignPatch(patch, rolled(0.2), {{255.9, kCenter.y()}, kSteps});
+  const auto found = AlignFlat(patch, rolled(0.2), {{255.9, kCenter.y()}, kSteps});
   ASSERT_TRUE(found.has_value());
   EXPECT_NEAR(found->x(), kWidth + 0.2, 0.03);
   EXPECT_NEAR(found->y(), kCenter.y(), 0.03);
@@ -96,28 +167,28 @@ TEST(AlignPatch, GoesOnAcrossTheSeam) {
 TEST(AlignPatch, RefusesWhatDoesNotLookAlike) {
   const PyramidLevel level = Draw(Clouds);
   const Patch patch = PatchAt(level, kCenter);
-  EXPECT_FALSE(AlignPatch(patch, level, {{40.0, 40.0}, kSteps}).has_value());
-  EXPECT_FALSE(AlignPatch(patch,
-                          Draw([](const Eigen::Vector2d& p) -> double { return 255 - Clouds(p); }),
-                          {kCenter, kSteps})
+  EXPECT_FALSE(AlignFlat(patch, level, {{40.0, 40.0}, kSteps}).has_value());
+  EXPECT_FALSE(AlignFlat(patch,
+                         Draw([](const Eigen::Vector2d& p) -> double { return 255 - Clouds(p); }),
+                         {kCenter, kSteps})
                    .has_value());
 }
 
 TEST(AlignPatch, RefusesAGuessThatIsFartherOffThanTwoSamples) {
   const PyramidLevel level = Draw(Clouds);
   const Patch patch = PatchAt(level, kCenter);
-  EXPECT_TRUE(AlignPatch(patch, level, {kCenter + Eigen::Vector2d(0.9, 0), kSteps}).has_value());
-  EXPECT_FALSE(AlignPatch(patch, level, {kCenter + Eigen::Vector2d(1.2, 0), kSteps}).has_value());
+  EXPECT_TRUE(AlignFlat(patch, level, {kCenter + Eigen::Vector2d(0.9, 0), kSteps}).has_value());
+  EXPECT_FALSE(AlignFlat(patch, level, {kCenter + Eigen::Vector2d(1.2, 0), kSteps}).has_value());
 }
 
 TEST(AlignPatch, RefusesWhatIsEvenAndEdgesThatLeaveOneDirectionOpen) {
   const PyramidLevel even = Draw([](const Eigen::Vector2d&) { return 90.0; });
-  EXPECT_FALSE(AlignPatch(PatchAt(even, kCenter), even, {kCenter, kSteps}).has_value());
+  EXPECT_FALSE(AlignFlat(PatchAt(even, kCenter), even, {kCenter, kSteps}).has_value());
   const PyramidLevel edge =
       Draw([](const Eigen::Vector2d& p) { return 90 + 60 * std::tanh(p.x() - kCenter.x()); });
-  EXPECT_FALSE(AlignPatch(PatchAt(edge, kCenter), edge, {kCenter, kSteps}).has_value());
+  EXPECT_FALSE(AlignFlat(PatchAt(edge, kCenter), edge, {kCenter, kSteps}).has_value());
   const PyramidLevel clouds = Draw(Clouds);
-  EXPECT_FALSE(AlignPatch(PatchAt(clouds, kCenter), even, {kCenter, kSteps}).has_value());
+  EXPECT_FALSE(AlignFlat(PatchAt(clouds, kCenter), even, {kCenter, kSteps}).has_value());
 }
 
 TEST(AlignPatch, RefusesWhatReachesBeyondTheMargin) {
@@ -125,10 +196,10 @@ TEST(AlignPatch, RefusesWhatReachesBeyondTheMargin) {
   const Patch patch = PatchAt(level, kCenter);
   const Eigen::Matrix2d wide = 6.0 * Eigen::Matrix2d::Identity();
   EXPECT_FALSE(SamplePatch(level, {{2.0, 60.0}, wide}).has_value());
-  EXPECT_FALSE(AlignPatch(patch, level, {{2.0, 60.0}, wide}).has_value());
-  EXPECT_FALSE(AlignPatch(patch, level, {{100.0, 126.0}, wide}).has_value());
+  EXPECT_FALSE(AlignFlat(patch, level, {{2.0, 60.0}, wide}).has_value());
+  EXPECT_FALSE(AlignFlat(patch, level, {{100.0, 126.0}, wide}).has_value());
   const Eigen::Matrix2d none = kSteps * std::nan("");
-  EXPECT_FALSE(AlignPatch(patch, level, {kCenter, none}).has_value());
+  EXPECT_FALSE(AlignFlat(patch, level, {kCenter, none}).has_value());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/features/sphere_pyramid.h"
 #include "slam/geometry/alignment.h"
 #include "slam/optimization/local_bundle_adjustment.h"
 #include "tests/slam/pipeline/ring_street.h"
@@ -21,6 +22,21 @@ struct Closed {
   std::vector<Similarity3> corrections;
 };
 
+// An even picture for the newest keyframe, and a patch for each landmark.
+void KeepPicture(Map* map) {
+  SpherePyramid picture;
+  BuildSpherePyramid(cv::Mat(64, 128, CV_8U, cv::Scalar(90)), 8, &picture);
+  map->keyframe(map->keyframe_end() - 1).picture =
+      std::make_shared<const SpherePyramid>(std::move(picture));
+  for (LandmarkId id = 0; id < map->landmark_end(); ++id) {
+    if (!map->HasLandmark(id)) continue;
+    Landmark& landmark = map->landmark(id);
+    const KeyframeId first = landmark.observations.front().keyframe;
+    landmark.patch = std::make_shared<const LandmarkPatch>(
+        LandmarkPatch{first, Eigen::Vector3d::UnitX(), 0.01, Patch{}});
+  }
+}
+
 // A lap that drifts, until the loop is closed.
 Closed DriveAndClose() {
   RingStreet street(2000);
@@ -30,6 +46,7 @@ Closed DriveAndClose() {
   for (int k = 0; k < kLap + 15; ++k) {
     const KeyframeId id = street.DriveOn(RingStreet::PoseAt(ArcOf(k)), drift, &closed.drive);
     if (const auto loop = detector.Observe(closed.drive.map, id, {})) {
+      KeepPicture(&closed.drive.map);
       closed.before = closed.drive.map;
       closed.corrections = CloseLoop(*loop, &closed.drive.map);
       break;
@@ -74,6 +91,19 @@ TEST(CloseLoop, TakesAwayMostOfTheDriftAndJoinsTheEnds) {
         TransformPose(closed.corrections[id], closed.before.keyframe(id).world_from_camera);
     EXPECT_LT((moved.translation - map.keyframe(id).world_from_camera.translation).norm(), 1e-9);
   }
+}
+
+TEST(CloseLoop, ComparesWhatItJoinedWithThePatchesOfTheFirstVisit) {
+  const Closed closed = DriveAndClose();
+  const Map& map = closed.drive.map;
+  const KeyframeId newest = map.keyframe_end() - 1;
+  int joined = 0;
+  for (const LandmarkId id : map.keyframe(newest).landmarks) {
+    if (id == kNoId || map.landmark(id).observations.front().keyframe >= 12) continue;
+    ++joined;
+    EXPECT_TRUE(map.landmark(id).FindObservation(newest)->is_compared) << id;
+  }
+  EXPECT_GT(joined, 30);
 }
 
 TEST(CloseLoop, BundleAdjustmentFinishesWhatThePoseGraphBegan) {
