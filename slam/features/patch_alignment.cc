@@ -19,7 +19,9 @@ constexpr double kMinRoundness = 0.01;   // of the smaller to the larger eigenva
 constexpr double kLeastNoise = 4.0;
 constexpr double kIndependent = 15.0;
 constexpr int kMaxSteps = 15;
-constexpr double kEnough = 0.01;  // samples that a step moves, to be the last
+// Samples that a step moves the centre, and the rim by the slope, to be the last.
+constexpr double kEnough = 0.01;
+constexpr double kEnoughBend = 0.05;
 
 using Values = Eigen::Array<float, kCount, 1>;
 
@@ -175,31 +177,37 @@ std::optional<AlignedPatch> AlignPatch(const Patch& patch, const PyramidLevel& l
   if (!IsInside(level, guess, Patch::kRadius + kMaxShift)) return std::nullopt;
   if (!(guess.steps.determinant() > 0)) return std::nullopt;  // seen from behind
   const Eigen::Matrix2d samples_from_pixels = guess.steps.inverse();
-  const Template wanted(patch, (samples_from_pixels * stretch).cast<float>());
+  const Eigen::Vector2d moved = samples_from_pixels * stretch;
+  const Template wanted(patch, moved.cast<float>());
   if (!wanted.IsDistinct()) return std::nullopt;
   PatchGrid grid = guess;
   Eigen::Vector2d added_slope = Eigen::Vector2d::Zero();
   for (int i = 0; i < kMaxSteps; ++i) {
     const Comparison seen(wanted, level, grid);
     if (!std::isfinite(seen.correlation)) return std::nullopt;
+    // A step d of the template's slope, undone in the picture's steps guess.steps (I + moved a^T):
+    // (I + moved a^T) (I + moved d^T)^-1 = I + moved (a - growth / (1 + moved^T d) d)^T.
+    const double growth = 1 + moved.dot(added_slope);
     const Eigen::Matrix2d prior = seen.squared_noise * slope.information;
     Eigen::Matrix4d normal = wanted.structure;
-    normal.bottomRightCorner<2, 2>() += prior;
+    normal.bottomRightCorner<2, 2>() += growth * growth * prior;
     Eigen::Vector4d gradient;
     for (int k = 0; k < 4; ++k) gradient[k] = MeanProduct(seen.error, wanted.by_parameter[k]);
-    gradient.tail<2>() += prior * added_slope;
+    gradient.tail<2>() += growth * prior * added_slope;
     const Eigen::Vector4d step = normal.ldlt().solve(gradient);
     grid.center -= grid.steps * step.head<2>();
-    added_slope -= step.tail<2>();
+    added_slope -= growth / (1 + moved.dot(step.tail<2>())) * step.tail<2>();
     grid.steps = guess.steps + stretch * added_slope.transpose();
     const double shift = (samples_from_pixels * (grid.center - guess.center)).norm();
     if (!(shift <= kMaxShift && grid.steps.determinant() > 0)) return std::nullopt;
     if (!IsInside(level, grid, Patch::kRadius)) return std::nullopt;
-    if (step.head<2>().norm() >= kEnough) continue;
+    const double bend = Patch::kRadius * moved.norm() * step.tail<2>().norm();  // at the rim
+    if (step.head<2>().norm() >= kEnough || bend >= kEnoughBend) continue;
     if (!(seen.correlation >= kMinCorrelation)) return std::nullopt;
-    return AlignedPatch{grid.center,
-                        {slope.mean + added_slope,
-                         slope.information + wanted.SlopeInformation(seen.squared_noise)}};
+    return AlignedPatch{
+        grid.center,
+        {slope.mean + added_slope,
+         slope.information + wanted.SlopeInformation(growth * growth * seen.squared_noise)}};
   }
   return std::nullopt;
 }

@@ -32,7 +32,7 @@ struct Observation {
   /// camera frame; with its angular noise, rad, which is 0 where that is not known.
   Eigen::Vector3f aligned_bearing = Eigen::Vector3f::Zero();
   float aligned_sigma = 0;
-  bool is_compared = false;  // with the landmark's patch, whether they could be aligned or not
+  bool was_aligned = false;  // with the landmark's patch, even if that has turned out wrong since
 };
 
 /// A patch of a keyframe's picture around a landmark, with which later pictures are aligned.
@@ -109,7 +109,7 @@ class Map {
   LandmarkId AddLandmark(const Eigen::Vector3d& position, const Color& color);
   void RemoveLandmark(LandmarkId id);
   /// Moves the observations of `from` to `to` (where a keyframe sees both, `to` keeps its own) and
-  /// removes `from`; Resolve(from) is `to` from now on. Moved observations are not compared with
+  /// removes `from`; Resolve(from) is `to` from now on. Moved observations are not aligned with
   /// the patch of `to` yet.
   void MergeLandmark(LandmarkId from, LandmarkId to);
 

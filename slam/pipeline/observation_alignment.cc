@@ -4,7 +4,6 @@
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <ranges>
 
 #include "slam/features/patch_alignment.h"
 #include "slam/geometry/bearing.h"
@@ -18,8 +17,8 @@ constexpr double kSamplesPerPixel = 2.0;
 // Noise of aligned bearings as a share of a corner's on the same level, measured
 // (docs/features.md).
 constexpr double kAlignedNoise = 0.35;
-// The patch's own direction counts less than theirs: where its surface does not face the camera,
-// all that are aligned with it are off in the same way, and agree with each other.
+// The patch's own direction counts less than theirs: what is wrong with the patch moves all that
+// are aligned with it in the same way, and they agree with each other.
 constexpr double kPatchNoise = 0.5;
 
 // Standard deviation of the slope of a surface that nothing is known of: the tangent of the angle
@@ -28,6 +27,8 @@ constexpr double kSlopeSigma = 2.0;
 constexpr double kGroundSigma = 0.05;
 // What lies this share of the camera's height above or below the ground may be the ground.
 constexpr double kGroundTolerance = 0.15;
+// How much farther away, as a share, the ground may be at a patch's rim.
+constexpr double kMaxReach = 0.5;
 
 // A patch seen from so much farther away is less than three pixels of the picture wide.
 constexpr double kMinStep = 0.25;  // pixels of level 0
@@ -86,16 +87,17 @@ PatchSlope ExpectSlope(const Keyframe& keyframe, const LandmarkPatch& patch,
     return PatchSlope{patch.spacing * tangent,
                       Eigen::Matrix2d::Identity() / std::pow(patch.spacing * sigma, 2)};
   };
-  const Eigen::Vector2d facing = Eigen::Vector2d::Zero();
-  if (!ground) return slope(facing, kSlopeSigma);
+  const PatchSlope unknown = slope(Eigen::Vector2d::Zero(), kSlopeSigma);
+  if (!ground) return unknown;
   const Rigid3& pose = keyframe.world_from_camera;
   const double height = ground->up.dot(pose.translation - position);
-  if (!(std::abs(height / ground->camera_height - 1) < kGroundTolerance)) {
-    return slope(facing, kSlopeSigma);
-  }
   const Eigen::Vector3d normal = pose.rotation.conjugate() * ground->up;
-  const Eigen::Vector2d tangent =
-      TangentBasis(patch.bearing).transpose() * normal / normal.dot(patch.bearing);
+  const double cosine = -normal.dot(patch.bearing);
+  const bool is_ground = std::abs(height / ground->camera_height - 1) < kGroundTolerance;
+  const Eigen::Vector2d tangent = TangentBasis(patch.bearing).transpose() * normal / -cosine;
+  // Seen flatter, it would reach too far away within the patch.
+  const bool is_even = cosine > 0 && Patch::kRadius * patch.spacing * tangent.norm() < kMaxReach;
+  if (!(is_ground && is_even)) return unknown;
   return slope(tangent, kGroundSigma * (1 + tangent.squaredNorm()));  // derivative of the tangent
 }
 
@@ -132,6 +134,7 @@ void Align(const Map& map, Landmark* landmark, Observation* observation) {
   const double corner_noise = keyframe.features->keypoints[observation->feature].sigma;
   observation->aligned_bearing = level.camera.Bearing(aligned->center).cast<float>();
   observation->aligned_sigma = static_cast<float>(kAlignedNoise * corner_noise);
+  observation->was_aligned = true;
 }
 
 // Bundle adjustment may have found since that the keyframe with the patch shows something else.
@@ -141,7 +144,7 @@ void DropWrongPatch(const Map& map, Landmark* landmark) {
   landmark->patch.reset();
   for (Observation& observation : landmark->observations) {
     observation.aligned_sigma = 0;
-    observation.is_compared = false;
+    observation.was_aligned = false;
   }
 }
 
@@ -168,13 +171,11 @@ void AlignObservations(KeyframeId id, const std::optional<KnownGround>& ground, 
       Observation& own = *landmark.FindObservation(id);
       own.aligned_bearing = landmark.patch->bearing.cast<float>();
       own.aligned_sigma = static_cast<float>(kPatchNoise * keyframe.features->keypoints[f].sigma);
-      own.is_compared = true;
+      own.was_aligned = true;
     }
     if (!landmark.patch) continue;
-    // The newest first: the slope, which matters more from farther away, is better known then.
     for (Observation& observation : landmark.observations) {
-      if (observation.aligned_sigma > 0 || !map->keyframe(observation.keyframe).picture) continue;
-      observation.is_compared = true;
+      if (observation.was_aligned || !map->keyframe(observation.keyframe).picture) continue;
       Align(*map, &landmark, &observation);
     }
   }

@@ -98,10 +98,14 @@ struct Slanted {
   Eigen::Vector2d slope{0.03, -0.05};
   Eigen::Vector2d truth{60.2, 70.6};
   Patch patch = PatchAt(Draw(Clouds), kCenter);
-  PyramidLevel level = Draw([this](const Eigen::Vector2d& p) -> double {
-    const Eigen::Matrix2d from_samples = kSteps + stretch * slope.transpose();
-    return Clouds(kCenter + kSteps * from_samples.inverse() * (p - truth));
-  });
+  PyramidLevel level = Drawn();
+
+  PyramidLevel Drawn() const {
+    const Eigen::Matrix2d to_samples = (kSteps + stretch * slope.transpose()).inverse();
+    return Draw([&](const Eigen::Vector2d& p) -> double {
+      return Clouds(kCenter + kSteps * to_samples * (p - truth));
+    });
+  }
 
   std::optional<AlignedPatch> Align(const Eigen::Vector2d& mean, double sigma) const {
     const PatchGrid guess{truth + Eigen::Vector2d(0.4, -0.3), kSteps + stretch * mean.transpose()};
@@ -144,10 +148,27 @@ TEST(AlignPatch, GivesTheSlopeOnlyWhatThePictureTellsOfIt) {
   EXPECT_LT((4 * quarter - added).norm(), 0.2 * added.norm());
 }
 
+// Planes that are seen much flatter, or much less flat, than where the patch was taken.
+TEST(AlignPatch, FollowsSurfacesThatAreSquashedAndStretched) {
+  for (const double growth : {0.45, 0.7, 1.8}) {
+    Slanted scene;
+    const Eigen::Vector2d moved = kSteps.inverse() * scene.stretch;
+    scene.slope = (growth - 1) * moved / moved.squaredNorm();  // determinant 1 + moved^T slope
+    scene.level = scene.Drawn();
+    const auto found = scene.Align(Eigen::Vector2d::Zero(), 0.5);
+    ASSERT_TRUE(found.has_value()) << growth;
+    EXPECT_LT((found->center - scene.truth).norm(), 0.05) << growth;
+    EXPECT_LT((found->slope.mean - scene.slope).norm(), 0.1 * scene.slope.norm()) << growth;
+  }
+}
+
 TEST(AlignPatch, RefusesASurfaceSeenFromBehind) {
-  const Slanted scene;
-  const PatchGrid mirrored{scene.truth, kSteps * Eigen::Vector2d(1, -1).asDiagonal()};
-  EXPECT_FALSE(AlignFlat(scene.patch, scene.level, mirrored).has_value());
+  const Patch patch = PatchAt(Draw(Clouds), kCenter);
+  const PyramidLevel mirrored = Draw([](const Eigen::Vector2d& p) -> double {
+    return Clouds({p.x(), 2 * kCenter.y() - p.y()});
+  });
+  const Eigen::Matrix2d from_behind = kSteps * Eigen::Vector2d(1, -1).asDiagonal();
+  EXPECT_FALSE(AlignFlat(patch, mirrored, {kCenter, from_behind}).has_value());
 }
 
 TEST(AlignPatch, GoesOnAcrossTheSeam) {

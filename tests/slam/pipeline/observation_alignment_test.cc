@@ -195,6 +195,21 @@ TEST(AlignObservations, AlignsWhatComesFromAnotherLandmark) {
   EXPECT_GT(scene.map.landmark(4).FindObservation(second)->aligned_sigma, 0);
 }
 
+TEST(AlignObservations, WhatHasTurnedOutWrongStaysACorner) {
+  Scene scene;
+  AlignObservations(scene.AddKeyframe({}, true), {}, &scene.map);
+  const KeyframeId second = scene.AddKeyframe(kStep, true);
+  AlignObservations(second, {}, &scene.map);
+  Landmark& landmark = scene.map.landmark(4);
+  ASSERT_GT(landmark.observations[1].aligned_sigma, 0);
+  for (Observation& o : landmark.observations) o.aligned_sigma = 0;  // as bundle adjustment does
+  landmark.observations[0].aligned_sigma = 0.001f;
+  const PatchSlope before = landmark.patch_slope;
+  AlignObservations(second, {}, &scene.map);
+  EXPECT_EQ(landmark.observations[1].aligned_sigma, 0);
+  EXPECT_EQ(landmark.patch_slope.information, before.information);
+}
+
 TEST(AlignObservations, TakesNoPatchBesideAPole) {
   Scene scene;
   for (LandmarkId l = 0; l < scene.map.landmark_end(); ++l) {
