@@ -14,8 +14,8 @@ namespace {
 // Samples to a pixel of the level on which the feature was found, in each direction: a patch of
 // 5 x 5 of these pixels rarely reaches beyond the surface its corner is on.
 constexpr double kSamplesPerPixel = 2.0;
-// Noise of aligned bearings as a share of a corner's on the same level, measured
-// (docs/features.md).
+// Noise of aligned bearings as a share of a corner's on the same level; less makes trajectories no
+// better (docs/features.md).
 constexpr double kAlignedNoise = 0.35;
 // The patch's own direction counts less than theirs: what is wrong with the patch moves all that
 // are aligned with it in the same way, and they agree with each other.
