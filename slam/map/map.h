@@ -32,7 +32,7 @@ struct Observation {
   /// camera frame; with its angular noise, rad, which is 0 where that is not known.
   Eigen::Vector3f aligned_bearing = Eigen::Vector3f::Zero();
   float aligned_sigma = 0;
-  bool was_aligned = false;  // with the landmark's patch, even if that has turned out wrong since
+  bool was_compared = false;  // with the landmark's patch, whatever came of it
 };
 
 /// A patch of a keyframe's picture around a landmark, with which later pictures are aligned.

@@ -102,6 +102,7 @@ PatchSlope ExpectSlope(const Keyframe& keyframe, const LandmarkPatch& patch,
 }
 
 void Align(const Map& map, Landmark* landmark, Observation* observation) {
+  observation->was_compared = true;
   const LandmarkPatch& patch = *landmark->patch;
   const Keyframe& keyframe = map.keyframe(observation->keyframe);
   const Rigid3 reference = map.PoseOf(patch.keyframe);
@@ -134,7 +135,6 @@ void Align(const Map& map, Landmark* landmark, Observation* observation) {
   const double corner_noise = keyframe.features->keypoints[observation->feature].sigma;
   observation->aligned_bearing = level.camera.Bearing(aligned->center).cast<float>();
   observation->aligned_sigma = static_cast<float>(kAlignedNoise * corner_noise);
-  observation->was_aligned = true;
 }
 
 // Bundle adjustment may have found since that the keyframe with the patch shows something else.
@@ -144,7 +144,7 @@ void DropWrongPatch(const Map& map, Landmark* landmark) {
   landmark->patch.reset();
   for (Observation& observation : landmark->observations) {
     observation.aligned_sigma = 0;
-    observation.was_aligned = false;
+    observation.was_compared = false;
   }
 }
 
@@ -171,11 +171,11 @@ void AlignObservations(KeyframeId id, const std::optional<KnownGround>& ground, 
       Observation& own = *landmark.FindObservation(id);
       own.aligned_bearing = landmark.patch->bearing.cast<float>();
       own.aligned_sigma = static_cast<float>(kPatchNoise * keyframe.features->keypoints[f].sigma);
-      own.was_aligned = true;
+      own.was_compared = true;
     }
     if (!landmark.patch) continue;
     for (Observation& observation : landmark.observations) {
-      if (observation.was_aligned || !map->keyframe(observation.keyframe).picture) continue;
+      if (observation.was_compared || !map->keyframe(observation.keyframe).picture) continue;
       Align(*map, &landmark, &observation);
     }
   }

@@ -12,11 +12,10 @@ namespace orb360 {
 /// not.
 ///
 /// A landmark without a patch gets that of the keyframe. What any picture that is kept shows of a
-/// landmark is aligned with its patch as a plane whose slope is learned on the way: from that of
-/// the ground, where it is given, for what lies on it. Observations that do not look like the
-/// patch, lie near the poles or are seen from too far away stay as they are until it is tried
-/// again, those that were aligned wrongly for good, and so does what was aligned with a patch that
-/// a stored map has not kept.
+/// landmark is aligned with its patch, once, as a plane whose slope is learned on the way: from
+/// that of the ground, where it is given, for what lies on it. Observations that do not look like
+/// the patch, lie near the poles or are seen from too far away stay as they are, and so does what
+/// was aligned with a patch that a stored map has not kept.
 void AlignObservations(KeyframeId id, const std::optional<KnownGround>& ground, Map* map);
 
 }  // namespace orb360
