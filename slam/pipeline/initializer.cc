@@ -103,6 +103,7 @@ InitializationResult InitializeFromTwoViews(const Features& features1, const Fea
   if (!views.pose) return result;
   result.num_inliers = views.pose->num_inliers;
   result.failure = InitializationFailure::kLittleParallax;
+  result.turn = views.pose->camera1_from_camera2.rotation;
   const double finest_sigma =
       std::min_element(features1.keypoints.begin(), features1.keypoints.end(),
                        [](const Keypoint& a, const Keypoint& b) { return a.sigma < b.sigma; })

@@ -44,6 +44,8 @@ struct InitializationResult {
   std::optional<TwoViewMap> map;
   InitializationFailure failure = InitializationFailure::kFewMatches;  // where there is no map
   int num_inliers = 0;
+  /// camera1_from_camera2, where there is little parallax.
+  std::optional<Eigen::Quaterniond> turn;
 };
 
 /// Matches two frames, estimates their motion (five points in RANSAC), triangulates and refines by

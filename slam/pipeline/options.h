@@ -34,7 +34,8 @@ struct RecoveryOptions {
   int patience_frames = 15;
   /// Keyframes of the map that are tried for each lost frame.
   int keyframes_per_frame = 3;
-  /// Frames without a pose that are remembered, to be tracked backwards once there is a map.
+  /// Frames without a pose that are remembered, to be tracked backwards once there is a map. Of
+  /// older ones only how the camera was turned is kept, if it has not moved.
   int max_pending_frames = 600;
 };
 

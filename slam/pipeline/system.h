@@ -73,7 +73,13 @@ class System {
   struct PendingFrame {  // without a pose so far
     int index;
     double timestamp;
-    std::shared_ptr<const Features> features;
+    std::shared_ptr<const Features> features;  // null: forgotten
+    /// How the camera is turned against an earlier frame, from which it has hardly moved.
+    struct Turn {
+      int reference;  // frame index
+      Eigen::Quaterniond reference_from_camera;
+    };
+    std::optional<Turn> turn = {};
   };
   /// What changes the present map: the mapping of a keyframe, or the correction of a loop.
   struct MappingResult {
@@ -105,7 +111,7 @@ class System {
   void TrackFrame(const PendingFrame& frame);
   void RecoverFrame(const PendingFrame& frame);
   void InitializeMap(const PendingFrame& frame);
-  void Remember(const PendingFrame& frame);
+  void Remember(PendingFrame frame);
   std::optional<TrackResult> Relocalize(const Features& features);
   void AcceptTracking(const PendingFrame& frame, TrackResult result);
   void TrackPendingBackwards(TrackedFrame last);

@@ -57,6 +57,7 @@ void System::TrackPendingBackwards(TrackedFrame last) {
   std::sort(pending_.begin(), pending_.end(),
             [](const PendingFrame& a, const PendingFrame& b) { return a.index > b.index; });
   for (const PendingFrame& frame : pending_) {
+    if (!frame.features) continue;
     Rigid3 predicted = last.world_from_camera;
     if (before) {
       predicted =
@@ -77,6 +78,17 @@ void System::TrackPendingBackwards(TrackedFrame last) {
             result->num_inliers};
     Place(last);
   }
+  for (const PendingFrame& frame : pending_) {
+    if (!frame.turn || placements_.contains(frame.index)) continue;
+    const auto reference = placements_.find(frame.turn->reference);
+    if (reference == placements_.end()) continue;
+    Placement turned = reference->second;
+    turned.timestamp = frame.timestamp;
+    turned.reference_from_camera.rotation =
+        turned.reference_from_camera.rotation * frame.turn->reference_from_camera;
+    turned.sightings.clear();
+    placements_[frame.index] = std::move(turned);
+  }
   pending_.clear();
 }
 
@@ -95,17 +107,32 @@ void System::InitializeMap(const PendingFrame& frame) {
       CreateMap(*reference, frame, *result.map);
       return;
     }
-    if (result.failure == InitializationFailure::kLittleParallax) break;
+    if (result.failure == InitializationFailure::kLittleParallax) {
+      PendingFrame turned = frame;
+      turned.turn = {reference_index_, *result.turn};
+      Remember(std::move(turned));
+      return;
+    }
     if (reference_index_ == pending_.back().index) break;
     reference_index_ = pending_.back().index;  // once more with the frame just before
   }
   Remember(frame);
 }
 
-void System::Remember(const PendingFrame& frame) {
-  pending_.push_back(frame);
-  if (static_cast<int>(pending_.size()) > options_.recovery.max_pending_frames) {
-    pending_.pop_front();
+void System::Remember(PendingFrame frame) {
+  pending_.push_back(std::move(frame));
+  const auto is_kept = [](const PendingFrame& p) { return p.features != nullptr; };
+  if (std::count_if(pending_.begin(), pending_.end(), is_kept) <=
+      options_.recovery.max_pending_frames) {
+    return;
+  }
+  const auto oldest = std::find_if(pending_.begin(), pending_.end(), [&](const PendingFrame& p) {
+    return is_kept(p) && p.index != reference_index_;
+  });
+  if (oldest->turn) {
+    oldest->features.reset();
+  } else {
+    pending_.erase(oldest);
   }
 }
 

@@ -34,6 +34,8 @@ TEST(Initializer, WaitsWhenTheCameraOnlyTurns) {
       InitializeFromTwoViews(*scene.See(Rigid3()), *scene.See(turned), {});
   EXPECT_FALSE(result.map.has_value());
   EXPECT_EQ(result.failure, InitializationFailure::kLittleParallax);
+  ASSERT_TRUE(result.turn.has_value());
+  EXPECT_LT(result.turn->angularDistance(turned.rotation), 1e-3);
 }
 
 TEST(Initializer, StartsUnderASkyThatHoldsMostOfTheFeatures) {

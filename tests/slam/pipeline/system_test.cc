@@ -205,6 +205,33 @@ TEST(SystemSlow, WaitsForMotionAndThenTracksTheBeginningBackwards) {
   EXPECT_LT(error.rmse, 0.01 * error.length);
 }
 
+TEST(SystemSlow, KnowsHowTheCameraTurnedLongBeforeItMoved) {
+  constexpr int kStanding = 25;
+  const BoxRoom room = Hall();
+  std::vector<Rigid3> truth;
+  for (int i = 0; i < kStanding; ++i) {
+    Rigid3 pose = TruePose(0);
+    pose.rotation = pose.rotation * ExpSo3({0.0, 0.0, 0.3 * std::sin(2 * M_PI * i / kStanding)});
+    truth.push_back(pose);
+  }
+  for (int i = 0; i < 50; ++i) truth.push_back(TruePose(i));
+  Options options = SmallOptions();
+  options.recovery.max_pending_frames = 5;
+  System system(kHallCamera, options, {});
+  for (size_t i = 0; i < truth.size(); ++i) {
+    system.Process(MakeFrame(static_cast<int>(i), room.Render(kHallCamera, truth[i])));
+  }
+  const Reconstruction result = system.Finish();
+  ASSERT_EQ(result.frames.size(), truth.size());
+  const Rigid3& last = result.frames.back().world_from_camera;
+  for (int i = 0; i < kStanding; ++i) {
+    const Rigid3 found = last.Inverse() * result.frames[i].world_from_camera;
+    const Rigid3 expected = truth.back().Inverse() * truth[i];
+    EXPECT_LT(found.rotation.angularDistance(expected.rotation), 0.01) << i;
+    EXPECT_LT((found.translation - expected.translation).norm(), 0.1) << i;  // m
+  }
+}
+
 TEST(System, GivesNothingButDoesNotFailOnAWorldWithoutTexture) {
   System system(kHallCamera, SmallOptions(), {});
   for (int i = 0; i < 5; ++i) {
