@@ -193,7 +193,9 @@ class SparsePointsTest(unittest.TestCase):
         self.assertTrue(0.05 <= min(scales) < 0.5 and 2 < max(scales) <= 20)
 
     def test_errors_grow_with_range_and_confidence_tells_them(self) -> None:
-        model = NoiseModel(outliers=0, edge_outliers=0, estimate_bias=1, noise=(3, 3))
+        model = NoiseModel(
+            outliers=0, edge_outliers=0, estimate_bias=1, noise=(3, 3), min_confidence=0
+        )
         error, confidence, truth = self.errors(model)
         error = np.abs(error)
         near, far = truth < 4, truth > 12
@@ -204,6 +206,13 @@ class SparsePointsTest(unittest.TestCase):
         # c = 1 / (1 + (e / 0.1)^2): the error that the confidence claims is the error there is.
         claimed = 0.1 * np.sqrt(1 / confidence[sure] - 1)
         self.assertAlmostEqual(np.median(error[sure] / claimed), 0.67, delta=0.1)
+
+    def test_what_slam_would_not_hand_over_is_left_out(self) -> None:
+        noisy = NoiseModel(estimate_bias=1, noise=(3, 3))
+        _, confidence, _ = self.errors(noisy)
+        self.assertGreaterEqual(confidence.min(), 0.5)
+        _, confidence, _ = self.errors(replace(noisy, min_confidence=0))
+        self.assertLess(confidence.min(), 0.4)
 
     def test_there_is_no_parallax_along_the_way(self) -> None:
         model = NoiseModel(outliers=0, edge_outliers=0, points=(2000, 2000))

@@ -27,6 +27,7 @@ class NoiseModel:
     largest_error: float = 0.2  # share of the range; SLAM makes no landmarks of less parallax
     near: float = 1.2  # points are chosen by 1 / range to this power: more keyframes saw near ones
     half_confidence_error: float = 0.1  # as SparseDepthOptions has it
+    min_confidence: float = 0.5  # likewise
     estimate_bias: float = 0.4  # of the error that SLAM estimates: it finds its points too good
     estimate_error: float = 0.3  # standard deviation of ln of that
     outliers: float = 0.05  # share of points matched wrongly, anywhere
@@ -66,12 +67,17 @@ def simulate(
 
     sigma = sigma * _log_uniform(random, model.noise)
     error = _range_errors(ranges, seen, sigma, frame.travel, random, model)
+    estimated = error * model.estimate_bias
+    estimated *= np.exp(model.estimate_error * random.standard_normal(len(u)))
+    confidence = 1 / (1 + (estimated / model.half_confidence_error) ** 2)
+
     moving = frame.moving[rows, columns]
-    usable = (ranges > 0) & (error < model.largest_error)
+    usable = (ranges > 0) & (error < model.largest_error) & (confidence >= model.min_confidence)
     usable &= ~moving | (random.uniform(size=len(u)) < model.moving_kept)
     chosen = _choose(np.flatnonzero(usable), ranges, seen, random, model)
 
-    rows, columns, error = rows[chosen], columns[chosen], error[chosen]
+    rows, columns = rows[chosen], columns[chosen]
+    error, confidence = error[chosen], confidence[chosen]
     measured = ranges[chosen]
     at_edge = random.uniform(size=len(chosen)) < model.edge_outliers
     measured = np.where(at_edge, _beside(frame.range, rows, columns, random), measured)
@@ -81,9 +87,6 @@ def simulate(
     wrong = moving[chosen] | (random.uniform(size=len(chosen)) < model.outliers)
     measured *= np.where(wrong, np.exp(random.uniform(-1, 1, len(chosen))), 1)
 
-    estimated = error * model.estimate_bias
-    estimated *= np.exp(model.estimate_error * random.standard_normal(len(chosen)))
-    confidence = 1 / (1 + (estimated / model.half_confidence_error) ** 2)
     scale = _log_uniform(random, model.scale)
     return SparsePoints(
         *_rasterise((height, width), rows, columns, scale * measured, confidence), float(scale)
