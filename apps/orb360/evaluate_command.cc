@@ -53,7 +53,9 @@ void AddRunFigures(const std::filesystem::path& estimate, double paired_share,
     return;
   }
   (*report)["tracked_share"] = summary.value("tracked", 0.0) / summary.value("frames", 0.0);
-  (*report)["features_per_keyframe"] = summary.value("features_per_keyframe", 0.0);
+  for (const char* key : {"features_per_keyframe", "landmarks_per_keyframe"}) {
+    (*report)[key] = summary.value(key, 0.0);
+  }
 }
 
 /// The loops that the run has closed beside those of the ground truth, by the run's own account.

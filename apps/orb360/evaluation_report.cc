@@ -22,6 +22,7 @@ constexpr Row kRows[] = {
     {"pairs", "pairs", "", 0},
     {"tracked_share", "tracked share", "%", 1, 100.0},
     {"features_per_keyframe", "features per keyframe", "", 1},
+    {"landmarks_per_keyframe", "landmarks per keyframe", "", 1},
     {"scale_factor", "scale factor (1 is perfect)", "", 5},
     {"ate_rmse_se3", "ATE after rigid alignment, RMSE", "m", 4},
     {"ate_median_se3", "  median", "m", 4},

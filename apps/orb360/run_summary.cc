@@ -70,6 +70,7 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
       {"keyframes", reconstruction.keyframes.size()},
       {"landmarks", reconstruction.landmarks.size()},
       {"features_per_keyframe", reconstruction.features_per_keyframe},
+      {"landmarks_per_keyframe", reconstruction.landmarks_per_keyframe},
       {"scale", DescribeScale(reconstruction, description.scale)},
       {"timing_ms", record.times.Summary()},
       {"seconds", record.seconds},

@@ -29,7 +29,9 @@ struct Features {
   std::vector<Eigen::Vector3d> bearings;  // unit vectors, camera frame
   std::vector<Descriptor> descriptors;
   std::vector<Color> colors;  // empty where the image had none
-  SphereGrid grid;            // over `bearings`
+  // Of IndexFeatures:
+  SphereGrid grid;           // over `bearings`
+  std::vector<int> corners;  // the finest feature that shows the same corner, or itself
 
   int size() const { return static_cast<int>(keypoints.size()); }
 };

@@ -5,6 +5,7 @@
 
 #include "nn/base/check.h"
 #include "slam/features/corner_selection.h"
+#include "slam/features/feature_index.h"
 #include "slam/features/patch_descriptor.h"
 #include "slam/features/tangent_sampling.h"
 
@@ -102,7 +103,7 @@ Features OrbExtractor::Extract(const cv::Mat& gray, const cv::Mat& mask) {
     features.bearings[i] = camera.Bearing(pixel);
     features.descriptors[i] = description.bits;
   }
-  features.grid = SphereGrid(features.bearings);
+  IndexFeatures(&features);
   return features;
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "nn/base/check.h"
+#include "slam/features/feature_index.h"
 
 namespace orb360 {
 namespace {
@@ -152,7 +153,7 @@ std::shared_ptr<const Features> FeaturesOf(const MapArrays& a, size_t begin, siz
     features->descriptors.push_back(Bits(a.feature_bits, f));
     features->colors.push_back(ColorOf(a.feature_color, f));
   }
-  features->grid = SphereGrid(features->bearings);
+  IndexFeatures(features.get());
   return features;
 }
 

@@ -36,6 +36,15 @@ void ScaleRanges(double factor, Keyframe* keyframe) {
 
 }  // namespace
 
+std::vector<uint8_t> FindMappedCorners(const Keyframe& keyframe) {
+  const std::vector<int>& corners = keyframe.features->corners;
+  std::vector<uint8_t> is_mapped(corners.size(), 0);
+  for (size_t f = 0; f < corners.size(); ++f) {
+    if (keyframe.landmarks[f] != kNoId) is_mapped[corners[f]] = 1;
+  }
+  return is_mapped;
+}
+
 double RangeAtLevelZero(double range, int level) {
   return range * std::exp2(level / kLevelsPerOctave);
 }

@@ -64,6 +64,9 @@ struct Keyframe {
   }
 };
 
+/// By corner (`Features::corners`): whether it is a landmark, by the feature of whichever level.
+std::vector<uint8_t> FindMappedCorners(const Keyframe& keyframe);
+
 struct Landmark {
   LandmarkId id = kNoId;
   Eigen::Vector3d position;        // world

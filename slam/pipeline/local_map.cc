@@ -7,9 +7,10 @@ namespace orb360 {
 std::vector<ProvisionalPoint> MakeProvisionalPoints(const Keyframe& keyframe) {
   std::vector<ProvisionalPoint> points;
   const Features& features = *keyframe.features;
+  const std::vector<uint8_t> is_mapped = FindMappedCorners(keyframe);
   for (int f = 0; f < features.size(); ++f) {
     const RangePrior prior = keyframe.PriorOf(f);
-    if (prior.sigma == 0 || keyframe.landmarks[f] != kNoId) continue;
+    if (prior.sigma == 0 || is_mapped[features.corners[f]]) continue;
     const Keypoint& keypoint = features.keypoints[f];
     const Eigen::Vector3d direction = keyframe.world_from_camera.rotation * features.bearings[f];
     const Eigen::Vector3d position =

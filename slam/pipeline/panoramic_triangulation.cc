@@ -12,23 +12,25 @@
 namespace orb360 {
 namespace {
 
-// The features of a keyframe without a landmark.
+// The features of a keyframe whose corner is no landmark yet.
 struct FreeFeatures {
   std::vector<int> index;
   BearingColumns columns;
+  std::vector<uint8_t> is_mapped;  // by corner
 };
 
 FreeFeatures CollectFree(const Keyframe& keyframe) {
   std::vector<int> index;
   std::vector<Eigen::Vector3d> bearings;
   std::vector<double> sigmas;
+  std::vector<uint8_t> is_mapped = FindMappedCorners(keyframe);
   for (int f = 0; f < keyframe.features->size(); ++f) {
-    if (keyframe.landmarks[f] != kNoId) continue;
+    if (is_mapped[keyframe.features->corners[f]]) continue;
     index.push_back(f);
     bearings.push_back(keyframe.features->bearings[f]);
     sigmas.push_back(keyframe.features->keypoints[f].sigma);
   }
-  return {std::move(index), BearingColumns(bearings, sigmas)};
+  return {std::move(index), BearingColumns(bearings, sigmas), std::move(is_mapped)};
 }
 
 struct EpipolarMatch {
@@ -144,8 +146,8 @@ std::vector<LandmarkId> TriangulateNewLandmarks(KeyframeId id, const Triangulati
         options.min_baseline * map->MedianRange(neighbour.keyframe)) {
       continue;
     }
-    const FreeFeatures free1 = CollectFree(keyframe1);
-    const FreeFeatures free2 = CollectFree(keyframe2);
+    FreeFeatures free1 = CollectFree(keyframe1);
+    FreeFeatures free2 = CollectFree(keyframe2);
     const std::vector<EpipolarMatch> matches =
         MatchEpipolar(keyframe1, free1, keyframe2, free2, camera1_from_camera2, options);
     // One feature of keyframe 2 goes to the nearest descriptor only.
@@ -160,6 +162,9 @@ std::vector<LandmarkId> TriangulateNewLandmarks(KeyframeId id, const Triangulati
       const int f1 = free1.index[i];
       const int f2 = matches[i].feature2;
       if (f2 < 0 || owner[f2] != static_cast<int>(i)) continue;
+      uint8_t& is_mapped1 = free1.is_mapped[keyframe1.features->corners[f1]];
+      uint8_t& is_mapped2 = free2.is_mapped[keyframe2.features->corners[f2]];
+      if (is_mapped1 || is_mapped2) continue;  // by the same corner on a finer level
       const std::optional<Eigen::Vector3d> point = MakePoint(
           *keyframe1.features, f1, *keyframe2.features, f2, camera1_from_camera2, options);
       if (!point) continue;
@@ -169,6 +174,7 @@ std::vector<LandmarkId> TriangulateNewLandmarks(KeyframeId id, const Triangulati
       map->AddObservation(landmark, id, f1);
       map->AddObservation(landmark, neighbour.keyframe, f2);
       map->UpdateAppearance(landmark);
+      is_mapped1 = is_mapped2 = 1;
       created.push_back(landmark);
     }
   }

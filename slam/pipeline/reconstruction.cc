@@ -35,7 +35,8 @@ Reconstruction MakeReconstruction(const std::vector<Map>& maps,
         RefineFrame(map, map.PoseOf(placement.reference) * placement.reference_from_camera,
                     placement.sightings);
   }
-  int64_t matched = 0;
+  int64_t num_matched = 0;
+  int64_t num_seen = 0;
   for (size_t m = 0; m < maps.size(); ++m) {
     const Map& map = maps[m];
     result.maps[m].keyframes = map.num_keyframes();
@@ -44,8 +45,11 @@ Reconstruction MakeReconstruction(const std::vector<Map>& maps,
       const Keyframe& keyframe = map.keyframe(id);
       result.keyframes.push_back({keyframe.frame_index, keyframe.timestamp, static_cast<int>(m),
                                   keyframe.world_from_camera});
-      matched += std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
-                               [](LandmarkId l) { return l != kNoId; });
+      const std::vector<uint8_t> is_mapped = FindMappedCorners(keyframe);
+      num_matched += std::ranges::count_if(keyframe.features->corners,
+                                           [&](int corner) { return is_mapped[corner] != 0; });
+      num_seen +=
+          std::ranges::count_if(keyframe.landmarks, [](LandmarkId l) { return l != kNoId; });
     }
     for (LandmarkId id = 0; id < map.landmark_end(); ++id) {
       if (!map.HasLandmark(id)) continue;
@@ -70,7 +74,9 @@ Reconstruction MakeReconstruction(const std::vector<Map>& maps,
     }
   }
   if (!result.keyframes.empty()) {
-    result.features_per_keyframe = matched / static_cast<double>(result.keyframes.size());
+    const double count = static_cast<double>(result.keyframes.size());
+    result.features_per_keyframe = num_matched / count;
+    result.landmarks_per_keyframe = num_seen / count;
   }
   if (!maps.empty()) {
     constexpr size_t kStart = 20;  // keyframes: the place where the world is levelled

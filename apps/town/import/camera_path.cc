@@ -31,7 +31,10 @@ bool HasPositionsOnly(const std::filesystem::path& file) {
 /// most `far`.
 float DistanceAlong(const RayScene& scene, const Vector3f& origin, const Vector3f& direction,
                     float far) {
-  RTCRayHit16 rays;
+  RTCRayHit16 rays{};
+  // Where vectors are shorter than a packet, Embree traces all lanes in which tnear <= tfar,
+  // whatever `valid` says.
+  std::ranges::fill(rays.ray.tfar, -1.0F);
   alignas(64) std::array<int, kPacket> valid{};
   valid[0] = -1;
   SetRay(rays.ray, 0, origin, direction, far);

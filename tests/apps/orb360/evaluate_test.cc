@@ -64,11 +64,13 @@ TEST_F(EvaluateTest, JsonHasTheErrorsOfAScaledTrajectory) {
 
 TEST_F(EvaluateTest, FoldersStandForTheFilesInThem) {
   WriteText(folder_ / "summary.json",
-            R"({"frames": 50, "tracked": 45, "features_per_keyframe": 321.5})");
+            R"({"frames": 50, "tracked": 45, "features_per_keyframe": 321.5,
+                "landmarks_per_keyframe": 210.5})");
   const nlohmann::json report = Report(folder_.path(), folder_.path());
   EXPECT_EQ(report["pairs"], 45);
   EXPECT_NEAR(report["tracked_share"], 0.9, 1e-9);
   EXPECT_EQ(report["features_per_keyframe"], 321.5);
+  EXPECT_EQ(report["landmarks_per_keyframe"], 210.5);
 }
 
 TEST_F(EvaluateTest, LoopsOfTheRunAreComparedWithThoseOfTheTruth) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/features/feature_index.h"
 #include "slam/features/hamming.h"
 #include "slam/geometry/bearing.h"
 #include "tests/slam/pipeline/synthetic_scene.h"
@@ -63,7 +64,7 @@ TEST(Matching, NearbyMatchesAreMutual) {
   // Both want feature 0 of the second, which prefers the first of them.
   for (const auto& features : {first, second}) {
     features->bearings[1] = features->bearings[0];
-    features->grid = SphereGrid(features->bearings);
+    IndexFeatures(features.get());
   }
   first->descriptors[1] = first->descriptors[0];
   first->descriptors[1][0] ^= 1;

@@ -31,6 +31,19 @@ TEST(Map, KeepsKeyframesAndLandmarksInAgreement) {
   EXPECT_EQ(map.num_landmarks(), 29);
 }
 
+TEST(Map, ACornerIsMappedByTheFeatureOfWhicheverLevel) {
+  Map map = SmallMap();
+  auto features = std::make_shared<Features>(*map.keyframe(1).features);
+  features->corners[35] = 7;   // 7 is a landmark
+  features->corners[12] = 38;  // 38 is none itself
+  map.keyframe(1).features = features;
+  const std::vector<uint8_t> is_mapped = FindMappedCorners(map.keyframe(1));
+  ASSERT_EQ(std::ssize(is_mapped), features->size());
+  const auto is_known = [&](int feature) { return is_mapped[features->corners[feature]] != 0; };
+  for (const int feature : {0, 7, 12, 29, 35, 38}) EXPECT_TRUE(is_known(feature)) << feature;
+  for (const int feature : {30, 34, 36, 39}) EXPECT_FALSE(is_known(feature)) << feature;
+}
+
 TEST(Map, NoticesABrokenAgreement) {
   Map map = SmallMap();
   map.keyframe(1).landmarks[4] = kNoId;

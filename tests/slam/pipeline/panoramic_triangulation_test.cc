@@ -84,6 +84,54 @@ TEST(PanoramicTriangulation, RefusesMatchesThatBreakTheEpipolarGeometry) {
   EXPECT_LT(TriangulateNewLandmarks(1, {}, &moved).size(), 8u);
 }
 
+// What is seen from `pose`, and after all of it every point again, a level coarser and beside
+// itself by half a standard deviation.
+std::shared_ptr<Features> SeeOnTwoLevels(const Rigid3& pose, SyntheticScene* scene) {
+  std::shared_ptr<Features> features = scene->See(pose, 0.0);
+  const int num_points = features->size();
+  for (int i = 0; i < num_points; ++i) {
+    Keypoint keypoint = features->keypoints[i];
+    ++keypoint.level;
+    keypoint.sigma *= static_cast<float>(std::exp2(0.25));
+    const Eigen::Vector3d bearing = features->bearings[i];
+    features->bearings.push_back(
+        (bearing + 0.5 * keypoint.sigma * bearing.unitOrthogonal()).normalized());
+    features->descriptors.push_back(features->descriptors[i]);
+    features->colors.push_back(features->colors[i]);
+    features->keypoints.push_back(keypoint);
+  }
+  IndexFeatures(features.get());
+  return features;
+}
+
+TEST(PanoramicTriangulation, MakesOneLandmarkOfACornerThatIsSeenOnTwoLevels) {
+  SyntheticScene scene(300);
+  const std::vector<Rigid3> poses = Walk(2, {-0.8, 0.3, 0.1});
+  Map once = scene.MakeMap(poses, 50, /*noise=*/0.0);
+  const size_t num_created = TriangulateNewLandmarks(1, {}, &once).size();
+  ASSERT_GT(num_created, 150u);
+
+  Map map;
+  for (int k = 0; k < 2; ++k)
+    map.AddKeyframe(k, 0.1 * k, poses[k], SeeOnTwoLevels(poses[k], &scene));
+  for (int i = 0; i < 50; ++i) {
+    const LandmarkId id = map.AddLandmark(scene.points[i].position, {});
+    // The point itself in one keyframe, its coarser copy in the other.
+    map.AddObservation(id, 0, i);
+    map.AddObservation(id, 1, 300 + i);
+    map.UpdateAppearance(id);
+  }
+  const std::vector<LandmarkId> created = TriangulateNewLandmarks(1, {}, &map);
+  std::vector<int> points;
+  for (const LandmarkId id : created) {
+    points.push_back(PointOf(scene, map.landmark(id)));
+    EXPECT_GE(points.back(), 50);
+  }
+  std::ranges::sort(points);
+  EXPECT_EQ(std::ranges::adjacent_find(points), points.end()) << "two landmarks of one point";
+  EXPECT_GT(static_cast<double>(created.size()), 0.95 * static_cast<double>(num_created));
+}
+
 // Priors of keyframe 0 for the points that have no landmark: `factor` times the true range.
 void SetPriors(const SyntheticScene& scene, double factor, Map* map) {
   Keyframe& keyframe = map->keyframe(0);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "slam/features/feature_index.h"
 #include "slam/features/features.h"
 #include "slam/map/map.h"
 #include "tests/slam/geometry/random_geometry.h"
@@ -71,7 +72,7 @@ class RingStreet {
                                      static_cast<uint8_t>(level), 50});
       view.points.push_back(static_cast<int>(i));
     }
-    features->grid = SphereGrid(features->bearings);
+    IndexFeatures(features.get());
     view.features = std::move(features);
     return view;
   }

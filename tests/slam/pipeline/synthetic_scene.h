@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "slam/features/feature_index.h"
 #include "slam/features/features.h"
 #include "slam/map/map.h"
 #include "tests/slam/geometry/random_geometry.h"
@@ -48,7 +49,7 @@ struct SyntheticScene {
       features->keypoints.push_back({Eigen::Vector2f::Zero(), 0.0f, static_cast<float>(level_sigma),
                                      static_cast<uint8_t>(level), 50});
     }
-    features->grid = SphereGrid(features->bearings);
+    IndexFeatures(features.get());
     return features;
   }
 

@@ -1,0 +1,47 @@
+#include "slam/features/feature_index.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace orb360 {
+namespace {
+
+// The nearest feature on the next finer level, `feature` itself if there is none.
+int FinerCopy(const Features& features, int feature, std::vector<int>* nearby) {
+  constexpr double kMaxSigmas = 2.0;
+  const Keypoint& keypoint = features.keypoints[feature];
+  const Eigen::Vector3d& bearing = features.bearings[feature];
+  const double radius = kMaxSigmas * keypoint.sigma;
+  nearby->clear();
+  features.grid.Query(bearing, radius, nearby);
+  double nearest = std::cos(radius);
+  int copy = feature;
+  for (const int other : *nearby) {
+    if (features.keypoints[other].level + 1 != keypoint.level) continue;
+    const double cosine = bearing.dot(features.bearings[other]);
+    if (cosine <= nearest) continue;
+    nearest = cosine;
+    copy = other;
+  }
+  return copy;
+}
+
+}  // namespace
+
+void IndexFeatures(Features* features) {
+  features->grid = SphereGrid(features->bearings);
+  std::vector<int> by_level(features->size());
+  std::iota(by_level.begin(), by_level.end(), 0);
+  std::stable_sort(by_level.begin(), by_level.end(), [&](int a, int b) {
+    return features->keypoints[a].level < features->keypoints[b].level;
+  });
+  features->corners.resize(features->size());
+  std::vector<int> nearby;
+  for (const int feature : by_level) {
+    const int copy = FinerCopy(*features, feature, &nearby);
+    features->corners[feature] = copy == feature ? feature : features->corners[copy];
+  }
+}
+
+}  // namespace orb360
