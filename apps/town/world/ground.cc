@@ -83,18 +83,22 @@ void AddKerbFace(const StreetPlan& plan, const std::vector<Corner>& triangle,
 /// A strip of paint between stations s0 and s1, lateral offsets y0 < y1 (positive to the left).
 void AddStrip(const StreetPlan& plan, const Street& street, double s0, double s1, double y0,
               double y1, MeshBuilder& builder) {
-  constexpr double kThickness = 0.006;  // metres: enough to lie above the triangles of a slope
-  const int pieces = std::max(1, static_cast<int>(std::ceil((s1 - s0) / 1.0)));
-  const auto corner = [&](double s, double y) -> Vector3f {
-    const StreetPoint p = street.At(s);
+  constexpr double kThickness = 0.002;  // metres; the triangles of a slope are up to 0.4 mm off it
+  constexpr double kPiece = 1.0;        // metres at most, like the cells of the ground
+  const int along = std::max(1, static_cast<int>(std::ceil((s1 - s0) / kPiece)));
+  const int across = std::max(1, static_cast<int>(std::ceil((y1 - y0) / kPiece)));
+  const auto corner = [&](int i, int j) -> Vector3f {
+    const StreetPoint p = street.At(std::lerp(s0, s1, static_cast<double>(i) / along));
+    const double y = std::lerp(y0, y1, static_cast<double>(j) / across);
     const Vector2d q = p.position + y * Vector2d(-p.tangent.y(), p.tangent.x());
     return Eigen::Vector3d(q.x(), q.y(), plan.Height(q) + kThickness).cast<float>();
   };
-  for (int i = 0; i < pieces; ++i) {
-    const double a = std::lerp(s0, s1, static_cast<double>(i) / pieces);
-    const double b = std::lerp(s0, s1, static_cast<double>(i + 1) / pieces);
-    builder.AddGroundPolygon(builder.materials().road_paint,
-                             {corner(a, y0), corner(b, y0), corner(b, y1), corner(a, y1)});
+  for (int i = 0; i < along; ++i) {
+    for (int j = 0; j < across; ++j) {
+      builder.AddGroundPolygon(
+          builder.materials().road_paint,
+          {corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)});
+    }
   }
 }
 

@@ -8,10 +8,10 @@
 namespace orb360::town {
 namespace {
 
-// Heights above the asphalt in metres: enough to lie above the triangles of a slope, and below
-// the road paint.
-constexpr double kPatchHeight = 0.003;
-constexpr double kIronHeight = 0.005;
+// Heights above the asphalt in metres: enough to lie above the triangles of a slope, which are up to
+// 0.4 mm off it, and below the road paint.
+constexpr double kPatchHeight = 0.0008;
+constexpr double kIronHeight = 0.0014;
 
 /// A place on a street: station and offset to the left, metres.
 class StreetFrame {

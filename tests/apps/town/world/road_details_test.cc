@@ -19,8 +19,8 @@ TEST(AddRoadDetails, LieFlatOnTheCarriageways) {
     const Vector2d q = p.head<2>().cast<double>();
     EXPECT_LT(plan.DistanceToRoad(q), 0.02);
     const double above = p.z() - plan.Height(q);
-    EXPECT_GT(above, 0.002);
-    EXPECT_LT(above, 0.006);  // below the road paint
+    EXPECT_GT(above, 0.0007);
+    EXPECT_LT(above, 0.002);  // below the road paint
   }
 }
 
