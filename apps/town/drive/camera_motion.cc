@@ -58,14 +58,19 @@ Rigid3 CameraPose(const Ride& ride, const CameraMotionOptions& options, double t
   const double heave = 0.004 * shaking * Shake(random.Fork(4), 0.8, 6).At(time);  // metres
   // A level camera that looks along world +x: camera (-X, +Y, +Z) is world (+x, -y, +z).
   const Eigen::Quaterniond level(Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitZ()));
+  const auto turned = [&](double nose, double left) -> Eigen::Quaterniond {
+    return Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
+           Eigen::AngleAxisd(-nose, Eigen::Vector3d::UnitY()) *
+           Eigen::AngleAxisd(left, Eigen::Vector3d::UnitX());
+  };
+  const Eigen::Vector3d up = turned(road.slope, road.bank) * Eigen::Vector3d::UnitZ();
   Rigid3 pose;
-  pose.rotation = (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) *
-                   Eigen::AngleAxisd(-nose_up, Eigen::Vector3d::UnitY()) *
-                   Eigen::AngleAxisd(left_up, Eigen::Vector3d::UnitX()) *
-                   Eigen::AngleAxisd(-options.pitch, Eigen::Vector3d::UnitY()) *
-                   Eigen::AngleAxisd(options.roll, Eigen::Vector3d::UnitX()) * level)
-                      .normalized();
-  pose.translation << road.position, road.height + options.height + heave;
+  pose.rotation =
+      (turned(nose_up, left_up) * Eigen::AngleAxisd(-options.pitch, Eigen::Vector3d::UnitY()) *
+       Eigen::AngleAxisd(options.roll, Eigen::Vector3d::UnitX()) * level)
+          .normalized();
+  pose.translation << road.position, road.height;
+  pose.translation += (options.height + heave) * up;
   return pose;
 }
 

@@ -9,7 +9,7 @@ namespace orb360::town {
 
 struct CameraMotionOptions {
   uint64_t seed = 0;
-  double height = 2;   ///< metres above the road
+  double height = 2;   ///< metres above the road, at right angles to it
   double pitch = 0;    ///< radians, nose up, of the camera on the car
   double roll = 0;     ///< radians, left side up, likewise
   double shaking = 1;  ///< factor on vibration, and on the body's pitch and roll in response to
