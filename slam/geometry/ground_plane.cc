@@ -13,6 +13,10 @@ constexpr int kMaxSamples = 300;     // of three points
 constexpr int kMinSamples = 30;      // three points on the ground may still be too close together
 constexpr double kMaxMissed = 1e-4;  // probability that no sample lies on the ground
 constexpr int kRefinements = 5;      // of the plane by the points on it
+// Of the biweight, in median deviations: 4.685 standard deviations lose a twentieth of what
+// normally distributed points tell.
+constexpr double kBiweightReach = 4.685 * 1.4826;
+constexpr double kMinTolerance = 0.1;  // as a share of the first one
 
 struct Plane {
   Eigen::Vector3d normal;  // unit, towards the origin
@@ -24,6 +28,20 @@ double Weight(const Plane& plane, const Eigen::Vector3d& point, double tolerance
   const double error = (plane.normal.dot(point) + plane.height) / (tolerance * plane.height);
   const double rest = std::max(0.0, 1.0 - error * error);
   return rest * rest;
+}
+
+// A tolerance for the noise that the points on a plane have.
+double NarrowTolerance(const Plane& plane, std::span<const Eigen::Vector3d> points,
+                       double tolerance) {
+  std::vector<double> errors;
+  for (const Eigen::Vector3d& p : points) {
+    const double error = std::abs(plane.normal.dot(p) / plane.height + 1);
+    if (error < tolerance) errors.push_back(error);
+  }
+  if (errors.empty()) return tolerance;
+  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+  std::nth_element(errors.begin(), middle, errors.end());
+  return tolerance * std::clamp(kBiweightReach * *middle / tolerance, kMinTolerance, 1.0);
 }
 
 // Sum of all weights, or some number below `least` where it cannot reach that.
@@ -109,17 +127,28 @@ std::optional<GroundPlane> FitGroundPlane(std::span<const Eigen::Vector3d> point
     }
   }
   if (!best) return std::nullopt;
-  for (int i = 0; i < kRefinements; ++i) {
-    best = Refined(*best, below, options.tolerance);
-    if (!(best->height > 0 && best->normal.dot(up) > min_cosine)) return std::nullopt;
-  }
-  GroundPlane ground{best->normal, best->height, {}};
-  for (size_t i = 0; i < below.size(); ++i) {
-    if (Weight(*best, below[i], options.tolerance) > 0) ground.points.push_back(indices[i]);
-  }
-  const auto on_it = static_cast<int>(ground.points.size());
-  if (on_it < options.min_points || on_it < options.min_share * static_cast<double>(below.size())) {
+  const auto refine = [&](double tolerance) {
+    for (int i = 0; i < kRefinements; ++i) {
+      best = Refined(*best, below, tolerance);
+      if (!(best->height > 0 && best->normal.dot(up) > min_cosine)) return false;
+    }
+    return true;
+  };
+  if (!refine(options.tolerance)) return std::nullopt;
+  const auto on_it = std::ranges::count_if(
+      below, [&](const Eigen::Vector3d& p) { return Weight(*best, p, options.tolerance) > 0; });
+  if (on_it < options.min_points ||
+      static_cast<double>(on_it) < options.min_share * static_cast<double>(below.size())) {
     return std::nullopt;
+  }
+  const double narrow = NarrowTolerance(*best, below, options.tolerance);
+  if (!refine(narrow)) return std::nullopt;
+  GroundPlane ground{best->normal, best->height, {}, {}};
+  for (size_t i = 0; i < below.size(); ++i) {
+    const double weight = Weight(*best, below[i], narrow);
+    if (!(weight > 0)) continue;
+    ground.points.push_back(indices[i]);
+    ground.weights.push_back(weight);
   }
   return ground;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 #include "slam/geometry/ground_plane.h"
@@ -29,9 +30,10 @@ void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem
       FitGroundPlane(points, camera_from_world.rotation * ground.up, {});
   if (!plane || !(std::abs(plane->height / ground.camera_height - 1) < kMaxHeightError)) return;
   // Together as certain as one measurement of the height: their errors have the same causes.
-  const double shared = sigma * std::sqrt(static_cast<double>(plane->points.size()));
-  for (const int point : plane->points) {
-    problem->heights.push_back({pose, point, plane->normal, ground.camera_height, shared});
+  const double total = std::reduce(plane->weights.begin(), plane->weights.end());
+  for (size_t i = 0; i < plane->points.size(); ++i) {
+    problem->heights.push_back({pose, plane->points[i], plane->normal, ground.camera_height,
+                                sigma * std::sqrt(total / plane->weights[i])});
   }
 }
 

@@ -59,6 +59,29 @@ TEST(GroundPlane, IsFoundAmongManyMoreOtherPoints) {
   }
 }
 
+// A kerb and its foot, tyres, a low wall: there is something on a road, and nothing under it.
+TEST(GroundPlane, IsNotLiftedByWhatStandsOnIt) {
+  for (int seed = 1; seed <= 20; ++seed) {
+    RandomGeometry random(seed);
+    std::vector<Eigen::Vector3d> points = Scene(200, 0, 0.004, &random);
+    for (int i = 0; i < 60; ++i) {
+      points.emplace_back(random.Uniform(-6, 6), random.Uniform(-6, 6),
+                          -1.7 + random.Uniform(0.0, 0.15));
+    }
+    const auto ground = FitGroundPlane(points, kUp, {});
+    ASSERT_TRUE(ground.has_value()) << seed;
+    EXPECT_NEAR(ground->height, 1.7, 0.002) << seed;
+    ASSERT_EQ(ground->weights.size(), ground->points.size());
+    double sum = 0;
+    double weighted = 0;
+    for (size_t i = 0; i < ground->points.size(); ++i) {
+      sum += ground->weights[i];
+      weighted -= ground->weights[i] * ground->normal.dot(points[ground->points[i]]);
+    }
+    EXPECT_NEAR(weighted / sum, ground->height, 1e-4) << seed;
+  }
+}
+
 TEST(GroundPlane, IsNoSteepWallAndNoCeiling) {
   RandomGeometry random(3);
   std::vector<Eigen::Vector3d> points = Scene(100, 0, 0.0, &random);
