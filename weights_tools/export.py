@@ -21,12 +21,18 @@ def export(
     provenance: Mapping[str, Any],
     dtype: type[np.floating] = np.float32,
     width: int | None = None,
+    log_error: float | None = None,
 ) -> None:
     """Writes a network and its weights; `provenance` says where they come from, `width` which
-    pictures it expects: `nn` resamples others."""
-    graph = dataclasses.replace(network.description.graph, provenance=dict(provenance))
-    if width:
-        graph.normalisation["width"] = width
+    pictures it expects: `nn` resamples others. `log_error` is the error of ln(range) to be expected
+    of a network whose confidence does not tell it."""
+    stated = {"width": width, "log_error": log_error}
+    graph = network.description.graph
+    graph = dataclasses.replace(
+        graph,
+        provenance=dict(provenance),
+        normalisation=graph.normalisation | {k: v for k, v in stated.items() if v is not None},
+    )
     weights = {name: value.detach().cpu().numpy() for name, value in network.weights().items()}
     network_file.write(path, graph, weights, dtype)
 
@@ -51,6 +57,9 @@ def main() -> None:
     what.add_argument("--untrained", choices=NETWORKS, help="with the weights of a seed")
     parser.add_argument("out", type=Path, help="HDF5 file to write")
     parser.add_argument("--seed", type=int, default=0, help="of untrained weights (default: 0)")
+    parser.add_argument("--log-error", type=float, metavar="E",
+                        help="of ln(range), to be expected of a network whose confidence does not "
+                        "tell it")  # fmt: skip
     parser.add_argument("--half", action="store_true", help="store weights as 16-bit floats")
     arguments = parser.parse_args()
     width = None
@@ -59,7 +68,7 @@ def main() -> None:
     else:
         network, provenance = untrained(arguments.untrained, arguments.seed)
     dtype = np.float16 if arguments.half else np.float32
-    export(arguments.out, network, provenance, dtype, width)
+    export(arguments.out, network, provenance, dtype, width, arguments.log_error)
 
 
 if __name__ == "__main__":

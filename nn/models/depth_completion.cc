@@ -24,6 +24,12 @@ PictureSize NearestMultiple(PictureSize size, int multiple) {
   return {nearest(size.height), nearest(size.width)};
 }
 
+[[noreturn]] void RefuseNormalisation(const Graph& graph, const std::string& key,
+                                      const std::string& expected) {
+  throw UserError("network \"" + graph.name + "\": \"" + key +
+                  "\" of its normalisation should be " + expected);
+}
+
 /// Of the pictures that the network expects: `width` of its normalisation, which may be absent.
 std::optional<int> ExpectedWidth(const Graph& graph) {
   const nlohmann::json normalisation = nlohmann::json::parse(graph.normalisation);
@@ -31,11 +37,21 @@ std::optional<int> ExpectedWidth(const Graph& graph) {
   constexpr int kMost = 1 << 15;  // pixels
   const nlohmann::json& width = normalisation["width"];
   if (!width.is_number_integer() || width < 1 || width > kMost) {
-    throw UserError("network \"" + graph.name +
-                    "\": \"width\" of its normalisation should be an integer from 1 to " +
-                    std::to_string(kMost));
+    RefuseNormalisation(graph, "width", "an integer from 1 to " + std::to_string(kMost));
   }
   return width.get<int>();
+}
+
+/// The confidence of a network whose own tells no error: from `log_error` of its normalisation,
+/// which may be absent.
+std::optional<float> ConstantConfidence(const Graph& graph) {
+  const nlohmann::json normalisation = nlohmann::json::parse(graph.normalisation);
+  if (!normalisation.contains("log_error")) return {};
+  const nlohmann::json& error = normalisation["log_error"];
+  if (!error.is_number() || !(error > 0) || error > 10) {
+    RefuseNormalisation(graph, "log_error", "a number above 0 and up to 10");
+  }
+  return 1 / (1 + error.get<float>());
 }
 
 /// What the network is to see of pictures of that size.
@@ -119,6 +135,7 @@ DepthCompletion::DepthCompletion(const Graph& graph, PictureSize size,
                                  const ExecutorOptions& options)
     : size_(size),
       network_size_(NetworkSize(graph, size)),
+      constant_confidence_(ConstantConfidence(graph)),
       ports_(FindPorts(graph)),
       executor_(graph, network_size_.height, network_size_.width, options) {}
 
@@ -201,8 +218,10 @@ DensePicture DepthCompletion::Complete(const SparsePicture& picture, Workspace* 
     }
   }
   dense.depth = Resampled(std::move(dense.depth));
-  for (float& depth : dense.depth) {
+  for (std::size_t i = 0; i < pixels; ++i) {
+    float& depth = dense.depth[i];
     if (!(std::isfinite(depth) && depth > 0)) depth = 0;
+    if (constant_confidence_) dense.confidence[i] = depth > 0 ? *constant_confidence_ : 0;
   }
   return dense;
 }

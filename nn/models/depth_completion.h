@@ -23,6 +23,7 @@ struct SparsePicture {
 
 struct DensePicture {
   std::vector<float> depth;  // in the unit of the points; 0 where the network gives none
+  /// 1 / confidence - 1 is the error to be expected of ln(depth).
   std::vector<float> confidence;
   /// Probability of each pixel that it shows the plane of the road under the camera, where the
   /// network tells it; otherwise empty.
@@ -75,6 +76,7 @@ class DepthCompletion {
 
   PictureSize size_;
   PictureSize network_size_;
+  std::optional<float> constant_confidence_;  // in the place of the network's own
   Ports ports_;
   Executor executor_;
 };

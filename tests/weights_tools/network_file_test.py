@@ -56,6 +56,15 @@ class NetworkFileTest(unittest.TestCase):
             expected = network.weights()[name].detach().numpy().astype(np.float16)
             np.testing.assert_array_equal(values, expected)
 
+    def test_says_what_pictures_it_expects_and_which_errors(self) -> None:
+        network = Network(networks.unguided())
+        export(self.path, network, {}, width=256, log_error=0.2)
+        stated = network_file.read(self.path).graph.normalisation
+        export(self.path, network, {})
+        plain = network_file.read(self.path).graph.normalisation
+        self.assertEqual(stated, {**plain, "width": 256, "log_error": 0.2})
+        self.assertNotIn("log_error", plain)
+
     def test_refuses_weights_that_halves_cannot_hold(self) -> None:
         network = Network(networks.unguided())
         network.layers["n1"]["bias"].data[0] = 1e6

@@ -157,6 +157,31 @@ TEST(DepthCompletion, SeesPicturesOfTheWidthThatTheNetworkExpects) {
   }
 }
 
+TEST(DepthCompletion, TakesAStatedErrorInThePlaceOfConfidenceThatMeansNone) {
+  constexpr PictureSize kSize{8, 16};
+  Picture picture(kSize);
+  picture.rgb.assign(picture.rgb.size(), 51);                      // 0.2
+  for (std::size_t i = 0; i < 3; ++i) picture.rgb[3 * 5 + i] = 0;  // no depth there
+  NetworkBuilder net = Propagation(8);
+  net.Input("image", 3);
+  net.Node("red", "slice", {"image"}, {{"first", 0}, {"count", 1}});
+  net.Output("depth", "red");
+  net.json["normalisation"] = {{"log_error", 0.25}};
+  const DensePicture dense = Complete(net.Build(), kSize, picture);
+  for (std::size_t i = 0; i < dense.depth.size(); ++i) {
+    EXPECT_FLOAT_EQ(dense.confidence[i], i == 5 ? 0.0F : 0.8F) << i;
+  }
+  for (const nlohmann::json& wrong :
+       {nlohmann::json(0), nlohmann::json("0.2"), nlohmann::json(-1), nlohmann::json(11)}) {
+    net.json["normalisation"] = {{"log_error", wrong}};
+    const Graph refused = net.Build();
+    EXPECT_THAT(MessageOf<UserError>([&] {
+                  DepthCompletion(refused, {16, 32});
+                }),
+                HasSubstr("\"log_error\" of its normalisation should be a number above 0"));
+  }
+}
+
 TEST(DepthCompletion, TellsTheGroundWhereTheNetworkDoes) {
   // A size that the network takes, and one that it does not.
   for (const PictureSize size : {PictureSize{8, 16}, PictureSize{21, 39}}) {
