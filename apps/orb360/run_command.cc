@@ -56,6 +56,12 @@ struct RunOptions {
   bool is_quiet = false;
 };
 
+using Clock = std::chrono::steady_clock;
+
+double SecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
 /// The size that --resize asks for; empty for "".
 cv::Size ParseSize(const std::string& text) {
   if (text.empty()) return {};
@@ -78,7 +84,6 @@ int SetThreads(int wanted) {
 
 /// Tracks frame by frame to the end, an interrupt, or a failure of input or disk.
 RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, bool is_quiet) {
-  const auto start = std::chrono::steady_clock::now();
   RunRecord record;
   Progress progress(sequence->frame_count(), is_quiet);
   const auto pass_on_warnings = [&] {
@@ -102,7 +107,6 @@ RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, b
     pass_on_warnings();
   }
   record.frames = progress.num_frames();
-  record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return record;
 }
 
@@ -110,7 +114,7 @@ RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, b
 std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction, const RangeStore& depth,
                                      const RunOptions& options, const RunOutput& output,
                                      RunRecord* record) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   std::optional<DenseOutput> dense;
   if (reconstruction.depth_scales.empty()) return dense;  // nothing could be completed
 #ifdef __GLIBC__
@@ -121,8 +125,7 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction, const
   } catch (const std::exception&) {  // the trajectory is written all the same
     if (!record->failure) record->failure = std::current_exception();
   }
-  record->fusion_seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  record->fusion_seconds = SecondsSince(start);
   return dense;
 }
 
@@ -200,8 +203,12 @@ int Run(const RunOptions& options) {
     });
   }
   if (stored) system.StartIn(std::move(stored->map), stored->ground, options.localizes);
+  const auto start = Clock::now();
   RunRecord record = ProcessFrames(sequence.get(), &system, &output, options.is_quiet);
+  const auto last_frame = Clock::now();
   const Reconstruction reconstruction = system.Finish();
+  record.finishing_seconds = SecondsSince(last_frame);
+  record.seconds = SecondsSince(start);
   if (depth_failure && !record.failure) record.failure = depth_failure;
   const bool is_complete = depth && !depth_failure;
   const std::optional<DenseOutput> dense =

@@ -74,6 +74,7 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
       {"scale", DescribeScale(reconstruction, description.scale)},
       {"timing_ms", record.times.Summary()},
       {"seconds", record.seconds},
+      {"finishing_seconds", record.finishing_seconds},
       {"frames_per_second", record.frames / std::max(record.seconds, 1e-9)},
       {"peak_memory_mb", PeakMemoryMb()},
       {"mask", description.mask},

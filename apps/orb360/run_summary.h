@@ -18,8 +18,9 @@ namespace orb360 {
 /// What the loop over the frames leaves behind.
 struct RunRecord {
   int frames = 0;
-  double seconds = 0.0;
-  double fusion_seconds = 0.0;  // of the dense cloud
+  double seconds = 0.0;            // from the first frame to the finished map
+  double finishing_seconds = 0.0;  // of those, after the last frame
+  double fusion_seconds = 0.0;     // of the dense cloud
   StageTimes times;
   std::vector<std::string> warnings;
   std::exception_ptr failure;  // of the input or the disk, in the middle

@@ -116,6 +116,7 @@ TEST_F(RunTest, AFolderOfGreyImagesIsTrackedAndEverythingIsWritten) {
   for (const char* key : {"keyframes", "scale", "version"}) {
     EXPECT_TRUE(summary.contains(key)) << key;
   }
+  EXPECT_GT(summary["seconds"], summary["finishing_seconds"]);
   EXPECT_GT(summary["landmarks_per_keyframe"], 50.0);
   EXPECT_GE(summary["features_per_keyframe"], summary["landmarks_per_keyframe"]);
 }
