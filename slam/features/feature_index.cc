@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 namespace orb360 {
 namespace {
@@ -30,13 +31,16 @@ int FinerCopy(const Features& features, int feature, std::vector<int>* nearby) {
 }  // namespace
 
 void IndexFeatures(Features* features) {
-  features->grid = SphereGrid(features->bearings);
-  std::vector<int> by_level(features->size());
+  const auto num_corners = std::ranges::find_if_not(features->keypoints, &Keypoint::is_corner) -
+                           features->keypoints.begin();
+  features->grid = SphereGrid(std::span(features->bearings).first(num_corners));
+  features->corners.resize(features->size());
+  std::iota(features->corners.begin(), features->corners.end(), 0);
+  std::vector<int> by_level(num_corners);
   std::iota(by_level.begin(), by_level.end(), 0);
   std::stable_sort(by_level.begin(), by_level.end(), [&](int a, int b) {
     return features->keypoints[a].level < features->keypoints[b].level;
   });
-  features->corners.resize(features->size());
   std::vector<int> nearby;
   for (const int feature : by_level) {
     const int copy = FinerCopy(*features, feature, &nearby);

@@ -18,19 +18,21 @@ struct Keypoint {
   float angle;            // orientation in the tangent plane, radians from east towards south
   float sigma;            // angular noise of the position, radians (one standard deviation)
   uint8_t level;          // of the pyramid
-  uint8_t score;          // FAST score
+  uint8_t score;          // FAST score; 0 where a landmark's patch was found and no corner
+
+  bool is_corner() const { return score > 0; }
 };
 
 using Color = std::array<uint8_t, 3>;  // red, green, blue
 
-/// The features of one image; all arrays have the same length, index = feature.
+/// The features of one image; all arrays have the same length, index = feature. Corners come first.
 struct Features {
   std::vector<Keypoint> keypoints;
   std::vector<Eigen::Vector3d> bearings;  // unit vectors, camera frame
   std::vector<Descriptor> descriptors;
   std::vector<Color> colors;  // empty where the image had none
   // Of IndexFeatures:
-  SphereGrid grid;           // over `bearings`
+  SphereGrid grid;           // over the bearings of corners
   std::vector<int> corners;  // the finest feature that shows the same corner, or itself
 
   int size() const { return static_cast<int>(keypoints.size()); }

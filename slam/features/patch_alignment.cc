@@ -13,7 +13,9 @@ constexpr int kSide = 2 * Patch::kRadius + 1;
 constexpr int kCount = kSide * kSide;
 constexpr double kMaxShift = 2.0;        // samples
 constexpr double kMinCorrelation = 0.8;  // normalized, of the weighted gray values
-constexpr double kMinRoundness = 0.01;   // of the smaller to the larger eigenvalue of the structure
+// At the guess: below that one in two hundred still is aligned, and the others take most steps.
+constexpr double kMinGuessedCorrelation = 0.4;
+constexpr double kMinRoundness = 0.01;  // of the smaller to the larger eigenvalue of the structure
 // Of gray values: how little two pictures of the same differ by, squared, and how many errors of
 // their own a patch's samples have, which lie half a pixel apart.
 constexpr double kLeastNoise = 4.0;
@@ -185,6 +187,7 @@ std::optional<AlignedPatch> AlignPatch(const Patch& patch, const PyramidLevel& l
   for (int i = 0; i < kMaxSteps; ++i) {
     const Comparison seen(wanted, level, grid);
     if (!std::isfinite(seen.correlation)) return std::nullopt;
+    if (i == 0 && seen.correlation < kMinGuessedCorrelation) return std::nullopt;
     // A step d of the template's slope, undone in the picture's steps guess.steps (I + moved a^T):
     // (I + moved a^T) (I + moved d^T)^-1 = I + moved (a - growth / (1 + moved^T d) d)^T.
     const double growth = 1 + moved.dot(added_slope);

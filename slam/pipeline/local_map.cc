@@ -12,6 +12,7 @@ std::vector<ProvisionalPoint> MakeProvisionalPoints(const Keyframe& keyframe) {
     const RangePrior prior = keyframe.PriorOf(f);
     if (prior.sigma == 0 || is_mapped[features.corners[f]]) continue;
     const Keypoint& keypoint = features.keypoints[f];
+    if (!keypoint.is_corner()) continue;
     const Eigen::Vector3d direction = keyframe.world_from_camera.rotation * features.bearings[f];
     const Eigen::Vector3d position =
         keyframe.world_from_camera.translation + prior.range * direction;
@@ -52,8 +53,10 @@ LocalMap MakeLocalMap(const Map& map, KeyframeId reference, int num_keyframes) {
     local.landmarks.push_back({id, l.position, l.mean_direction, l.max_range, l.descriptor});
   }
 
-  for (const LandmarkId id : center.landmarks) {
-    if (id != kNoId) local.reference_matches += map.landmark(id).observations.size() >= 3;
+  for (size_t f = 0; f < center.landmarks.size(); ++f) {
+    const LandmarkId id = center.landmarks[f];
+    if (id == kNoId || !center.features->keypoints[f].is_corner()) continue;
+    local.reference_matches += map.landmark(id).observations.size() >= 3;
   }
   local.median_range = map.MedianRange(reference);
   local.provisional = MakeProvisionalPoints(center);

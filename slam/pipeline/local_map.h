@@ -30,7 +30,7 @@ struct LocalMap {
   KeyframeId reference = kNoId;  // the keyframe it was made around
   Rigid3 world_from_reference;
   double median_range = 0;    // of the reference's landmarks, from the reference
-  int reference_matches = 0;  // landmarks of the reference that at least 2 other keyframes see
+  int reference_matches = 0;  // corners of the reference that at least 2 other keyframes see
   std::vector<LocalLandmark> landmarks;  // ordered by id
   std::vector<ProvisionalPoint> provisional;
 

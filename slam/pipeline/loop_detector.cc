@@ -41,11 +41,12 @@ std::vector<double> FindWays(const Map& map) {
   return ways;
 }
 
-/// What lasts from view to view: descriptors of the features that are landmarks.
+/// What lasts from view to view: descriptors of the corners that are landmarks.
 std::vector<Descriptor> LandmarkDescriptors(const Keyframe& keyframe) {
   std::vector<Descriptor> descriptors;
   for (size_t f = 0; f < keyframe.landmarks.size(); ++f) {
-    if (keyframe.landmarks[f] != kNoId) descriptors.push_back(keyframe.features->descriptors[f]);
+    if (keyframe.landmarks[f] == kNoId || !keyframe.features->keypoints[f].is_corner()) continue;
+    descriptors.push_back(keyframe.features->descriptors[f]);
   }
   return descriptors;
 }

@@ -5,6 +5,7 @@
 
 #include "slam/pipeline/landmark_fusion.h"
 #include "slam/pipeline/observation_alignment.h"
+#include "slam/pipeline/patch_search.h"
 
 namespace orb360 {
 namespace {
@@ -83,6 +84,7 @@ KeyframeId IntegrateKeyframe(const TrackedFrame& frame,
   TriangulateNewLandmarks(id, options.triangulation, map);
   FuseWithNeighbours(id, options.max_fusion_neighbours, map);
   AlignObservations(id, ground, map);
+  FindByPatches(id, options.max_fusion_neighbours, map);
   AdjustLocally(id, options.bundle, ground, map);
   CullRedundantKeyframes(id, options, map);
   map->ForgetPictures(options.kept_pictures);

@@ -25,7 +25,9 @@ FreeFeatures CollectFree(const Keyframe& keyframe) {
   std::vector<double> sigmas;
   std::vector<uint8_t> is_mapped = FindMappedCorners(keyframe);
   for (int f = 0; f < keyframe.features->size(); ++f) {
-    if (is_mapped[keyframe.features->corners[f]]) continue;
+    if (is_mapped[keyframe.features->corners[f]] || !keyframe.features->keypoints[f].is_corner()) {
+      continue;
+    }
     index.push_back(f);
     bearings.push_back(keyframe.features->bearings[f]);
     sigmas.push_back(keyframe.features->keypoints[f].sigma);

@@ -14,32 +14,40 @@ constexpr int kLevelTolerance = 1;
 
 }  // namespace
 
+std::optional<int> ExpectLevel(const Eigen::Vector3d& point, const Eigen::Vector3d& usual_direction,
+                               double max_range, double min_view_cosine) {
+  const double range = point.norm();
+  // Beyond the farthest range it would be smaller than on the finest level, much nearer than the
+  // coarsest level it would be too large.
+  const int level = PredictLevel(max_range, range);
+  if (!(range > 0) || level < -kLevelTolerance || level > kMaxLevel + kLevelTolerance) {
+    return std::nullopt;
+  }
+  const double aside = min_view_cosine * range * usual_direction.norm();
+  if (point.dot(usual_direction) < aside) return std::nullopt;
+  return std::clamp(level, 0, kMaxLevel);
+}
+
 int FindFeature(const Features& features, const Rigid3& camera_from_world,
                 const LocalLandmark& landmark, std::span<const uint8_t> taken,
                 const ProjectionSearchOptions& options, std::vector<int>* candidates, int* distance,
                 bool* expected) {
   *expected = false;
   const Eigen::Vector3d point = camera_from_world * landmark.position;
-  const double range = point.norm();
-  // Beyond the farthest range it would be smaller than on the finest level, much nearer than the
-  // coarsest level it would be too large.
-  const int predicted = PredictLevel(landmark.max_range, range);
-  if (!(range > 0) || predicted < -kLevelTolerance || predicted > kMaxLevel + kLevelTolerance) {
-    return -1;
-  }
-  const Eigen::Vector3d direction = camera_from_world.rotation * landmark.mean_direction;
-  if (point.dot(direction) < options.min_view_cosine * range * direction.norm()) return -1;
+  const std::optional<int> level =
+      ExpectLevel(point, camera_from_world.rotation * landmark.mean_direction, landmark.max_range,
+                  options.min_view_cosine);
+  if (!level) return -1;
   *expected = true;
 
-  const int level = std::clamp(predicted, 0, kMaxLevel);
   const double radius =
-      options.scale_radius ? options.radius * std::exp2(level / 4.0) : options.radius;
-  const Eigen::Vector3d bearing = point / range;
+      options.scale_radius ? options.radius * std::exp2(*level / 4.0) : options.radius;
+  const Eigen::Vector3d bearing = point.normalized();
   candidates->clear();
   features.grid.Query(bearing, radius, candidates);
   const double min_cosine = std::cos(radius);
   std::erase_if(*candidates, [&](int i) {
-    return std::abs(features.keypoints[i].level - level) > kLevelTolerance ||
+    return std::abs(features.keypoints[i].level - *level) > kLevelTolerance ||
            features.bearings[i].dot(bearing) < min_cosine || (!taken.empty() && taken[i]);
   });
   const NearestTwo nearest = FindNearestTwo(landmark.descriptor, features.descriptors, *candidates);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,6 +37,12 @@ ProjectionMatches SearchByProjection(const Features& features, const Rigid3& wor
                                      std::span<const LocalLandmark> landmarks,
                                      std::span<const uint8_t> taken,
                                      const ProjectionSearchOptions& options);
+
+/// The pyramid level on which a picture shows what lies at `point`, in the camera's frame, and is
+/// seen by others along `usual_direction` and up to `max_range` (Landmark), clamped. Empty where it
+/// should not be visible: too far away, too near, or from too far beside.
+std::optional<int> ExpectLevel(const Eigen::Vector3d& point, const Eigen::Vector3d& usual_direction,
+                               double max_range, double min_view_cosine);
 
 /// The feature that best shows a landmark, -1 if none: the search above for a single landmark.
 /// `candidates` is scratch memory.

@@ -46,8 +46,10 @@ Reconstruction MakeReconstruction(const std::vector<Map>& maps,
       result.keyframes.push_back({keyframe.frame_index, keyframe.timestamp, static_cast<int>(m),
                                   keyframe.world_from_camera});
       const std::vector<uint8_t> is_mapped = FindMappedCorners(keyframe);
-      num_matched += std::ranges::count_if(keyframe.features->corners,
-                                           [&](int corner) { return is_mapped[corner] != 0; });
+      for (int f = 0; f < keyframe.features->size(); ++f) {
+        num_matched += keyframe.features->keypoints[f].is_corner() &&
+                       is_mapped[keyframe.features->corners[f]] != 0;
+      }
       num_seen +=
           std::ranges::count_if(keyframe.landmarks, [](LandmarkId l) { return l != kNoId; });
     }

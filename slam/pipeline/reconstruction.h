@@ -82,7 +82,7 @@ struct Reconstruction {
   int relocalized = 0;                // times a lost camera was found again
   std::vector<ClosedLoop> loops;      // closed within a map
   std::vector<ClosedLoop> joints;     // by which a map was joined to an older one
-  double features_per_keyframe = 0;   // mean number whose corner is a landmark
+  double features_per_keyframe = 0;   // mean number of corners that are landmarks
   double landmarks_per_keyframe = 0;  // mean number it sees: a corner counts once
   /// Of the keyframes that were given dense depth, by frame index: units of the result in one unit
   /// of that depth.

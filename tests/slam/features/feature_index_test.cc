@@ -67,6 +67,19 @@ TEST(FeatureIndex, OfTwoCornersWithinReachItIsTheNearerOne) {
   EXPECT_EQ(features.corners[2], 1);
 }
 
+TEST(FeatureIndex, WhatIsNoCornerStandsForItselfAndIsNotFound) {
+  Features features;
+  const Eigen::Vector3d place = Eigen::Vector3d::UnitX();
+  Add(place, 0, &features);
+  Add(place, 1, &features);
+  features.keypoints.back().score = 0;
+  IndexFeatures(&features);
+  EXPECT_EQ(features.corners, (std::vector<int>{0, 1}));
+  std::vector<int> found;
+  features.grid.Query(place, kSigma, &found);
+  EXPECT_EQ(found, std::vector<int>{0});
+}
+
 TEST(FeatureIndex, OfNoFeaturesIsEmpty) {
   Features features;
   features.corners = {3};

@@ -86,6 +86,7 @@ TEST(MapFile, ReadsBackExactlyWhatWasWritten) {
     EXPECT_EQ(is.features->keypoints[f].pixel, was.features->keypoints[f].pixel);
     EXPECT_EQ(is.features->keypoints[f].sigma, was.features->keypoints[f].sigma);
     EXPECT_EQ(is.features->keypoints[f].level, was.features->keypoints[f].level);
+    EXPECT_EQ(is.features->keypoints[f].score, was.features->keypoints[f].score);
     EXPECT_EQ(is.landmarks[f] + (is.landmarks[f] >= 7), was.landmarks[f]);
   }
   const Landmark& seen = read.map.landmark(8);

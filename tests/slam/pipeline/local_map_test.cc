@@ -57,6 +57,22 @@ TEST_F(LocalMapTest, CountsTheReferencesLandmarksThatTwoOthersSee) {
   EXPECT_EQ(MakeLocalMap(map_, 0, 10).reference_matches, 4);
 }
 
+TEST_F(LocalMapTest, OnlyCornersCanBeTrackedOrBeProvisionalPoints) {
+  for (int i = 0; i < 12; i += 3) map_.AddObservation(i, 3, i);
+  Keyframe& reference = map_.keyframe(0);
+  reference.range_priors.assign(reference.landmarks.size(), {4.0F, 0.1F});
+  const size_t free = MakeLocalMap(map_, 0, 10).provisional.size();
+  auto features = std::make_shared<Features>(*reference.features);
+  ASSERT_EQ(reference.landmarks[0], 0);
+  ASSERT_EQ(reference.landmarks[1], kNoId);
+  features->keypoints[0].score = 0;
+  features->keypoints[1].score = 0;
+  reference.features = features;
+  const LocalMap local = MakeLocalMap(map_, 0, 10);
+  EXPECT_EQ(local.reference_matches, 3);
+  EXPECT_EQ(local.provisional.size(), free - 1);
+}
+
 TEST_F(LocalMapTest, FeaturesOfTheReferenceWithoutALandmarkAreProvisionalPoints) {
   EXPECT_TRUE(MakeLocalMap(map_, 0, 10).provisional.empty());
   Keyframe& reference = map_.keyframe(0);

@@ -1,97 +1,17 @@
 #include "slam/pipeline/observation_alignment.h"
 
-#include <numbers>
-#include <random>
-
 #include <gtest/gtest.h>
-#include <opencv2/imgproc.hpp>
 
-#include "slam/features/sphere_pyramid.h"
-#include "slam/geometry/bearing.h"
 #include "slam/geometry/so3.h"
-#include "tests/slam/pipeline/box_room.h"
+#include "tests/slam/pipeline/patch_scene.h"
 
 namespace orb360 {
 namespace {
 
-const EquirectangularCamera kCamera(1024, 512);
-
-// Keyframes in a textured room, with corners found off by half a pixel.
-struct Scene {
-  BoxRoom room{{6.0, 5.0, 3.0}, 8};
-  std::mt19937 random{5};
-  Map map;
-  std::vector<Eigen::Vector3d> shown;  // by landmark: the point in the middle of its patch
-  uint8_t level = 0;                   // on which features are found
-
-  double Uniform(double low, double high) {
-    return low + (high - low) * (random() + 0.5) / 4294967296.0;
-  }
-
-  KeyframeId AddKeyframe(const Rigid3& pose, bool with_picture) {
-    cv::Mat gray;
-    cv::cvtColor(room.Render(kCamera, pose), gray, cv::COLOR_BGR2GRAY);
-    SpherePyramid picture;
-    BuildSpherePyramid(gray, 8, &picture);
-    auto features = std::make_shared<Features>();
-    for (const Eigen::Vector3d& point : shown) {
-      const Eigen::Vector3d seen = pose.Inverse() * point;
-      const Eigen::Vector3d wrong = Eigen::Vector3d(Uniform(-1, 1), Uniform(-1, 1), Uniform(-1, 1))
-                                        .cross(seen.normalized())
-                                        .normalized();
-      const double off = map.num_keyframes() == 0 ? 0 : kCamera.AngleOfPixels(0.5);
-      Keypoint keypoint{};
-      keypoint.pixel.setZero();
-      keypoint.level = level;
-      keypoint.sigma = static_cast<float>(kCamera.AngleOfPixels(0.7 * RangeAtLevelZero(1, level)));
-      features->keypoints.push_back(keypoint);
-      features->bearings.push_back((seen.normalized() + off * wrong).normalized());
-    }
-    const KeyframeId id =
-        map.AddKeyframe(map.num_keyframes(), 0.1 * map.num_keyframes(), pose, std::move(features));
-    if (with_picture) map.keyframe(id).picture = std::make_shared<SpherePyramid>(picture);
-    for (LandmarkId l = 0; l < map.landmark_end(); ++l) map.AddObservation(l, id, l);
-    return id;
-  }
-
-  // Points on the walls that look like corners from the origin.
-  Scene() {
-    cv::Mat gray;
-    cv::cvtColor(room.Render(kCamera, {}), gray, cv::COLOR_BGR2GRAY);
-    std::vector<cv::Point2f> corners;
-    cv::goodFeaturesToTrack(gray(cv::Rect(0, 130, 1024, 252)), corners, 150, 0.1, 15);
-    for (const cv::Point2f& corner : corners) {
-      const Eigen::Vector3d ray = kCamera.Bearing({corner.x + 0.5, corner.y + 130.5});
-      shown.push_back(room.Range({0, 0, 0}, ray) * ray);
-      map.AddLandmark(shown.back(), {});
-    }
-  }
-
-  // Median angle between what the keyframe shows and where it is taken to be, pixels; `share`: of
-  // the observations that are aligned.
-  double Error(KeyframeId id, bool aligned, double* share = nullptr) const {
-    std::vector<double> errors;
-    const Keyframe& keyframe = map.keyframe(id);
-    for (LandmarkId l = 0; l < map.landmark_end(); ++l) {
-      for (const Observation& o : map.landmark(l).observations) {
-        if (o.keyframe != id || (aligned && o.aligned_sigma == 0)) continue;
-        const Eigen::Vector3d bearing = aligned ? Eigen::Vector3d(o.aligned_bearing.cast<double>())
-                                                : keyframe.features->bearings[o.feature];
-        errors.push_back(AngleBetween(keyframe.world_from_camera.Inverse() * shown[l], bearing) /
-                         kCamera.AngleOfPixels(1.0));
-      }
-    }
-    if (share != nullptr) *share = errors.size() / static_cast<double>(map.num_landmarks());
-    if (errors.empty()) return -1;
-    std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
-    return errors[errors.size() / 2];
-  }
-};
-
 const Rigid3 kStep{ExpSo3({0.05, -0.04, 0.3}), {-0.5, 0.2, 0.1}};
 
 TEST(AlignObservations, BringsCornersToAFifthOfTheirErrorFromAnyDirection) {
-  Scene scene;
+  PatchScene scene;
   AlignObservations(scene.AddKeyframe({}, true), {}, &scene.map);
   const KeyframeId second = scene.AddKeyframe(kStep, true);
   AlignObservations(second, {}, &scene.map);
@@ -108,7 +28,7 @@ TEST(AlignObservations, BringsCornersToAFifthOfTheirErrorFromAnyDirection) {
 
 TEST(AlignObservations, WarpsThePatchHoweverTheCameraIsHeldAndWhereverItIs) {
   for (const uint8_t level : {0, 5}) {
-    Scene scene;
+    PatchScene scene;
     scene.level = level;
     AlignObservations(scene.AddKeyframe({}, true), {}, &scene.map);
     // Rolled by a quarter turn, and a metre and a half nearer to one wall.
@@ -129,7 +49,7 @@ Eigen::Vector2d SlopeOf(const Map& map, const Landmark& landmark, const Eigen::V
 }
 
 TEST(AlignObservations, LearnsHowSurfacesLieAndTakesThemForThat) {
-  Scene scene;
+  PatchScene scene;
   AlignObservations(scene.AddKeyframe({}, true), {}, &scene.map);
   for (const double x : {-0.5, -1.0, -1.5, -2.0}) {
     const Rigid3 pose{Eigen::Quaterniond::Identity(), {x, 0.3, 0.4 * x}};
@@ -158,7 +78,7 @@ TEST(AlignObservations, LearnsHowSurfacesLieAndTakesThemForThat) {
 }
 
 TEST(AlignObservations, ExpectsTheGroundToLieLikeTheGround) {
-  Scene scene;
+  PatchScene scene;
   const KnownGround ground{Eigen::Vector3d::UnitZ(), 3.0};
   AlignObservations(scene.AddKeyframe({}, true), ground, &scene.map);
   int on_ground = 0;
@@ -180,7 +100,7 @@ TEST(AlignObservations, ExpectsTheGroundToLieLikeTheGround) {
 }
 
 TEST(AlignObservations, AlignsWhatComesFromAnotherLandmark) {
-  Scene scene;
+  PatchScene scene;
   AlignObservations(scene.AddKeyframe({}, true), {}, &scene.map);
   const KeyframeId second = scene.AddKeyframe(kStep, true);
   const KeyframeId third = scene.AddKeyframe({}, true);
@@ -196,7 +116,7 @@ TEST(AlignObservations, AlignsWhatComesFromAnotherLandmark) {
 }
 
 TEST(AlignObservations, WhatHasTurnedOutWrongStaysACorner) {
-  Scene scene;
+  PatchScene scene;
   AlignObservations(scene.AddKeyframe({}, true), {}, &scene.map);
   const KeyframeId second = scene.AddKeyframe(kStep, true);
   AlignObservations(second, {}, &scene.map);
@@ -211,9 +131,10 @@ TEST(AlignObservations, WhatHasTurnedOutWrongStaysACorner) {
 }
 
 TEST(AlignObservations, TakesNoPatchBesideAPole) {
-  Scene scene;
+  PatchScene scene;
   for (LandmarkId l = 0; l < scene.map.landmark_end(); ++l) {
-    const double off = kCamera.AngleOfPixels(1.0 + 0.05 * l) * 3.0;  // of the ceiling's middle, m
+    const double off =
+        kPatchCamera.AngleOfPixels(1.0 + 0.05 * l) * 3.0;  // of the ceiling's middle, m
     scene.shown[l] = {off, 0.5 * off, 3.0};
   }
   AlignObservations(scene.AddKeyframe({}, true), {}, &scene.map);
@@ -223,7 +144,7 @@ TEST(AlignObservations, TakesNoPatchBesideAPole) {
 }
 
 TEST(AlignObservations, LeavesWhatIsSeenFromMuchFartherAway) {
-  Scene scene;
+  PatchScene scene;
   AlignObservations(scene.AddKeyframe({Eigen::Quaterniond::Identity(), {4.8, 0, 0}}, true), {},
                     &scene.map);
   const KeyframeId second = scene.AddKeyframe({Eigen::Quaterniond::Identity(), {-4.0, 0, 0}}, true);
@@ -240,7 +161,7 @@ TEST(AlignObservations, LeavesWhatIsSeenFromMuchFartherAway) {
 }
 
 TEST(AlignObservations, AWrongPatchGoesWithItsObservation) {
-  Scene scene;
+  PatchScene scene;
   const KeyframeId first = scene.AddKeyframe({}, true);
   AlignObservations(first, {}, &scene.map);
   scene.map.RemoveObservation(3, first);
@@ -251,7 +172,7 @@ TEST(AlignObservations, AWrongPatchGoesWithItsObservation) {
 }
 
 TEST(AlignObservations, WhatIsAlignedWithAPatchThatWasNotKeptGetsNoOther) {
-  Scene scene;
+  PatchScene scene;
   const KeyframeId first = scene.AddKeyframe({}, true);
   AlignObservations(first, {}, &scene.map);
   scene.map.landmark(3).patch.reset();  // as in a map that was read from a file
@@ -262,7 +183,7 @@ TEST(AlignObservations, WhatIsAlignedWithAPatchThatWasNotKeptGetsNoOther) {
 }
 
 TEST(AlignObservations, AlignsWhatOlderKeyframesShowWithThePatchOfANewLandmark) {
-  Scene scene;
+  PatchScene scene;
   const KeyframeId older = scene.AddKeyframe(kStep, true);
   const KeyframeId gone = scene.AddKeyframe({ExpSo3({0, 0, 0.1}), {0.2, 0, 0}}, false);
   const KeyframeId newest = scene.AddKeyframe({}, true);
@@ -283,15 +204,11 @@ TEST(AlignObservations, AlignsWhatOlderKeyframesShowWithThePatchOfANewLandmark) 
 }
 
 TEST(AlignObservations, LeavesWhatLooksDifferent) {
-  Scene scene;
+  PatchScene scene;
   AlignObservations(scene.AddKeyframe({}, true), {}, &scene.map);
   const KeyframeId second = scene.AddKeyframe(kStep, true);
   // Another room's picture.
-  cv::Mat gray;
-  cv::cvtColor(BoxRoom({6.0, 5.0, 3.0}, 99).Render(kCamera, kStep), gray, cv::COLOR_BGR2GRAY);
-  SpherePyramid picture;
-  BuildSpherePyramid(gray, 8, &picture);
-  scene.map.keyframe(second).picture = std::make_shared<SpherePyramid>(picture);
+  scene.map.keyframe(second).picture = PictureOf(BoxRoom({6.0, 5.0, 3.0}, 99), kStep);
   AlignObservations(second, {}, &scene.map);
   double share = 0;
   scene.Error(second, true, &share);
@@ -299,7 +216,7 @@ TEST(AlignObservations, LeavesWhatLooksDifferent) {
 }
 
 TEST(AlignObservations, ANeverKeptPictureChangesNothing) {
-  Scene scene;
+  PatchScene scene;
   const KeyframeId id = scene.AddKeyframe({}, false);
   AlignObservations(id, {}, &scene.map);
   for (LandmarkId l = 0; l < scene.map.landmark_end(); ++l) {

@@ -132,6 +132,18 @@ TEST(PanoramicTriangulation, MakesOneLandmarkOfACornerThatIsSeenOnTwoLevels) {
   EXPECT_GT(static_cast<double>(created.size()), 0.95 * static_cast<double>(num_created));
 }
 
+TEST(PanoramicTriangulation, MakesNoLandmarksOfWhatIsNoCorner) {
+  SyntheticScene scene(300);
+  const std::vector<Rigid3> poses = Walk(2, {-0.8, 0.3, 0.1});
+  Map map = scene.MakeMap(poses, 50, /*noise=*/0.0);
+  auto features = std::make_shared<Features>(*map.keyframe(0).features);
+  for (int i = 150; i < 300; ++i) features->keypoints[i].score = 0;
+  map.keyframe(0).features = std::move(features);
+  const std::vector<LandmarkId> created = TriangulateNewLandmarks(1, {}, &map);
+  EXPECT_GT(created.size(), 60u);
+  for (const LandmarkId id : created) EXPECT_LT(PointOf(scene, map.landmark(id)), 150);
+}
+
 // Priors of keyframe 0 for the points that have no landmark: `factor` times the true range.
 void SetPriors(const SyntheticScene& scene, double factor, Map* map) {
   Keyframe& keyframe = map->keyframe(0);
