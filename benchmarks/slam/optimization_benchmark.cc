@@ -1,12 +1,12 @@
 // Pose refinement with 500 landmarks, and local bundle adjustment of 20 keyframes and 5,000
-// landmarks, without and with ranges that are known roughly; both solvers on the problem of a usual
-// window.
+// landmarks, without and with ranges that are known roughly; ours beside Ceres on the problem of a
+// usual window.
 #include <benchmark/benchmark.h>
 
-#include "slam/optimization/bundle_solvers.h"
 #include "slam/optimization/local_bundle_adjustment.h"
 #include "slam/optimization/pose_refinement.h"
 #include "tests/slam/geometry/random_geometry.h"
+#include "tests/slam/optimization/ceres_bundle.h"
 #include "tests/slam/pipeline/synthetic_scene.h"
 
 namespace orb360 {
@@ -72,8 +72,8 @@ void SolveWindow(benchmark::State& state, Solver solve) {
     solve({.max_iterations = 4, .function_tolerance = 0}, &copy);
   }
 }
-BENCHMARK_CAPTURE(SolveWindow, dense, SolveBundleDense)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(SolveWindow, sparse, SolveBundleSparse)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(SolveWindow, ours, SolveBundle)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(SolveWindow, ceres, SolveBundleByCeres)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace orb360

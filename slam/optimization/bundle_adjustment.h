@@ -67,7 +67,7 @@ struct BundleReport {
 };
 
 /// Bundle adjustment on tangent-plane residuals (bearing_residual.h; paper Eq. 11) by Levenberg and
-/// Marquardt's method with the points eliminated, on one thread (bundle_solvers.h).
+/// Marquardt's method, damped as Ceres does it, with the points eliminated, on one thread.
 /// Contract: indices are in range; every point is observed.
 BundleReport SolveBundle(const BundleOptions& options, BundleProblem* problem);
 

@@ -1,5 +1,7 @@
 #include "slam/optimization/normal_equations.h"
 
+#include <algorithm>
+
 #include <Eigen/Cholesky>
 
 #undef HWY_TARGET_INCLUDE
@@ -55,10 +57,10 @@ void AddTerms(const BundleLinks& structure, const BundleTerms& terms, size_t beg
 }
 
 // One point: `inverse` is L^-1 by columns, `links` W, to become `reduced` W L^-T. Takes their
-// products off the blocks of the poses, of which the lower triangle is kept, row by row.
+// products off the blocks of the pairs of poses; `first` and `columns` are those of PosePairs.
 void EliminatePoint(const double* inverse, const double* point_sum, const PosePointBlock* links,
-                    const int* poses, size_t num_links, PosePointBlock* reduced, PoseBlock* blocks,
-                    PoseVector* sums) {
+                    const int* poses, size_t num_links, PosePointBlock* reduced,
+                    const size_t* first, const int* columns, PoseBlock* blocks, PoseVector* sums) {
   const D d;
   const double* l = inverse;
   for (size_t a = 0; a < num_links; ++a) {
@@ -82,14 +84,15 @@ void EliminatePoint(const double* inverse, const double* point_sum, const PosePo
       s = hn::MulAdd(y2, hn::Set(d, point_sum[2]), s);
       hn::StoreU(s, d, sum + i);
     }
-    PoseBlock* row = blocks + static_cast<size_t>(poses[a]) * (poses[a] + 1) / 2;
-    for (size_t i = 0; i < kRows; i += hn::Lanes(d)) {
-      const auto y0 = hn::LoadU(d, y + i);
-      const auto y1 = hn::LoadU(d, y + kPoseRows + i);
-      const auto y2 = hn::LoadU(d, y + 2 * kPoseRows + i);
-      for (size_t b = 0; b <= a; ++b) {
-        const double* other = reduced[b].data();
-        double* block = row[poses[b]].data();
+    size_t pair = first[poses[a]];
+    for (size_t b = 0; b <= a; ++b) {
+      while (columns[pair] != poses[b]) ++pair;
+      const double* other = reduced[b].data();
+      double* block = blocks[pair].data();
+      for (size_t i = 0; i < kRows; i += hn::Lanes(d)) {
+        const auto y0 = hn::LoadU(d, y + i);
+        const auto y1 = hn::LoadU(d, y + kPoseRows + i);
+        const auto y2 = hn::LoadU(d, y + 2 * kPoseRows + i);
         for (size_t j = 0; j < kRows; ++j) {
           double* column = block + j * kPoseRows + i;
           auto left = hn::LoadU(d, column);
@@ -153,13 +156,37 @@ Eigen::Vector3d ReducedEquations::PointStep(const BundleLinks& structure, size_t
   return inverses[point].transpose() * rest;
 }
 
-bool EliminatePoints(const NormalEquations& equations, const BundleLinks& structure, double radius,
-                     ReducedEquations* reduced) {
+PosePairs::PosePairs(size_t num_poses, const BundleLinks& links) {
+  std::vector<std::vector<int>> rows(num_poses);
+  const auto tidy = [](std::vector<int>* row) {
+    std::ranges::sort(*row);
+    row->erase(std::ranges::unique(*row).begin(), row->end());
+  };
+  constexpr size_t kMany = 4096;  // before what is there several times is removed
+  for (size_t i = 0; i < num_poses; ++i) rows[i].push_back(static_cast<int>(i));
+  for (size_t p = 0; p + 1 < links.first.size(); ++p) {
+    for (size_t a = links.first[p]; a < links.first[p + 1]; ++a) {
+      std::vector<int>& row = rows[links.pose[a]];
+      for (size_t b = links.first[p]; b < a; ++b) row.push_back(links.pose[b]);
+      if (row.size() > kMany + num_poses) tidy(&row);
+    }
+  }
+  for (std::vector<int>& row : rows) {
+    tidy(&row);
+    column.insert(column.end(), row.begin(), row.end());
+    first.push_back(column.size());
+  }
+}
+
+bool EliminatePoints(const NormalEquations& equations, const BundleLinks& structure,
+                     const PosePairs& pairs, double radius, ReducedEquations* reduced) {
   const size_t num_poses = equations.poses.size();
-  std::vector<PoseBlock> blocks(num_poses * (num_poses + 1) / 2, PoseBlock::Zero());
-  std::vector<PoseVector> sums(num_poses);
+  std::vector<PoseBlock>& blocks = reduced->blocks;
+  std::vector<PoseVector>& sums = reduced->sums;
+  blocks.assign(pairs.column.size(), PoseBlock::Zero());
+  sums.resize(num_poses);
   for (size_t i = 0; i < num_poses; ++i) {
-    PoseBlock& block = blocks[i * (i + 3) / 2];
+    PoseBlock& block = blocks[pairs.first[i + 1] - 1];
     block = equations.poses[i];
     const Eigen::Matrix<double, 6, 1> diagonal = block.diagonal();
     block.diagonal() += Damping(diagonal, radius);
@@ -181,17 +208,8 @@ bool EliminatePoints(const NormalEquations& equations, const BundleLinks& struct
     const size_t first = structure.first[p];
     eliminate(reduced->inverses[p].data(), reduced->point_sums[p].data(),
               equations.links.data() + first, structure.pose.data() + first,
-              structure.first[p + 1] - first, reduced->links.data() + first, blocks.data(),
-              sums.data());
-  }
-  const auto start = [](size_t pose) { return static_cast<Eigen::Index>(6 * pose); };
-  reduced->poses.setZero(start(num_poses), start(num_poses));
-  reduced->sums.resize(start(num_poses));
-  for (size_t i = 0; i < num_poses; ++i) {
-    reduced->sums.segment<6>(start(i)) = sums[i].head<6>();
-    for (size_t j = 0; j <= i; ++j) {
-      reduced->poses.block<6, 6>(start(i), start(j)) = blocks[i * (i + 1) / 2 + j].topRows<6>();
-    }
+              structure.first[p + 1] - first, reduced->links.data() + first, pairs.first.data(),
+              pairs.column.data(), blocks.data(), sums.data());
   }
   return true;
 }

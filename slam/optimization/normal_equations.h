@@ -22,6 +22,18 @@ struct BundleLinks {
   std::vector<size_t> first = {0};  // link by point, and the end
 };
 
+/// Which pairs of poses see a point in common: the structure of what is left when the points are
+/// eliminated, by rows of the lower triangle.
+struct PosePairs {
+  std::vector<size_t> first = {0};  // pair by row, and the end
+  std::vector<int> column;          // by pair; those of a row rise, the last is the row itself
+
+  PosePairs() = default;
+  PosePairs(size_t num_poses, const BundleLinks& links);
+
+  size_t num_poses() const { return first.size() - 1; }
+};
+
 /// The normal equations of a bundle of poses and points: J^T J in blocks, and the gradient J^T r.
 struct NormalEquations {
   std::vector<PoseBlock> poses;
@@ -39,11 +51,11 @@ struct NormalEquations {
            std::span<const TermRow> rows, std::span<const double> weights);
 };
 
-/// What is left of the equations when the points are eliminated: a dense system of the poses, and
-/// what it takes to come back to the points.
+/// What is left of the equations when the points are eliminated: a system of the poses, and what it
+/// takes to come back to the points.
 struct ReducedEquations {
-  Eigen::MatrixXd poses;                    // lower triangle
-  Eigen::VectorXd sums;                     // right hand sides
+  std::vector<PoseBlock> blocks;            // by pair
+  std::vector<PoseVector> sums;             // right hand sides
   std::vector<Eigen::Matrix3d> inverses;    // L^-1, where L L^T is a point's block, damped
   std::vector<Eigen::Vector3d> point_sums;  // L^-1 times a point's gradient
   std::vector<PosePointBlock> links;        // W L^-T
@@ -62,7 +74,7 @@ Vector Damping(const Vector& diagonal, double radius) {
 
 /// Eliminates the points of the damped equations (Schur complement). False where the block of a
 /// point is not positive definite to rounding.
-bool EliminatePoints(const NormalEquations& equations, const BundleLinks& structure, double radius,
-                     ReducedEquations* reduced);
+bool EliminatePoints(const NormalEquations& equations, const BundleLinks& structure,
+                     const PosePairs& pairs, double radius, ReducedEquations* reduced);
 
 }  // namespace orb360

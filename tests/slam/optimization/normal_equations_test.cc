@@ -113,6 +113,16 @@ TEST(NormalEquations, AreTheSumOfTheTerms) {
   });
 }
 
+TEST(PosePairs, AreThoseThatSeeAPointInCommon) {
+  // Point 0 is seen by the poses 0 and 2, point 1 by 1, 2 and 4, point 2 by 0 and 2 again; pose 3
+  // sees nothing.
+  const BundleLinks links{{0, 2, 1, 2, 4, 0, 2}, {0, 2, 5, 7}};
+  const PosePairs pairs(5, links);
+  EXPECT_EQ(pairs.num_poses(), 5u);
+  EXPECT_EQ(pairs.first, (std::vector<size_t>{0, 1, 2, 5, 6, 9}));
+  EXPECT_EQ(pairs.column, (std::vector<int>{0, 1, 0, 1, 2, 3, 1, 2, 4}));
+}
+
 TEST(EliminatePoints, LeavesTheSolutionOfTheWholeSystem) {
   const RandomTerms random(2);
   constexpr double kRadius = 3.0;
@@ -122,9 +132,17 @@ TEST(EliminatePoints, LeavesTheSolutionOfTheWholeSystem) {
   const Eigen::VectorXd truth = damped.llt().solve(-random.gradient);
   ForEachDispatchTarget([&] {
     ReducedEquations reduced;
-    ASSERT_TRUE(EliminatePoints(random.Equations(), random.links, kRadius, &reduced));
-    const Eigen::VectorXd poses =
-        reduced.poses.selfadjointView<Eigen::Lower>().llt().solve(reduced.sums);
+    const PosePairs pairs(kPoses, random.links);
+    ASSERT_TRUE(EliminatePoints(random.Equations(), random.links, pairs, kRadius, &reduced));
+    Eigen::MatrixXd system = Eigen::MatrixXd::Zero(6 * kPoses, 6 * kPoses);
+    Eigen::VectorXd sums(6 * kPoses);
+    for (int i = 0; i < kPoses; ++i) {
+      sums.segment<6>(6 * i) = reduced.sums[i].head<6>();
+      for (size_t b = pairs.first[i]; b < pairs.first[i + 1]; ++b) {
+        system.block<6, 6>(6 * i, 6 * pairs.column[b]) = reduced.blocks[b].topRows<6>();
+      }
+    }
+    const Eigen::VectorXd poses = system.selfadjointView<Eigen::Lower>().llt().solve(sums);
     EXPECT_LT((poses - truth.head(6 * kPoses)).norm(), 1e-10 * truth.norm());
     std::vector<PoseVector> steps(kPoses, PoseVector::Zero());
     for (int i = 0; i < kPoses; ++i) steps[i].head<6>() = poses.segment<6>(6 * i);
@@ -140,7 +158,8 @@ TEST(EliminatePoints, RefusesABlockThatIsNotPositiveDefinite) {
   NormalEquations equations = random.Equations();
   equations.points[4](1, 1) = -1;
   ReducedEquations reduced;
-  EXPECT_FALSE(EliminatePoints(equations, random.links, 1.0, &reduced));
+  EXPECT_FALSE(
+      EliminatePoints(equations, random.links, PosePairs(kPoses, random.links), 1.0, &reduced));
 }
 
 }  // namespace

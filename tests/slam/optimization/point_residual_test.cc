@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/optimization/point_cost.h"
 #include "tests/slam/geometry/random_geometry.h"
+#include "tests/slam/optimization/point_cost.h"
 
 namespace orb360 {
 namespace {

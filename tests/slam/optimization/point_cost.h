@@ -4,7 +4,7 @@
 #include <ceres/sized_cost_function.h>
 
 #include "slam/optimization/point_residual.h"
-#include "slam/optimization/rotation_jacobian.h"
+#include "tests/slam/optimization/rotation_jacobian.h"
 
 namespace orb360 {
 

@@ -1,9 +1,9 @@
-#include "slam/optimization/bundle_solvers.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "slam/optimization/bundle_adjustment.h"
+#include "tests/slam/optimization/ceres_bundle.h"
 #include "tests/slam/optimization/noisy_walk.h"
 
 namespace orb360 {
@@ -26,18 +26,18 @@ class BundleSolvers : public testing::TestWithParam<BundleLoss> {};
 // Ceres is the independent truth here.
 TEST_P(BundleSolvers, ComeToTheSameMinimum) {
   for (int seed = 1; seed <= 3; ++seed) {
-    BundleProblem dense = NoisyWalk(seed);
-    BundleProblem sparse = dense;
+    BundleProblem own = NoisyWalk(seed);
+    BundleProblem other = own;
     const BundleOptions options{
         .max_iterations = 200, .loss = GetParam(), .function_tolerance = 1e-15};
-    const BundleReport by_dense = SolveBundleDense(options, &dense);
-    const BundleReport by_sparse = SolveBundleSparse(options, &sparse);
-    ASSERT_TRUE(by_dense.usable && by_sparse.usable);
-    EXPECT_NEAR(by_dense.initial_cost, by_sparse.initial_cost, 1e-9 * by_sparse.initial_cost);
-    EXPECT_LT(by_dense.final_cost, 0.9 * by_dense.initial_cost);
-    EXPECT_NEAR(by_dense.final_cost, by_sparse.final_cost, 1e-8 * by_sparse.final_cost);
-    for (size_t i = 0; i < dense.world_from_camera.size(); ++i) {
-      const Rigid3 difference = dense.world_from_camera[i].Inverse() * sparse.world_from_camera[i];
+    const BundleReport ours = SolveBundle(options, &own);
+    const BundleReport by_ceres = SolveBundleByCeres(options, &other);
+    ASSERT_TRUE(ours.usable && by_ceres.usable);
+    EXPECT_NEAR(ours.initial_cost, by_ceres.initial_cost, 1e-9 * by_ceres.initial_cost);
+    EXPECT_LT(ours.final_cost, 0.9 * ours.initial_cost);
+    EXPECT_NEAR(ours.final_cost, by_ceres.final_cost, 1e-8 * by_ceres.final_cost);
+    for (size_t i = 0; i < own.world_from_camera.size(); ++i) {
+      const Rigid3 difference = own.world_from_camera[i].Inverse() * other.world_from_camera[i];
       EXPECT_LT(difference.translation.norm(), 1e-5) << i;
       EXPECT_LT(LogSo3(difference.rotation).norm(), 1e-5) << i;
     }
@@ -46,24 +46,24 @@ TEST_P(BundleSolvers, ComeToTheSameMinimum) {
 
 // With few iterations, as in local bundle adjustment.
 TEST_P(BundleSolvers, ComeEquallyFarInFewSteps) {
-  BundleProblem dense = NoisyWalk(4);
-  BundleProblem sparse = dense;
+  BundleProblem own = NoisyWalk(4);
+  BundleProblem other = own;
   const BundleOptions options{.max_iterations = 4, .loss = GetParam()};
-  const BundleReport by_dense = SolveBundleDense(options, &dense);
-  const BundleReport by_sparse = SolveBundleSparse(options, &sparse);
-  ASSERT_TRUE(by_dense.usable);
-  EXPECT_LE(by_dense.iterations, 4);
-  EXPECT_LT(by_dense.final_cost, 0.9 * by_dense.initial_cost);
-  EXPECT_NEAR(by_dense.final_cost, by_sparse.final_cost, 0.02 * by_sparse.final_cost);
+  const BundleReport ours = SolveBundle(options, &own);
+  const BundleReport by_ceres = SolveBundleByCeres(options, &other);
+  ASSERT_TRUE(ours.usable);
+  EXPECT_LE(ours.iterations, 4);
+  EXPECT_LT(ours.final_cost, 0.9 * ours.initial_cost);
+  EXPECT_NEAR(ours.final_cost, by_ceres.final_cost, 0.02 * by_ceres.final_cost);
 }
 
 INSTANTIATE_TEST_SUITE_P(Losses, BundleSolvers,
                          testing::Values(BundleLoss::kHuber, BundleLoss::kArctan));
 
-TEST(SolveBundleDense, HoldsFixedPoses) {
+TEST(SolveBundle, HoldsFixedPoses) {
   const BundleProblem before = NoisyWalk(5);
   BundleProblem problem = before;
-  ASSERT_TRUE(SolveBundleDense({}, &problem).usable);
+  ASSERT_TRUE(SolveBundle({}, &problem).usable);
   for (size_t i = 0; i < before.world_from_camera.size(); ++i) {
     const Rigid3& was = before.world_from_camera[i];
     const Rigid3& is = problem.world_from_camera[i];
@@ -79,7 +79,7 @@ TEST_P(BundleSolvers, ComeAsFarFarAwayFromTheOrigin) {
   const Eigen::Vector3d away(2000, -500, 100);
   for (Rigid3& pose : far.world_from_camera) pose.translation += away;
   for (Eigen::Vector3d& point : far.points) point += away;
-  for (const auto solve : {SolveBundleDense, SolveBundleSparse}) {
+  for (const auto solve : {SolveBundle, SolveBundleByCeres}) {
     BundleProblem near_copy = near;
     BundleProblem far_copy = far;
     const BundleOptions options{.max_iterations = 3, .loss = GetParam()};
@@ -90,11 +90,11 @@ TEST_P(BundleSolvers, ComeAsFarFarAwayFromTheOrigin) {
   }
 }
 
-TEST(SolveBundleDense, LeavesTheProblemAsItIsWhereAResidualHasNoValue) {
+TEST(SolveBundle, LeavesTheProblemAsItIsWhereAResidualHasNoValue) {
   BundleProblem problem = NoisyWalk(6);
   problem.points[0] = problem.world_from_camera[0].translation;  // sees it at range zero
   const BundleProblem before = problem;
-  EXPECT_FALSE(SolveBundleDense({}, &problem).usable);
+  EXPECT_FALSE(SolveBundle({}, &problem).usable);
   EXPECT_EQ(problem.points, before.points);
   for (size_t i = 0; i < before.world_from_camera.size(); ++i) {
     EXPECT_EQ(problem.world_from_camera[i].translation, before.world_from_camera[i].translation);
@@ -103,7 +103,7 @@ TEST(SolveBundleDense, LeavesTheProblemAsItIsWhereAResidualHasNoValue) {
 
 // A point that all poses see in nearly the same direction has next to no range: the step must not
 // throw it behind the cameras, or anything else to infinity.
-TEST(SolveBundleDense, BearsPointsWithoutParallax) {
+TEST(SolveBundle, BearsPointsWithoutParallax) {
   BundleProblem problem = NoisyWalk(7);
   problem.ranges.clear();
   const size_t first_far = problem.observations.size();
@@ -117,7 +117,7 @@ TEST(SolveBundleDense, BearsPointsWithoutParallax) {
       problem.observations.push_back({i, point, seen.normalized(), 0.001});
     }
   }
-  const BundleReport report = SolveBundleDense({.max_iterations = 50}, &problem);
+  const BundleReport report = SolveBundle({.max_iterations = 50}, &problem);
   ASSERT_TRUE(report.usable);
   EXPECT_LT(report.final_cost, 0.9 * report.initial_cost);
   for (size_t o = first_far; o < problem.observations.size(); ++o) {
@@ -126,60 +126,60 @@ TEST(SolveBundleDense, BearsPointsWithoutParallax) {
 }
 
 // The way down is not smooth from here: steps are refused on it.
-TEST(SolveBundleDense, ComesDownFromAFarStart) {
+TEST(SolveBundle, ComesDownFromAFarStart) {
   BundleProblem problem = FarStart(9);
-  BundleProblem sparse = problem;
+  BundleProblem other = problem;
   const BundleOptions options{.max_iterations = 300, .function_tolerance = 1e-12};
-  const BundleReport report = SolveBundleDense(options, &problem);
-  const BundleReport by_sparse = SolveBundleSparse(options, &sparse);
-  ASSERT_TRUE(report.usable && by_sparse.usable);
+  const BundleReport report = SolveBundle(options, &problem);
+  const BundleReport by_ceres = SolveBundleByCeres(options, &other);
+  ASSERT_TRUE(report.usable && by_ceres.usable);
   EXPECT_LT(report.final_cost, 0.5 * report.initial_cost);
-  EXPECT_LT(report.final_cost, 1.2 * by_sparse.final_cost);
+  EXPECT_LT(report.final_cost, 1.2 * by_ceres.final_cost);
 }
 
-TEST(SolveBundleDense, RefusesAStepThatLeadsUpAndFindsOneThatLeadsDown) {
+TEST(SolveBundle, RefusesAStepThatLeadsUpAndFindsOneThatLeadsDown) {
   int refused = 0;
   for (int seed = 1; seed <= 20; ++seed) {
     BundleProblem problem = FarStart(seed);
     BundleOptions options{.max_iterations = 1, .loss = BundleLoss::kArctan};
     for (int step = 1; step <= 3; ++step) {
-      const BundleReport report = SolveBundleDense(options, &problem);
+      const BundleReport report = SolveBundle(options, &problem);
       EXPECT_LE(report.final_cost, report.initial_cost) << seed;
       if (report.final_cost < report.initial_cost) continue;
       ++refused;
       BundleProblem copy = problem;
       options.max_iterations = 20;
-      EXPECT_LT(SolveBundleDense(options, &copy).final_cost, report.initial_cost) << seed;
+      EXPECT_LT(SolveBundle(options, &copy).final_cost, report.initial_cost) << seed;
       options.max_iterations = 1;
     }
   }
   EXPECT_GT(refused, 0);  // or this tests nothing
 }
 
-TEST(SolveBundleDense, StopsWhereNothingIsToBeGained) {
+TEST(SolveBundle, StopsWhereNothingIsToBeGained) {
   BundleProblem problem = NoisyWalk(12);
-  SolveBundleDense({.max_iterations = 200, .function_tolerance = 1e-12}, &problem);
+  SolveBundle({.max_iterations = 200, .function_tolerance = 1e-12}, &problem);
   const BundleReport again =
-      SolveBundleDense({.max_iterations = 200, .function_tolerance = 1e-6}, &problem);
+      SolveBundle({.max_iterations = 200, .function_tolerance = 1e-6}, &problem);
   EXPECT_EQ(again.iterations, 1);
 }
 
-TEST(SolveBundleDense, NothingToMoveAndNothingSeenAreNoError) {
+TEST(SolveBundle, NothingToMoveAndNothingSeenAreNoError) {
   BundleProblem held = NoisyWalk(10);
   held.pose_fixed.assign(held.pose_fixed.size(), 1);
-  const BundleReport report = SolveBundleDense({}, &held);
+  const BundleReport report = SolveBundle({}, &held);
   EXPECT_TRUE(report.usable);
   EXPECT_LT(report.final_cost, report.initial_cost);  // points move
 
   BundleProblem empty;
   empty.world_from_camera = {Rigid3()};
   empty.pose_fixed = {0};
-  EXPECT_TRUE(SolveBundleDense({}, &empty).usable);
+  EXPECT_TRUE(SolveBundle({}, &empty).usable);
 
   BundleProblem blind = NoisyWalk(11);
   blind.world_from_camera.push_back({Eigen::Quaterniond::Identity(), {1, 2, 3}});
   blind.pose_fixed.push_back(0);
-  EXPECT_TRUE(SolveBundleDense({}, &blind).usable);
+  EXPECT_TRUE(SolveBundle({}, &blind).usable);
   EXPECT_EQ(blind.world_from_camera.back().translation, Eigen::Vector3d(1, 2, 3));
 }
 

@@ -1,33 +1,19 @@
+#pragma once
+
 #include <array>
 #include <deque>
 #include <memory>
 
 #include <ceres/ceres.h>
 
+#include "slam/optimization/bundle_adjustment.h"
 #include "slam/optimization/bundle_loss.h"
-#include "slam/optimization/bundle_solvers.h"
-#include "slam/optimization/point_cost.h"
-
-// Of OpenBLAS, where that is the system's BLAS.
-extern "C" __attribute__((weak)) void openblas_set_num_threads(int num_threads);
+#include "tests/slam/optimization/point_cost.h"
 
 namespace orb360 {
-namespace {
 
-// CHOLMOD works in dense blocks, which takes a quarter of the time of Eigen's column by column, and
-// less than that for more poses. Its BLAS is held to one thread: how it shares work among several
-// decides how sums are rounded.
-ceres::SparseLinearAlgebraLibraryType ChooseSparseCholesky() {
-  if (!ceres::IsSparseLinearAlgebraLibraryTypeAvailable(ceres::SUITE_SPARSE)) {
-    return ceres::EIGEN_SPARSE;
-  }
-  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
-  return ceres::SUITE_SPARSE;
-}
-
-}  // namespace
-
-BundleReport SolveBundleSparse(const BundleOptions& options, BundleProblem* bundle) {
+/// SolveBundle by Ceres, as independent truth.
+inline BundleReport SolveBundleByCeres(const BundleOptions& options, BundleProblem* bundle) {
   // As PointCost has them.
   std::vector<std::array<double, 7>> poses(bundle->world_from_camera.size());
   for (size_t i = 0; i < poses.size(); ++i) {
@@ -77,13 +63,10 @@ BundleReport SolveBundleSparse(const BundleOptions& options, BundleProblem* bund
 
   ceres::Solver::Options solver_options;
   solver_options.linear_solver_type = ceres::SPARSE_SCHUR;
-  solver_options.sparse_linear_algebra_library_type = ChooseSparseCholesky();
+  solver_options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   solver_options.linear_solver_ordering = ordering;
   solver_options.max_num_iterations = options.max_iterations;
   solver_options.function_tolerance = options.function_tolerance;
-  solver_options.max_solver_time_in_seconds =
-      1e9;  // a time limit would make results depend on load
-  // Ceres adds Schur blocks in arrival order on several: the result would depend on it.
   solver_options.num_threads = 1;
   solver_options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
