@@ -63,7 +63,11 @@ inline BundleReport SolveBundleByCeres(const BundleOptions& options, BundleProbl
 
   ceres::Solver::Options solver_options;
   solver_options.linear_solver_type = ceres::SPARSE_SCHUR;
-  solver_options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+  if (ceres::IsSparseLinearAlgebraLibraryTypeAvailable(ceres::SUITE_SPARSE)) {
+    solver_options.sparse_linear_algebra_library_type = ceres::SUITE_SPARSE;
+  } else {
+    solver_options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+  }
   solver_options.linear_solver_ordering = ordering;
   solver_options.max_num_iterations = options.max_iterations;
   solver_options.function_tolerance = options.function_tolerance;
