@@ -28,22 +28,23 @@ constexpr double kMinGain = 1e-3;
 bool Solve(const NormalEquations& equations, const BundleModel& bundle, double radius,
            BlockCholesky* factor, ReducedEquations* reduced, BundleStep* step) {
   const BundleLinks& links = bundle.links();
-  if (!EliminatePoints(equations, links, bundle.pairs(), radius, reduced)) return false;
+  if (!EliminatePoints(equations, links, bundle.structure(), radius, reduced)) return false;
   if (!factor->Factor(reduced->blocks)) return false;
-  step->poses = factor->Solve(reduced->sums);
+  const std::vector<PoseVector> rows = factor->Solve(reduced->sums);
+  step->poses.assign(rows.begin(), rows.begin() + equations.poses.size());
 
   // With the gradient g and the damping D, the linear problem's cost falls by (D d - g) d / 2.
   step->predicted = 0;
   const auto predict = [&](const auto& d, const auto& gradient, const auto& diagonal) {
     step->predicted += 0.5 * (Damping(diagonal, radius).cwiseProduct(d) - gradient).dot(d);
   };
-  for (size_t i = 0; i < step->poses.size(); ++i) {
+  for (size_t i = 0; i < equations.poses.size(); ++i) {
     predict(step->poses[i].head<6>(), equations.pose_gradients[i].head<6>(),
             Vector6(equations.poses[i].diagonal()));
   }
   step->points.resize(equations.points.size());
   for (size_t p = 0; p < step->points.size(); ++p) {
-    step->points[p] = reduced->PointStep(links, p, step->poses);
+    step->points[p] = reduced->PointStep(links, bundle.structure(), p, rows);
     predict(step->points[p], equations.point_gradients[p],
             Eigen::Vector3d(equations.points[p].diagonal()));
   }
@@ -68,7 +69,7 @@ BundleReport SolveBundle(const BundleOptions& options, BundleProblem* problem) {
   double shrinking = 2;
   bool is_linearized = false;
   NormalEquations equations;
-  BlockCholesky factor(bundle.pairs());
+  BlockCholesky factor(bundle.structure());
   ReducedEquations reduced;
   BundleStep step;
   int solved = 0;

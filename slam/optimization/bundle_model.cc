@@ -63,7 +63,7 @@ BundleModel::BundleModel(const BundleOptions& options, const BundleProblem& prob
   for (const uint8_t is_fixed : problem.pose_fixed)
     moving_.push_back(is_fixed ? -1 : num_moving_++);
   links_ = LinkTerms(moving_, problem.points.size(), &terms_);
-  pairs_ = PosePairs(num_moving_, links_);
+  structure_ = ReducedStructure(num_moving_, links_);
 }
 
 const ceres::LossFunction* BundleModel::LossOf(BundleTerms::Kind kind) const {

@@ -40,7 +40,7 @@ class BundleModel {
   BundleEstimate Moved(const BundleEstimate& estimate, const BundleStep& step) const;
 
   const BundleLinks& links() const { return links_; }
-  const PosePairs& pairs() const { return pairs_; }
+  const ReducedStructure& structure() const { return structure_; }
 
  private:
   double Evaluate(const BundleEstimate& estimate, NormalEquations* equations) const;
@@ -48,7 +48,7 @@ class BundleModel {
 
   std::array<BundleTerms, 3> terms_;
   BundleLinks links_;
-  PosePairs pairs_;
+  ReducedStructure structure_;
   std::vector<int> moving_;  // by pose: its place among those that move, or -1
   int num_moving_ = 0;
   std::unique_ptr<ceres::LossFunction> direction_loss_;

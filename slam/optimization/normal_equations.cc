@@ -57,7 +57,8 @@ void AddTerms(const BundleLinks& structure, const BundleTerms& terms, size_t beg
 }
 
 // One point: `inverse` is L^-1 by columns, `links` W, to become `reduced` W L^-T. Takes their
-// products off the blocks of the pairs of poses; `first` and `columns` are those of PosePairs.
+// products off the blocks of the pairs of poses; `first` and `columns` are those of
+// ReducedStructure.
 void EliminatePoint(const double* inverse, const double* point_sum, const PosePointBlock* links,
                     const int* poses, size_t num_links, PosePointBlock* reduced,
                     const size_t* first, const int* columns, PoseBlock* blocks, PoseVector* sums) {
@@ -147,16 +148,19 @@ void NormalEquations::Add(const BundleLinks& structure, const BundleTerms& terms
   (structure, terms, begin, rows.data(), weights.data(), weights.size(), this);
 }
 
-Eigen::Vector3d ReducedEquations::PointStep(const BundleLinks& structure, size_t point,
-                                            std::span<const PoseVector> pose_steps) const {
+Eigen::Vector3d ReducedEquations::PointStep(const BundleLinks& links_of_points,
+                                            const ReducedStructure& structure, size_t point,
+                                            std::span<const PoseVector> steps) const {
+  const int row = structure.row_of_point[point];
+  if (row >= 0) return steps[row].head<3>();
   Eigen::Vector3d rest = -point_sums[point];
-  for (size_t a = structure.first[point]; a < structure.first[point + 1]; ++a) {
-    rest -= links[a].topRows<6>().transpose() * pose_steps[structure.pose[a]].head<6>();
+  for (size_t a = links_of_points.first[point]; a < links_of_points.first[point + 1]; ++a) {
+    rest -= links[a].topRows<6>().transpose() * steps[links_of_points.pose[a]].head<6>();
   }
   return inverses[point].transpose() * rest;
 }
 
-PosePairs::PosePairs(size_t num_poses, const BundleLinks& links) {
+ReducedStructure::ReducedStructure(size_t num_poses, const BundleLinks& links, size_t max_poses) {
   std::vector<std::vector<int>> rows(num_poses);
   const auto tidy = [](std::vector<int>* row) {
     std::ranges::sort(*row);
@@ -165,9 +169,17 @@ PosePairs::PosePairs(size_t num_poses, const BundleLinks& links) {
   constexpr size_t kMany = 4096;  // before what is there several times is removed
   for (size_t i = 0; i < num_poses; ++i) rows[i].push_back(static_cast<int>(i));
   for (size_t p = 0; p + 1 < links.first.size(); ++p) {
-    for (size_t a = links.first[p]; a < links.first[p + 1]; ++a) {
-      std::vector<int>& row = rows[links.pose[a]];
-      for (size_t b = links.first[p]; b < a; ++b) row.push_back(links.pose[b]);
+    const std::span poses(links.pose.data() + links.first[p],
+                          links.pose.data() + links.first[p + 1]);
+    row_of_point.push_back(-1);
+    if (poses.size() > max_poses) {
+      row_of_point.back() = static_cast<int>(rows.size());
+      rows.emplace_back(poses.begin(), poses.end()).push_back(row_of_point.back());
+      continue;
+    }
+    for (size_t a = 0; a < poses.size(); ++a) {
+      std::vector<int>& row = rows[poses[a]];
+      row.insert(row.end(), poses.begin(), poses.begin() + a);
       if (row.size() > kMany + num_poses) tidy(&row);
     }
   }
@@ -178,15 +190,14 @@ PosePairs::PosePairs(size_t num_poses, const BundleLinks& links) {
   }
 }
 
-bool EliminatePoints(const NormalEquations& equations, const BundleLinks& structure,
-                     const PosePairs& pairs, double radius, ReducedEquations* reduced) {
-  const size_t num_poses = equations.poses.size();
+bool EliminatePoints(const NormalEquations& equations, const BundleLinks& links,
+                     const ReducedStructure& structure, double radius, ReducedEquations* reduced) {
   std::vector<PoseBlock>& blocks = reduced->blocks;
   std::vector<PoseVector>& sums = reduced->sums;
-  blocks.assign(pairs.column.size(), PoseBlock::Zero());
-  sums.resize(num_poses);
-  for (size_t i = 0; i < num_poses; ++i) {
-    PoseBlock& block = blocks[pairs.first[i + 1] - 1];
+  blocks.assign(structure.column.size(), PoseBlock::Zero());
+  sums.assign(structure.num_rows(), PoseVector::Zero());
+  for (size_t i = 0; i < equations.poses.size(); ++i) {
+    PoseBlock& block = blocks[structure.first[i + 1] - 1];
     block = equations.poses[i];
     const Eigen::Matrix<double, 6, 1> diagonal = block.diagonal();
     block.diagonal() += Damping(diagonal, radius);
@@ -201,15 +212,26 @@ bool EliminatePoints(const NormalEquations& equations, const BundleLinks& struct
     Eigen::Matrix3d damped = equations.points[p];
     const Eigen::Vector3d diagonal = damped.diagonal();
     damped.diagonal() += Damping(diagonal, radius);
+    const size_t first = links.first[p];
+    const size_t num_links = links.first[p + 1] - first;
+    if (const int row = structure.row_of_point[p]; row >= 0) {
+      PoseBlock* block = blocks.data() + structure.first[row];
+      for (size_t a = 0; a < num_links; ++a, ++block) {
+        block->topRows<3>() = equations.links[first + a].topRows<6>().transpose();
+      }
+      block->diagonal().setOnes();
+      block->topLeftCorner<3, 3>() = damped;
+      sums[row].head<3>() = -equations.point_gradients[p];
+      continue;
+    }
     const Eigen::LLT<Eigen::Matrix3d> factor(damped);
     if (factor.info() != Eigen::Success) return false;
     reduced->inverses[p] = InverseOfLower(factor.matrixLLT());
     reduced->point_sums[p] = reduced->inverses[p] * equations.point_gradients[p];
-    const size_t first = structure.first[p];
     eliminate(reduced->inverses[p].data(), reduced->point_sums[p].data(),
-              equations.links.data() + first, structure.pose.data() + first,
-              structure.first[p + 1] - first, reduced->links.data() + first, pairs.first.data(),
-              pairs.column.data(), blocks.data(), sums.data());
+              equations.links.data() + first, links.pose.data() + first, num_links,
+              reduced->links.data() + first, structure.first.data(), structure.column.data(),
+              blocks.data(), sums.data());
   }
   return true;
 }

@@ -22,16 +22,21 @@ struct BundleLinks {
   std::vector<size_t> first = {0};  // link by point, and the end
 };
 
-/// Which pairs of poses see a point in common: the structure of what is left when the points are
-/// eliminated, by rows of the lower triangle.
-struct PosePairs {
-  std::vector<size_t> first = {0};  // pair by row, and the end
-  std::vector<int> column;          // by pair; those of a row rise, the last is the row itself
+/// Structure of what is left when the points are eliminated, by rows of the lower triangle: which
+/// pairs of poses see a point in common. A point that more than `max_poses` of them see stays, in a
+/// row behind the poses': eliminated, it would link each of them with each other, and a few clouds
+/// or towers that are seen from everywhere would make a full matrix of a sparse one.
+struct ReducedStructure {
+  static constexpr size_t kMaxPoses = 80;
 
-  PosePairs() = default;
-  PosePairs(size_t num_poses, const BundleLinks& links);
+  std::vector<size_t> first = {0};  // block by row, and the end
+  std::vector<int> column;          // by block; those of a row rise, the last is the row itself
+  std::vector<int> row_of_point;    // -1 where it is eliminated
 
-  size_t num_poses() const { return first.size() - 1; }
+  ReducedStructure() = default;
+  ReducedStructure(size_t num_poses, const BundleLinks& links, size_t max_poses = kMaxPoses);
+
+  size_t num_rows() const { return first.size() - 1; }
 };
 
 /// The normal equations of a bundle of poses and points: J^T J in blocks, and the gradient J^T r.
@@ -51,18 +56,19 @@ struct NormalEquations {
            std::span<const TermRow> rows, std::span<const double> weights);
 };
 
-/// What is left of the equations when the points are eliminated: a system of the poses, and what it
-/// takes to come back to the points.
+/// What is left of the equations when the points are eliminated: a system of the poses and of the
+/// points that stay (of six unknowns as well, the last three of which are zero), and what it takes
+/// to come back to the others.
 struct ReducedEquations {
-  std::vector<PoseBlock> blocks;            // by pair
-  std::vector<PoseVector> sums;             // right hand sides
+  std::vector<PoseBlock> blocks;            // as the structure lists them
+  std::vector<PoseVector> sums;             // right hand sides, by row
   std::vector<Eigen::Matrix3d> inverses;    // L^-1, where L L^T is a point's block, damped
   std::vector<Eigen::Vector3d> point_sums;  // L^-1 times a point's gradient
   std::vector<PosePointBlock> links;        // W L^-T
 
-  /// Where `pose_steps` leave a point.
-  Eigen::Vector3d PointStep(const BundleLinks& structure, size_t point,
-                            std::span<const PoseVector> pose_steps) const;
+  /// How a point moves where the rows' unknowns are `steps`.
+  Eigen::Vector3d PointStep(const BundleLinks& links_of_points, const ReducedStructure& structure,
+                            size_t point, std::span<const PoseVector> steps) const;
 };
 
 /// Marquardt's damping of a diagonal, as Ceres does it. `radius` of the trust region.
@@ -72,9 +78,9 @@ Vector Damping(const Vector& diagonal, double radius) {
   return diagonal.cwiseMax(kMinDiagonal) / radius;
 }
 
-/// Eliminates the points of the damped equations (Schur complement). False where the block of a
-/// point is not positive definite to rounding.
-bool EliminatePoints(const NormalEquations& equations, const BundleLinks& structure,
-                     const PosePairs& pairs, double radius, ReducedEquations* reduced);
+/// Eliminates points of the damped equations (Schur complement). False where the block of one is
+/// not positive definite to rounding.
+bool EliminatePoints(const NormalEquations& equations, const BundleLinks& links,
+                     const ReducedStructure& structure, double radius, ReducedEquations* reduced);
 
 }  // namespace orb360

@@ -24,26 +24,33 @@ void CullRecentLandmarks(KeyframeId newest, const MapperOptions& options, Map* m
   }
 }
 
-// Share of a keyframe's landmarks that at least three others see on the same level or a finer one.
-double RedundantShare(const Map& map, const Keyframe& keyframe) {
+// Whether `kOthers` other keyframes see a landmark on the level of this observation or a finer one.
+bool IsWellSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId observer, int level) {
   constexpr size_t kOthers = 3;
-  int total = 0;
-  int redundant = 0;
-  for (size_t f = 0; f < keyframe.landmarks.size(); ++f) {
+  if (landmark.observations.size() <= kOthers) return false;
+  size_t others = 0;
+  for (const Observation& o : landmark.observations) {
+    others += o.keyframe != observer &&
+              map.keyframe(o.keyframe).features->keypoints[o.feature].level <= level + 1;
+    if (others == kOthers) return true;
+  }
+  return false;
+}
+
+// Whether others see `share` of a keyframe's landmarks as well. After a loop a keyframe may have
+// hundreds of neighbours: the count ends as soon as the answer is known.
+bool IsRedundant(const Map& map, const Keyframe& keyframe, double share) {
+  const auto total = static_cast<double>(
+      std::ranges::count_if(keyframe.landmarks, [](LandmarkId l) { return l != kNoId; }));
+  const double allowed = total - share * total;
+  int missed = 0;
+  for (size_t f = 0; f < keyframe.landmarks.size() && missed <= allowed; ++f) {
     const LandmarkId id = keyframe.landmarks[f];
     if (id == kNoId) continue;
-    ++total;
-    const std::vector<Observation>& observations = map.landmark(id).observations;
-    if (observations.size() <= kOthers) continue;
-    const int level = keyframe.features->keypoints[f].level;
-    size_t others = 0;
-    for (const Observation& o : observations) {
-      others += o.keyframe != keyframe.id &&
-                map.keyframe(o.keyframe).features->keypoints[o.feature].level <= level + 1;
-    }
-    redundant += others >= kOthers;
+    missed += !IsWellSeenByOthers(map, map.landmark(id), keyframe.id,
+                                  keyframe.features->keypoints[f].level);
   }
-  return total == 0 ? 1.0 : redundant / static_cast<double>(total);
+  return missed <= allowed;
 }
 
 void CullRedundantKeyframes(KeyframeId newest, const MapperOptions& options, Map* map) {
@@ -51,7 +58,7 @@ void CullRedundantKeyframes(KeyframeId newest, const MapperOptions& options, Map
   for (const Map::Covisible& neighbour :
        map->FindCovisible(map->keyframe(newest).landmarks, 1, newest)) {
     const Keyframe& keyframe = map->keyframe(neighbour.keyframe);
-    if (keyframe.id == first || RedundantShare(*map, keyframe) < options.redundant_share) continue;
+    if (keyframe.id == first || !IsRedundant(*map, keyframe, options.redundant_share)) continue;
     const std::vector<LandmarkId> landmarks = keyframe.landmarks;
     const std::vector<Map::Covisible> nearest =
         map->FindCovisible(keyframe.landmarks, 1, keyframe.id);

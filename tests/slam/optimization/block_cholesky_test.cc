@@ -12,7 +12,7 @@ namespace {
 // A chain of poses of which each sees points with the next `reach`, and some with poses far away,
 // as where a loop is closed; block by block and as one dense matrix.
 struct RandomSystem {
-  PosePairs pairs;
+  ReducedStructure structure;
   std::vector<PoseBlock> blocks;
   std::vector<PoseVector> sums;
   Eigen::MatrixXd matrix;
@@ -37,12 +37,12 @@ struct RandomSystem {
           block.topRows<6>() = (block.topRows<6>() + block.topRows<6>().transpose()).eval();
           block.diagonal().array() += 12.0 * (reach + count / 7 + 2);
         }
-        pairs.column.push_back(j);
+        structure.column.push_back(j);
         blocks.push_back(block);
         matrix.block<6, 6>(6 * i, 6 * j) = block.topRows<6>();
         matrix.block<6, 6>(6 * j, 6 * i) = block.topRows<6>().transpose();
       }
-      pairs.first.push_back(pairs.column.size());
+      structure.first.push_back(structure.column.size());
     }
   }
 };
@@ -57,11 +57,12 @@ void ExpectSolution(const RandomSystem& system, const std::vector<PoseVector>& s
 }
 
 TEST(BlockCholesky, SolvesWhatDenseFactorizationSolves) {
-  for (const auto& [count, reach] : {std::pair{1, 0}, {2, 1}, {10, 9}, {40, 3}, {90, 0}}) {
+  for (const auto& [count, reach] :
+       {std::pair{1, 0}, {2, 1}, {10, 9}, {40, 3}, {60, 50}, {90, 0}}) {
     for (const bool has_loops : {false, true}) {
       const RandomSystem system(count, reach, has_loops);
       ForEachDispatchTarget([&] {
-        BlockCholesky factor(system.pairs);
+        BlockCholesky factor(system.structure);
         ASSERT_TRUE(factor.Factor(system.blocks)) << count;
         ExpectSolution(system, factor.Solve(system.sums));
       });
@@ -71,7 +72,7 @@ TEST(BlockCholesky, SolvesWhatDenseFactorizationSolves) {
 
 TEST(BlockCholesky, FactorsOneMatrixAfterAnother) {
   RandomSystem system(30, 4, true);
-  BlockCholesky factor(system.pairs);
+  BlockCholesky factor(system.structure);
   ASSERT_TRUE(factor.Factor(system.blocks));
   for (PoseBlock& block : system.blocks) block *= 2;
   system.matrix *= 2;
@@ -81,18 +82,18 @@ TEST(BlockCholesky, FactorsOneMatrixAfterAnother) {
 
 TEST(BlockCholesky, KeepsFewBlocksOfALongChain) {
   const RandomSystem system(90, 3, false);
-  EXPECT_LE(BlockCholesky(system.pairs).size(), 90U * 4);
+  EXPECT_LE(BlockCholesky(system.structure).size(), 90U * 4);
 }
 
 TEST(BlockCholesky, RefusesWhatIsNotPositiveDefinite) {
   RandomSystem system(20, 4, false);
-  system.blocks[system.pairs.first[12] - 1].diagonal() *= -1;
-  BlockCholesky factor(system.pairs);
+  system.blocks[system.structure.first[12] - 1].diagonal() *= -1;
+  BlockCholesky factor(system.structure);
   EXPECT_FALSE(factor.Factor(system.blocks));
 }
 
 TEST(BlockCholesky, NothingIsSolvedByNothing) {
-  BlockCholesky factor(PosePairs{});
+  BlockCholesky factor(ReducedStructure{});
   EXPECT_TRUE(factor.Factor({}));
   EXPECT_TRUE(factor.Solve({}).empty());
 }

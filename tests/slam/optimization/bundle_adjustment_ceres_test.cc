@@ -44,6 +44,30 @@ TEST_P(BundleSolvers, ComeToTheSameMinimum) {
   }
 }
 
+// Points that more poses see than ReducedStructure::kMaxPoses are not eliminated.
+TEST_P(BundleSolvers, ComeToTheSameMinimumWhereAllSeeTheSamePoints) {
+  BundleProblem own = NoisyWalk(7);
+  RandomGeometry random(7);
+  for (size_t i = own.world_from_camera.size(); i < 90; ++i) {
+    const Rigid3 pose{random.Rotation(0.3), random.Point(0.0, 1.0)};
+    for (int p = 0; p < 200; p += 10) {
+      const Eigen::Vector3d seen = pose.Inverse() * own.points[p];
+      own.observations.push_back(
+          {static_cast<int>(i), p, random.Noisy(seen.normalized(), 0.002), 0.002});
+    }
+    own.world_from_camera.push_back(pose * Rigid3{random.Rotation(0.01), random.Point(0.0, 0.03)});
+    own.pose_fixed.push_back(0);
+  }
+  BundleProblem other = own;
+  const BundleOptions options{
+      .max_iterations = 200, .loss = GetParam(), .function_tolerance = 1e-15};
+  const BundleReport ours = SolveBundle(options, &own);
+  const BundleReport by_ceres = SolveBundleByCeres(options, &other);
+  ASSERT_TRUE(ours.usable && by_ceres.usable);
+  EXPECT_LT(ours.final_cost, 0.9 * ours.initial_cost);
+  EXPECT_NEAR(ours.final_cost, by_ceres.final_cost, 1e-8 * by_ceres.final_cost);
+}
+
 // With few iterations, as in local bundle adjustment.
 TEST_P(BundleSolvers, ComeEquallyFarInFewSteps) {
   BundleProblem own = NoisyWalk(4);

@@ -113,14 +113,22 @@ TEST(NormalEquations, AreTheSumOfTheTerms) {
   });
 }
 
-TEST(PosePairs, AreThoseThatSeeAPointInCommon) {
+TEST(ReducedStructure, HasThePairsThatSeeAPointInCommon) {
   // Point 0 is seen by the poses 0 and 2, point 1 by 1, 2 and 4, point 2 by 0 and 2 again; pose 3
   // sees nothing.
   const BundleLinks links{{0, 2, 1, 2, 4, 0, 2}, {0, 2, 5, 7}};
-  const PosePairs pairs(5, links);
-  EXPECT_EQ(pairs.num_poses(), 5u);
-  EXPECT_EQ(pairs.first, (std::vector<size_t>{0, 1, 2, 5, 6, 9}));
-  EXPECT_EQ(pairs.column, (std::vector<int>{0, 1, 0, 1, 2, 3, 1, 2, 4}));
+  const ReducedStructure structure(5, links);
+  EXPECT_EQ(structure.num_rows(), 5u);
+  EXPECT_EQ(structure.first, (std::vector<size_t>{0, 1, 2, 5, 6, 9}));
+  EXPECT_EQ(structure.column, (std::vector<int>{0, 1, 0, 1, 2, 3, 1, 2, 4}));
+}
+
+TEST(ReducedStructure, KeepsPointsThatManyPosesSee) {
+  const BundleLinks links{{0, 2, 1, 2, 4, 0, 2}, {0, 2, 5, 7}};
+  const ReducedStructure structure(5, links, /*max_poses=*/2);
+  EXPECT_EQ(structure.row_of_point, (std::vector<int>{-1, 5, -1}));
+  EXPECT_EQ(structure.first, (std::vector<size_t>{0, 1, 2, 4, 5, 6, 10}));
+  EXPECT_EQ(structure.column, (std::vector<int>{0, 1, 0, 2, 3, 4, 1, 2, 4, 5}));
 }
 
 TEST(EliminatePoints, LeavesTheSolutionOfTheWholeSystem) {
@@ -130,27 +138,31 @@ TEST(EliminatePoints, LeavesTheSolutionOfTheWholeSystem) {
   const Eigen::VectorXd diagonal = random.hessian.diagonal();
   damped.diagonal() += diagonal / kRadius;
   const Eigen::VectorXd truth = damped.llt().solve(-random.gradient);
-  ForEachDispatchTarget([&] {
-    ReducedEquations reduced;
-    const PosePairs pairs(kPoses, random.links);
-    ASSERT_TRUE(EliminatePoints(random.Equations(), random.links, pairs, kRadius, &reduced));
-    Eigen::MatrixXd system = Eigen::MatrixXd::Zero(6 * kPoses, 6 * kPoses);
-    Eigen::VectorXd sums(6 * kPoses);
-    for (int i = 0; i < kPoses; ++i) {
-      sums.segment<6>(6 * i) = reduced.sums[i].head<6>();
-      for (size_t b = pairs.first[i]; b < pairs.first[i + 1]; ++b) {
-        system.block<6, 6>(6 * i, 6 * pairs.column[b]) = reduced.blocks[b].topRows<6>();
+  // Points are seen by no pose that moves, by three or by four of them.
+  for (const size_t max_poses : {size_t{0}, size_t{3}, ReducedStructure::kMaxPoses}) {
+    ForEachDispatchTarget([&] {
+      ReducedEquations reduced;
+      const ReducedStructure structure(kPoses, random.links, max_poses);
+      ASSERT_TRUE(EliminatePoints(random.Equations(), random.links, structure, kRadius, &reduced));
+      const auto num_rows = static_cast<Eigen::Index>(structure.num_rows());
+      Eigen::MatrixXd system = Eigen::MatrixXd::Zero(6 * num_rows, 6 * num_rows);
+      Eigen::VectorXd sums(6 * num_rows);
+      for (int i = 0; i < num_rows; ++i) {
+        sums.segment<6>(6 * i) = reduced.sums[i].head<6>();
+        for (size_t b = structure.first[i]; b < structure.first[i + 1]; ++b) {
+          system.block<6, 6>(6 * i, 6 * structure.column[b]) = reduced.blocks[b].topRows<6>();
+        }
       }
-    }
-    const Eigen::VectorXd poses = system.selfadjointView<Eigen::Lower>().llt().solve(sums);
-    EXPECT_LT((poses - truth.head(6 * kPoses)).norm(), 1e-10 * truth.norm());
-    std::vector<PoseVector> steps(kPoses, PoseVector::Zero());
-    for (int i = 0; i < kPoses; ++i) steps[i].head<6>() = poses.segment<6>(6 * i);
-    for (int p = 0; p < kPoints; ++p) {
-      const Eigen::Vector3d step = reduced.PointStep(random.links, p, steps);
-      EXPECT_LT((step - truth.segment<3>(6 * kPoses + 3 * p)).norm(), 1e-10 * truth.norm()) << p;
-    }
-  });
+      const Eigen::VectorXd solution = system.selfadjointView<Eigen::Lower>().llt().solve(sums);
+      EXPECT_LT((solution.head(6 * kPoses) - truth.head(6 * kPoses)).norm(), 1e-10 * truth.norm());
+      std::vector<PoseVector> steps(structure.num_rows(), PoseVector::Zero());
+      for (int i = 0; i < num_rows; ++i) steps[i].head<6>() = solution.segment<6>(6 * i);
+      for (int p = 0; p < kPoints; ++p) {
+        const Eigen::Vector3d step = reduced.PointStep(random.links, structure, p, steps);
+        EXPECT_LT((step - truth.segment<3>(6 * kPoses + 3 * p)).norm(), 1e-10 * truth.norm()) << p;
+      }
+    });
+  }
 }
 
 TEST(EliminatePoints, RefusesABlockThatIsNotPositiveDefinite) {
@@ -158,8 +170,8 @@ TEST(EliminatePoints, RefusesABlockThatIsNotPositiveDefinite) {
   NormalEquations equations = random.Equations();
   equations.points[4](1, 1) = -1;
   ReducedEquations reduced;
-  EXPECT_FALSE(
-      EliminatePoints(equations, random.links, PosePairs(kPoses, random.links), 1.0, &reduced));
+  EXPECT_FALSE(EliminatePoints(equations, random.links, ReducedStructure(kPoses, random.links), 1.0,
+                               &reduced));
 }
 
 }  // namespace
