@@ -37,8 +37,7 @@ bool IsWellSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId obs
   return false;
 }
 
-// Whether others see `share` of a keyframe's landmarks as well. After a loop a keyframe may have
-// hundreds of neighbours: the count ends as soon as the answer is known.
+// Whether others see `share` of a keyframe's landmarks as well.
 bool IsRedundant(const Map& map, const Keyframe& keyframe, double share) {
   const auto total = static_cast<double>(
       std::ranges::count_if(keyframe.landmarks, [](LandmarkId l) { return l != kNoId; }));
@@ -54,9 +53,11 @@ bool IsRedundant(const Map& map, const Keyframe& keyframe, double share) {
 }
 
 void CullRedundantKeyframes(KeyframeId newest, const MapperOptions& options, Map* map) {
+  // What all keyframes see, like a cloud, makes none of them a neighbour.
+  constexpr int kMinShared = 15;
   const KeyframeId first = map->KeyframeIds().front();  // the gauge
   for (const Map::Covisible& neighbour :
-       map->FindCovisible(map->keyframe(newest).landmarks, 1, newest)) {
+       map->FindCovisible(map->keyframe(newest).landmarks, kMinShared, newest)) {
     const Keyframe& keyframe = map->keyframe(neighbour.keyframe);
     if (keyframe.id == first || !IsRedundant(*map, keyframe, options.redundant_share)) continue;
     const std::vector<LandmarkId> landmarks = keyframe.landmarks;
