@@ -20,19 +20,30 @@ constexpr double kIndependentRanges = 5.0;
 // A third round of the whole map's adjustment finds next to nothing that is wrong.
 constexpr int kGlobalRounds = 2;
 
+// Heights of the camera beyond which what lies 14 degrees under the horizon (GroundPlaneOptions) is
+// at least twice as deep as the ground.
+constexpr double kGroundReach = 8.0;
+
 // Adds what the ground says of the keyframe with index `pose` and of the points around it.
 void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem* problem) {
-  const Rigid3 camera_from_world = problem->world_from_camera[pose].Inverse();
-  std::vector<Eigen::Vector3d> points;
-  points.reserve(problem->points.size());
-  for (const Eigen::Vector3d& point : problem->points) points.push_back(camera_from_world * point);
+  const Rigid3& world_from_camera = problem->world_from_camera[pose];
+  const Rigid3 camera_from_world = world_from_camera.Inverse();
+  const double squared_reach = std::pow(kGroundReach * ground.camera_height, 2);
+  std::vector<int> near;
+  std::vector<Eigen::Vector3d> points;  // of those, in the camera's frame
+  for (size_t p = 0; p < problem->points.size(); ++p) {
+    const Eigen::Vector3d& point = problem->points[p];
+    if ((point - world_from_camera.translation).squaredNorm() > squared_reach) continue;
+    near.push_back(static_cast<int>(p));
+    points.push_back(camera_from_world * point);
+  }
   const std::optional<GroundPlane> plane =
       FitGroundPlane(points, camera_from_world.rotation * ground.up, {});
   if (!plane || !(std::abs(plane->height / ground.camera_height - 1) < kMaxHeightError)) return;
   // Together as certain as one measurement of the height: their errors have the same causes.
   const double total = std::reduce(plane->weights.begin(), plane->weights.end());
   for (size_t i = 0; i < plane->points.size(); ++i) {
-    problem->heights.push_back({pose, plane->points[i], plane->normal, ground.camera_height,
+    problem->heights.push_back({pose, near[plane->points[i]], plane->normal, ground.camera_height,
                                 sigma * std::sqrt(total / plane->weights[i])});
   }
 }
