@@ -45,7 +45,7 @@ TEST_P(BundleSolvers, ComeToTheSameMinimum) {
 }
 
 // Points that more poses see than ReducedStructure::kMaxPoses are not eliminated.
-TEST_P(BundleSolvers, ComeToTheSameMinimumWhereAllSeeTheSamePoints) {
+TEST(SolveBundle, ComesToTheMinimumOfCeresWhereAllSeeTheSamePoints) {
   BundleProblem own = NoisyWalk(7);
   RandomGeometry random(7);
   for (size_t i = own.world_from_camera.size(); i < 90; ++i) {
@@ -59,8 +59,7 @@ TEST_P(BundleSolvers, ComeToTheSameMinimumWhereAllSeeTheSamePoints) {
     own.pose_fixed.push_back(0);
   }
   BundleProblem other = own;
-  const BundleOptions options{
-      .max_iterations = 200, .loss = GetParam(), .function_tolerance = 1e-15};
+  const BundleOptions options{.max_iterations = 100, .function_tolerance = 1e-12};
   const BundleReport ours = SolveBundle(options, &own);
   const BundleReport by_ceres = SolveBundleByCeres(options, &other);
   ASSERT_TRUE(ours.usable && by_ceres.usable);
