@@ -56,20 +56,41 @@ def run(
     convolutions multiply in that type, and what follows keeps it until more is needed. `behind`:
     what is done to the result of a convolution, by the name of its layer."""
     tensors = {port["name"]: inputs[port["name"]] for port in graph.inputs}
+    slices: dict[str, Tensor] = {}
     for node in graph.nodes:
         given = [tensors[name] for name in node.inputs]
         own = {role: weights[name] for role, name in node.weights.items()}
-        if bfloat16 and node.op == "convolution":
-            # With channels last it is again several times faster.
-            last = torch.channels_last
-            given = [values.to(torch.bfloat16, memory_format=last) for values in given]
-            own = {role: values.bfloat16() for role, values in own.items()}
+        if node.op == "convolution":
+            # With channels last it is faster, in bfloat16 several times.
+            given = [values.contiguous(memory_format=torch.channels_last) for values in given]
+            if bfloat16:
+                given = [values.bfloat16() for values in given]
+                own = {role: values.bfloat16() for role, values in own.items()}
         elif bfloat16 and node.op not in _SHORT:
             given = [values.float() for values in given]
-        results = OPERATIONS[node.op](*given, **own, **node.attributes)
+        if node.op == "slice":
+            if node.outputs[0] not in slices:
+                slices |= _slices(graph, node.inputs[0], given[0])
+            results = slices[node.outputs[0]]
+        else:
+            results = OPERATIONS[node.op](*given, **own, **node.attributes)
         layer = node.weights.get("weight", "").removesuffix(".weight")
         if layer in behind:
             results = behind[layer](results)
         results = (results,) if isinstance(results, Tensor) else results
         tensors.update(zip(node.outputs, results, strict=True))
     return tensors
+
+
+def _slices(graph: Graph, name: str, x: Tensor) -> dict[str, Tensor]:
+    """All slices of a tensor, by their names, from one split of it: its derivative is put together
+    once, where that of each slice alone would be as large as the tensor."""
+    nodes = [node for node in graph.nodes if node.op == "slice" and node.inputs == [name]]
+    ranges = [(node.attributes["first"], node.attributes["count"]) for node in nodes]
+    edges = sorted({0, x.shape[1]}.union(*((first, first + count) for first, count in ranges)))
+    parts = x.split([end - start for start, end in zip(edges, edges[1:])], dim=1)
+    results = {}
+    for node, (first, count) in zip(nodes, ranges):
+        inside = parts[edges.index(first) : edges.index(first + count)]
+        results[node.outputs[0]] = inside[0] if len(inside) == 1 else torch.cat(inside, dim=1)
+    return results
