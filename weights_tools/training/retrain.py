@@ -7,6 +7,7 @@ lasts.
 """
 
 import argparse
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -108,6 +109,7 @@ def main() -> None:
     root = Path(__file__).resolve().parent.parent.parent
     parser.add_argument("--build", type=Path, default=root / "build", help="folder of the programs")
     arguments = parser.parse_args()
+    torch.set_num_threads(os.cpu_count() or 1)  # PyTorch itself takes half of them
     programs = Programs(arguments.build / "town", arguments.build / "orb360")
     shards = arguments.out / "shards"
     render_all(shards, programs, arguments.circuits)

@@ -9,6 +9,7 @@ import copy
 import csv
 import hashlib
 import math
+import os
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, fields, replace
@@ -239,7 +240,8 @@ def main() -> None:
     parser.add_argument("--shards", type=Path, nargs="+", required=True, help="to train on")
     parser.add_argument("--validation", type=Path, nargs="*", default=[], help="other shards")
     parser.add_argument("--device", default="cpu", help="as PyTorch names it (default: cpu)")
-    parser.add_argument("--threads", type=int, help="of the CPU (default: as PyTorch likes)")
+    parser.add_argument("--threads", type=int, default=os.cpu_count(),
+                        help="of the CPU (default: as many as it has)")  # fmt: skip
     parser.add_argument("--start", type=Path, nargs="*", default=[],
                         help="checkpoints or network files to take layers from, in this order")  # fmt: skip
     parser.add_argument("--network", choices=list(NETWORKS), default=Settings.network)
@@ -250,8 +252,7 @@ def main() -> None:
         elif field.name != "network":
             parser.add_argument(option, type=type(field.default), default=field.default)
     arguments = vars(parser.parse_args())
-    if arguments["threads"]:
-        torch.set_num_threads(arguments["threads"])
+    torch.set_num_threads(arguments["threads"])
     settings = Settings(**{name: arguments[name] for name in asdict(Settings())})
     train(
         settings,
