@@ -14,7 +14,7 @@ import numpy as np
 
 from tests.weights_tools import drives
 from weights_tools import network_file, networks
-from weights_tools.evaluation import evaluate_depth, pictures
+from weights_tools.evaluation import evaluate_depth, pictures, results, tables
 from weights_tools.evaluation.classical import interpolate
 from weights_tools.evaluation.depth_errors import DepthErrors
 from weights_tools.export import export, untrained
@@ -127,7 +127,7 @@ print(json.dumps([dict(sparse=str(f), depth=here + "/street.png", confidence=her
         weights = self.folder / "net.h5"
         network, provenance = untrained("propagation", 0)
         export(weights, network, provenance)
-        methods = {evaluate_depth.OURS: weights, evaluate_depth.ALONE: weights}
+        methods = {results.OURS: weights, results.ALONE: weights}
         evaluation = evaluate_depth.Evaluation(
             methods, self.program(1.2), (100, 1000), shown=1, out=self.folder
         )
@@ -141,17 +141,17 @@ print(json.dumps([dict(sparse=str(f), depth=here + "/street.png", confidence=her
         for key in ("median_abs_log", "p95_abs_log", "fused_median_abs_log"):
             self.assertAlmostEqual(summary[f"scale_{key}"], np.log(1.2), delta=0.005)
         self.assertAlmostEqual(summary["scale_guard_median_abs_log"], np.log(1.1), places=6)
-        total = evaluate_depth.Result()
+        total = results.Result()
         total += result
         self.assertEqual(total.summary()["absrel"], summary["absrel"])
-        table = evaluate_depth.calibration_table(total)
+        table = results.calibration_table(total)
         np.testing.assert_allclose(table[:, 1], np.log(1.2), atol=0.01)
         np.testing.assert_allclose(table[:, 0], 65535 / 60000 - 1, atol=1e-4)
         pictures.write_calibration(self.folder / "calibration.png", table)
         for name in ("street-0.jpg", "calibration.png"):
             self.assertIsNotNone(cv2.imread(str(self.folder / name)), name)
         with contextlib.redirect_stdout(io.StringIO()) as printed:
-            evaluate_depth.print_tables({"street": result}, total)
+            tables.print_tables({"street": result}, total)
         self.assertRegex(printed.getvalue(), r"street \| 0\.200 \| 1\.000")
 
     def test_sparse_files_have_what_the_program_reads(self) -> None:

@@ -14,8 +14,8 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +27,19 @@ import torch
 from weights_tools import network_file
 from weights_tools.evaluation import pictures
 from weights_tools.evaluation.classical import interpolate
-from weights_tools.evaluation.depth_errors import LATITUDE_BANDS, RANGE_ENDS, DepthErrors
+from weights_tools.evaluation.depth_errors import RANGE_ENDS
+from weights_tools.evaluation.results import (
+    ALONE,
+    HEADLINE,
+    NEAREST,
+    OURS,
+    PUBLISHED,
+    WEIGHTED,
+    Result,
+    Scale,
+    calibration_table,
+)
+from weights_tools.evaluation.tables import print_tables
 from weights_tools.training import shards
 from weights_tools.training.make_dataset import DriveSpec, Programs, circuit_spec, render
 from weights_tools.training.shards import Frame
@@ -37,12 +49,7 @@ from weights_tools.training.validate import error_cut
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 POINTS = (100, 500, 1000, 2000, 3000)
-HEADLINE = (500, 1000, 2000)
-OURS, ALONE, PUBLISHED = "depth completion", "propagation alone", "published encoder-decoder"
-NEAREST, WEIGHTED = "nearest neighbour", "inverse distance"
-METHODS = (OURS, PUBLISHED, ALONE, WEIGHTED, NEAREST)
 CLASSICAL_STEP = 4  # pixels between those that classical interpolation is measured at
-FUSED = 10  # keyframes
 # Height (None: the town's own), pitch, roll; and how many of a town's frames have it.
 MOUNTINGS = ((None, 0, 0, 8), (1.0, 5, -3, 6), (3.0, -4, 5, 6))
 # One frame every five seconds of the drive, with --quick; otherwise each second.
@@ -86,77 +93,6 @@ def renderer_fingerprint() -> str:
             if path.suffix in (".h", ".cc"):
                 digest.update(str(path.relative_to(ROOT)).encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
-
-
-@dataclass
-class Scale:
-    """Of the frames of a drive, in order: |ln| of the error of the metric scale."""
-
-    plane: list[float] = field(default_factory=list)  # ln of estimated over true scale
-    guard: list[float] = field(default_factory=list)
-
-
-@dataclass
-class Result:
-    """Of a town, or of several."""
-
-    errors: dict[tuple[str, int], DepthErrors] = field(default_factory=dict)
-    cuts: list[float] = field(default_factory=list)
-    # Pixels drawn at random: expected error, observed error, solid angle.
-    calibration: list[np.ndarray] = field(default_factory=list)
-    scales: list[Scale] = field(default_factory=list)
-
-    def of(self, method: str, points: int) -> DepthErrors:
-        return self.errors.setdefault((method, points), DepthErrors())
-
-    def __iadd__(self, other: "Result") -> "Result":
-        for (method, points), errors in other.errors.items():
-            self.of(method, points).__iadd__(errors)
-        self.cuts += other.cuts
-        self.calibration += other.calibration
-        self.scales += other.scales
-        return self
-
-    def headline(self, method: str) -> dict[str, float]:
-        total = DepthErrors()
-        for points in HEADLINE:
-            if (method, points) in self.errors:
-                total += self.errors[method, points]
-        return total.measures()
-
-    def summary(self) -> dict[str, float]:
-        ours = self.headline(OURS)
-        plane = np.abs(np.concatenate([scale.plane for scale in self.scales] or [[]]))
-        guard = np.abs(np.concatenate([scale.guard for scale in self.scales] or [[]]))
-        fused = np.abs([value for scale in self.scales for value in _fused(scale.plane)])
-        classical = [self.headline(method)["absrel"] for method in (NEAREST, WEIGHTED)]
-        return {
-            "absrel": ours["absrel"],
-            "delta1": ours["delta1"],
-            "rmse": ours["rmse"],
-            "mae": ours["mae"],
-            "absrel_best_classical": min(classical),
-            "absrel_propagation": self.headline(ALONE)["absrel"],
-            "absrel_published": self.headline(PUBLISHED)["absrel"],
-            "scale_median_abs_log": _quantile(plane, 0.5),
-            "scale_p95_abs_log": _quantile(plane, 0.95),
-            "scale_fused_median_abs_log": _quantile(fused, 0.5),
-            "scale_guard_median_abs_log": _quantile(guard, 0.5),
-            "rmse_cut_by_dropping_20_percent": float(np.mean(self.cuts)) if self.cuts else np.nan,
-        }
-
-
-def _quantile(values: np.ndarray, share: float) -> float:
-    values = values[np.isfinite(values)]
-    return float(np.quantile(values, share)) if len(values) else np.nan
-
-
-def _fused(logs: Sequence[float]) -> Iterator[float]:
-    """Medians over neighbouring frames; of fewer where a drive is short."""
-    logs = [value for value in logs if np.isfinite(value)]
-    for first in range(0, max(len(logs) - FUSED, 0) + 1, FUSED):
-        if logs[first : first + FUSED]:
-            yield float(np.median(logs[first : first + FUSED]))
 
 
 def write_sparse(path: Path, frame: Frame, points: SparsePoints) -> None:
@@ -280,63 +216,6 @@ def _add_scale(scale: Scale, entry: dict[str, Any], frame: Frame) -> None:
     """The input is in metres: the true scale is 1."""
     for estimates, name in ((scale.plane, "camera_height"), (scale.guard, "camera_height_guess")):
         estimates.append(np.log(frame.camera_height / entry.get(name, np.nan)))
-
-
-def calibration_table(result: Result) -> np.ndarray:
-    """By decile of the expected error: means of expected and observed |ln error|."""
-    if not result.calibration:
-        return np.zeros((0, 2))
-    expected, observed, weight = np.concatenate(result.calibration, axis=1)
-    order = np.argsort(expected)
-    share = np.cumsum(weight[order]) / weight.sum()
-    rows = []
-    for i in range(10):
-        part = order[(share > i / 10) & (share <= (i + 1) / 10)]
-        own = weight[part]
-        rows.append([(values[part] * own).sum() / own.sum() for values in (expected, observed)])
-    return np.array(rows)
-
-
-def print_tables(results: dict[str, Result], total: Result) -> None:
-    def table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-        print(f"\n{title}\n")
-        print("| " + " | ".join(heads) + " |")
-        print("|---" + "|---:" * (len(heads) - 1) + "|")
-        for row in rows:
-            print("| " + " | ".join(row) + " |")
-
-    everything = {**results, "all": total}
-    keys = list(total.summary())
-    rows = [[name, *(f"{r.summary()[key]:.3f}" for key in keys)] for name, r in everything.items()]
-    table("Headline (500 to 2,000 points)", ["", *keys], rows)
-    counts = sorted({points for _, points in total.errors})
-    for key in ("absrel", "delta1", "rmse", "mae"):
-        rows = [
-            [method, *(f"{total.of(method, count).measures()[key]:.3f}" for count in counts)]
-            for method in METHODS
-        ]
-        table(f"{key} by number of points", ["", *map(str, counts)], rows)
-    sums = {method: DepthErrors() for method in METHODS}
-    for (method, count), errors in total.errors.items():
-        if count in HEADLINE:
-            sums[method] += errors
-    heads = [f"to {end:g} m" for end in RANGE_ENDS]
-    bands = [f"{180 * i / LATITUDE_BANDS - 90:g}°" for i in range(LATITUDE_BANDS)]
-    for key in ("absrel", "delta1", "rmse", "mae"):
-        by_range, by_band = (
-            [
-                [method, *(f"{sums[method].measures(**{axis: i})[key]:.3f}" for i in range(count))]
-                for method in METHODS
-            ]
-            for axis, count in (("range_bin", len(RANGE_ENDS)), ("band", LATITUDE_BANDS))
-        )
-        table(f"{key} by range", ["", *heads], by_range)
-        table(f"{key} by latitude, from 30° below to the poles", ["", *bands], by_band)
-    rows = [
-        [f"{i + 1}", f"{expected:.4f}", f"{observed:.4f}"]
-        for i, (expected, observed) in enumerate(calibration_table(total))
-    ]
-    table("Calibration: |ln error| by decile", ["decile", "expected", "observed"], rows)
 
 
 def build() -> None:

@@ -1,0 +1,101 @@
+"""What is measured of networks and simpler ways on drives, and the figures that sum it up."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from weights_tools.evaluation.depth_errors import DepthErrors
+
+# Numbers of points whose mean the headline figures are.
+HEADLINE = (500, 1000, 2000)
+OURS, ALONE, PUBLISHED = "depth completion", "propagation alone", "published encoder-decoder"
+NEAREST, WEIGHTED = "nearest neighbour", "inverse distance"
+METHODS = (OURS, PUBLISHED, ALONE, WEIGHTED, NEAREST)
+FUSED = 10  # keyframes
+
+
+@dataclass
+class Scale:
+    """Of the frames of a drive, in order: |ln| of the error of the metric scale."""
+
+    plane: list[float] = field(default_factory=list)  # ln of estimated over true scale
+    guard: list[float] = field(default_factory=list)
+
+
+@dataclass
+class Result:
+    """Of a town, or of several."""
+
+    errors: dict[tuple[str, int], DepthErrors] = field(default_factory=dict)
+    cuts: list[float] = field(default_factory=list)
+    # Pixels drawn at random: expected error, observed error, solid angle.
+    calibration: list[np.ndarray] = field(default_factory=list)
+    scales: list[Scale] = field(default_factory=list)
+
+    def of(self, method: str, points: int) -> DepthErrors:
+        return self.errors.setdefault((method, points), DepthErrors())
+
+    def __iadd__(self, other: "Result") -> "Result":
+        for (method, points), errors in other.errors.items():
+            self.of(method, points).__iadd__(errors)
+        self.cuts += other.cuts
+        self.calibration += other.calibration
+        self.scales += other.scales
+        return self
+
+    def headline(self, method: str) -> dict[str, float]:
+        total = DepthErrors()
+        for points in HEADLINE:
+            if (method, points) in self.errors:
+                total += self.errors[method, points]
+        return total.measures()
+
+    def summary(self) -> dict[str, float]:
+        ours = self.headline(OURS)
+        plane = np.abs(np.concatenate([scale.plane for scale in self.scales] or [[]]))
+        guard = np.abs(np.concatenate([scale.guard for scale in self.scales] or [[]]))
+        fused = np.abs([value for scale in self.scales for value in _fused(scale.plane)])
+        classical = [self.headline(method)["absrel"] for method in (NEAREST, WEIGHTED)]
+        return {
+            "absrel": ours["absrel"],
+            "delta1": ours["delta1"],
+            "rmse": ours["rmse"],
+            "mae": ours["mae"],
+            "absrel_best_classical": min(classical),
+            "absrel_propagation": self.headline(ALONE)["absrel"],
+            "absrel_published": self.headline(PUBLISHED)["absrel"],
+            "scale_median_abs_log": _quantile(plane, 0.5),
+            "scale_p95_abs_log": _quantile(plane, 0.95),
+            "scale_fused_median_abs_log": _quantile(fused, 0.5),
+            "scale_guard_median_abs_log": _quantile(guard, 0.5),
+            "rmse_cut_by_dropping_20_percent": float(np.mean(self.cuts)) if self.cuts else np.nan,
+        }
+
+
+def _quantile(values: np.ndarray, share: float) -> float:
+    values = values[np.isfinite(values)]
+    return float(np.quantile(values, share)) if len(values) else np.nan
+
+
+def _fused(logs: Sequence[float]) -> Iterator[float]:
+    """Medians over neighbouring frames; of fewer where a drive is short."""
+    logs = [value for value in logs if np.isfinite(value)]
+    for first in range(0, max(len(logs) - FUSED, 0) + 1, FUSED):
+        if logs[first : first + FUSED]:
+            yield float(np.median(logs[first : first + FUSED]))
+
+
+def calibration_table(result: Result) -> np.ndarray:
+    """By decile of the expected error: means of expected and observed |ln error|."""
+    if not result.calibration:
+        return np.zeros((0, 2))
+    expected, observed, weight = np.concatenate(result.calibration, axis=1)
+    order = np.argsort(expected)
+    share = np.cumsum(weight[order]) / weight.sum()
+    rows = []
+    for i in range(10):
+        part = order[(share > i / 10) & (share <= (i + 1) / 10)]
+        own = weight[part]
+        rows.append([(values[part] * own).sum() / own.sum() for values in (expected, observed)])
+    return np.array(rows)
