@@ -1,7 +1,7 @@
 """A network that can be trained: a description with parameters."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import torch
@@ -53,6 +53,25 @@ class Network(nn.Module):
             self.layers[layer.name]["weight"] = nn.Parameter(weight.clone())
             self.layers[layer.name]["bias"] = nn.Parameter(bias.clone())
 
+    @torch.no_grad()
+    def calibrate(self, inputs: Mapping[str, Tensor], bfloat16: bool = False) -> None:
+        """Makes what normalizes batches change nothing for these inputs, so that a network whose
+        weights came without it goes on from where it was."""
+
+        def observe(norm: nn.BatchNorm2d) -> Callable[[Tensor], Tensor]:
+            def identity(x: Tensor) -> Tensor:
+                variance, mean = torch.var_mean(x.float(), dim=(0, 2, 3), unbiased=False)
+                for kept, seen in ((norm.running_mean, mean), (norm.running_var, variance)):
+                    kept.copy_(seen)
+                norm.weight.copy_((variance + norm.eps).sqrt())
+                norm.bias.copy_(mean)
+                return x
+
+            return identity
+
+        behind = {name: observe(norm) for name, norm in self.normalizations.items()}
+        run(self.description.graph, self._plain_weights(), inputs, bfloat16, behind)
+
     @property
     def knows_any_unit(self) -> bool:
         """Whether the unit of its input does not matter; otherwise it must be metres."""
@@ -65,16 +84,23 @@ class Network(nn.Module):
 
     def weights(self) -> dict[str, Tensor]:
         """Weights as operations take them and files hold them."""
+        result = self._plain_weights()
+        if self.training:
+            return result
+        for name, norm in self.normalizations.items():
+            factor = norm.weight * (norm.running_var + norm.eps).rsqrt()
+            weight, bias = (f"{name}.{role}" for role in ("weight", "bias"))
+            result[weight] = result[weight] * factor[:, None, None, None]
+            result[bias] = (result[bias] - norm.running_mean) * factor + norm.bias
+        return result
+
+    def _plain_weights(self) -> dict[str, Tensor]:
+        """Without what normalizes batches."""
         result = {}
         for layer in self.description.layers:
             weight, bias = (self.layers[layer.name][role] for role in ("weight", "bias"))
             if layer.is_normalized:
                 weight = F.softplus(weight, beta=SOFTPLUS_BETA)
-            if layer.name in self.normalizations and not self.training:
-                norm = self.normalizations[layer.name]
-                factor = norm.weight * (norm.running_var + norm.eps).rsqrt()
-                weight = weight * factor[:, None, None, None]
-                bias = (bias - norm.running_mean) * factor + norm.bias
             result[f"{layer.name}.weight"] = weight
             result[f"{layer.name}.bias"] = bias
         return result

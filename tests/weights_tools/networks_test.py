@@ -49,11 +49,11 @@ class SizeTest(unittest.TestCase):
         self.check(networks.multi_stream(), 356_242, 186.54)
 
     def test_depth_completion(self) -> None:
-        self.check(networks.depth_completion(), 2_463_368, 12.32)
+        self.check(networks.depth_completion(), 2_463_944, 12.39)
 
     def test_layers_of_depth_completion_cost_what_was_planned(self) -> None:
         planned = {  # millions of multiply-accumulates at 512 x 1024
-            "encoder1": 264, "encoder2": 604 + 2416, "encoder3": 453 + 1359, "encoder4": 227 + 1208,
+            "encoder1": 340, "encoder2": 604 + 2416, "encoder3": 453 + 1359, "encoder4": 227 + 1208,
             "encoder5": 94 + 472, "4": 313, "3": 705, "2": 1258, "1": 1275, "head": 1376,
         }
         counted = dict.fromkeys(planned, 0)
@@ -134,7 +134,7 @@ class NormalizationTest(unittest.TestCase):
         norm = network.normalizations["encoder1"]
         x = torch.from_numpy(random.uniform(-1, 1, (2, 3, 6, 6)))
         weight, bias = (network.layers["encoder1"][role] for role in ("weight", "bias"))
-        x = torch.cat([x, x, x[:, :1]], dim=1)  # seven channels
+        x = torch.cat([x, x, x], dim=1)  # nine channels
         expected = norm(torch.conv2d(x, weight, bias))
         weights = network.weights()
         found = torch.conv2d(x, weights["encoder1.weight"], weights["encoder1.bias"])
@@ -158,6 +158,16 @@ class DepthCompletionTest(unittest.TestCase):
             self.assertEqual(outputs[name].shape, (1, 1, HEIGHT, WIDTH))
         for name in ("scale", "log_metric_scale"):
             self.assertEqual(outputs[name].shape, (1, 1, 1, 1))
+
+    def test_the_encoder_sees_how_far_points_lie_off_what_they_propagate(self) -> None:
+        tensors = small().double().tensors(panorama())
+        off, confidence = tensors["features"][:, -2:-1], tensors["features"][:, -1:]
+        point = tensors["depth"] > 0
+        self.assertTrue(point.any() and not point.all())
+        self.assertTrue(torch.equal(confidence > 0, point))
+        x = (tensors["depth"] / tensors["points.median"]).clamp(min=1e-9).log()
+        expected = torch.where(point, (x - tensors["propagated"]) * tensors["confidence"], 0.0)
+        self.assertLess((off - expected).abs().max().item(), 1e-12)
 
     def test_turning_the_camera_turns_the_result(self) -> None:
         network = small().double()

@@ -19,7 +19,7 @@ from weights_tools import network_file, networks
 from weights_tools.export import export, trained
 from weights_tools.network import Network
 from weights_tools.training import batches, shards, train
-from weights_tools.training.loss import losses, pixel_weights, predicted_depth, total
+from weights_tools.training.loss import losses, pixel_weights, predicted_depth, relative_error, total
 from weights_tools.training.sparse_points import NoiseModel
 from weights_tools.training.validate import error_cut, validate
 
@@ -77,8 +77,17 @@ class TrainTest(unittest.TestCase):
         batch = self.batch()
         for error in (0.0, 0.25):
             terms = losses(self.perfect(batch, error, 0.0), batch)
-            for name, factor in (("depth", 1), ("propagated", 2), ("metric", 3)):
+            for name, factor in (("propagated", 2), ("metric", 3)):
                 self.assertAlmostEqual(terms[name].item(), factor * error, places=5)
+            depth = (error + np.expm1(error)) / 2
+            self.assertAlmostEqual(terms["depth"].item(), depth, places=5)
+
+    def test_relative_error_is_that_of_ranges_and_straight_beyond_a_factor_of_e(self) -> None:
+        ratio = torch.tensor([0.1, 0.8, 1.0, 1.25, 2.5], dtype=torch.float64)
+        torch.testing.assert_close(relative_error(ratio.log()), (ratio - 1).abs())
+        far = torch.tensor([1.0, 2.0, 5.0], dtype=torch.float64)
+        expected = np.e - 1 + np.e * (far - 1)
+        torch.testing.assert_close(relative_error(far), expected)
 
     def test_the_ground_is_learned_from_its_odds(self) -> None:
         batch = self.batch()
@@ -210,6 +219,27 @@ class TrainTest(unittest.TestCase):
             torch.testing.assert_close(values, expected[name], rtol=1e-4, atol=1e-6)
         (stage,) = training.stages
         self.assertEqual((stage["steps_done"], stage["shards"]), (1, ["street.npz"]))
+
+    def test_batches_are_normalized_from_where_a_network_file_is(self) -> None:
+        self.run_training("first", until=1)
+        network, provenance, width = trained(self.folder / "first/checkpoint.pt")
+        path = self.folder / "network.h5"
+        export(path, network, provenance, width=width)
+        settings = train.Settings(batch=1, batch_normalization=True)
+        training = train.Training(settings, [self.shard], self.folder / "on", CPU, [path])
+        inputs, at_first = self.batch().inputs, training.network.eval()
+        self.assertTrue(at_first.normalizations)
+        for name, values in network(inputs).items():
+            torch.testing.assert_close(at_first(inputs)[name], values, rtol=1e-3, atol=1e-4)
+
+    def test_layers_that_see_more_than_before_go_on_as_before(self) -> None:
+        values, like = torch.rand(4, 2, 3, 3), torch.rand(4, 3, 3, 3)
+        wide = train._widened(values, like)
+        self.assertEqual(wide.shape, like.shape)
+        x = torch.rand(1, 3, 8, 8)
+        torch.testing.assert_close(
+            torch.conv2d(x, wide), torch.conv2d(x[:, :2], values), rtol=1e-5, atol=1e-6
+        )
 
     def test_the_mean_of_weights_follows_them(self) -> None:
         folder = self.folder / "mean"

@@ -1,5 +1,8 @@
-"""What training makes small. Errors are of the logarithm of depth, weighted by solid angle."""
+"""What training makes small. Errors are of the logarithm of depth, weighted by solid angle; that of
+the completed depth itself is the mean with its relative error, so that where it is uncertain the
+nearer of two surfaces is preferred, as that error does."""
 
+import math
 from collections.abc import Mapping
 
 import torch
@@ -31,8 +34,9 @@ def losses(network: Network, batch: Batch, bfloat16: bool = False) -> dict[str, 
         relative = (ports["depth"].float() - truth).abs() / truth
         return {"depth": _mean(relative, weight)}
     target = (truth / ports["scale"]).log()
-    error = (ports["log_depth"] - target).abs()
-    terms = {"depth": _mean(error, weight)}
+    difference = ports["log_depth"] - target
+    error = difference.abs()
+    terms = {"depth": _mean((error + relative_error(difference)) / 2, weight)}
     if "ground" not in ports:
         return terms
     everywhere = pixel_weights(torch.ones_like(batch.truth))
@@ -48,6 +52,13 @@ def losses(network: Network, batch: Batch, bfloat16: bool = False) -> dict[str, 
         "metric": (ports["log_metric_scale"] - metric).abs().mean(),
         "ground": _mean(unlikely, everywhere),
     }
+
+
+def relative_error(difference: Tensor) -> Tensor:
+    """|estimate / truth - 1| of a difference of logarithms. Beyond a factor of e it goes on with the
+    slope that it has there: a few pixels must not outweigh a picture."""
+    inside = difference.clamp(max=1.0)
+    return inside.expm1().abs() + math.e * (difference - inside)
 
 
 def total(terms: Mapping[str, Tensor]) -> Tensor:

@@ -70,6 +70,9 @@ class Training:
         self.stages: list[dict[str, Any]] = []  # of training, before this one
         description, normalizes = NETWORKS[settings.network](), settings.batch_normalization
         self.network = Network(description, settings.seed, normalizes).to(device)
+        self._model = NoiseModel()
+        if not self.network.knows_any_unit:
+            self._model = replace(self._model, scale=(1.0, 1.0))
         self._path = folder / "checkpoint.pt"
         if not self._path.exists():
             for path in starts:
@@ -101,8 +104,14 @@ class Training:
             weights = other.weights()
         self.stages += stages
         own = self.network.weights()
-        common = {name: values for name, values in weights.items() if name in own}
+        common = {n: _widened(values, own[n]) for n, values in weights.items() if n in own}
         self.network.load({name: values.detach() for name, values in {**own, **common}.items()})
+        names = list(self.network.normalizations)
+        if names and all(f"{name}.weight" in common for name in names):
+            # The step after the last, which training itself never draws.
+            seed, step, size = self.settings.seed, self.settings.steps, self.settings.batch
+            batch = draw(self.frames, seed, step, size, self._model)
+            self.network.calibrate(batch.to(self.device).inputs, self.settings.bfloat16)
 
     def _resume(self) -> None:
         state = torch.load(self._path, map_location=self.device)
@@ -134,12 +143,9 @@ class Training:
 
     def batches(self, end: int) -> Iterator[Batch]:
         """Of the steps from now to `end`; the next one is made while one is used."""
-        settings, model = self.settings, NoiseModel()
-        if not self.network.knows_any_unit:
-            model = replace(model, scale=(1.0, 1.0))
 
         def make(step: int) -> Batch:
-            return draw(self.frames, settings.seed, step, settings.batch, model)
+            return draw(self.frames, self.settings.seed, step, self.settings.batch, self._model)
 
         with ThreadPoolExecutor(1) as maker:
             coming = maker.submit(make, self.step)
@@ -167,6 +173,14 @@ class Training:
                 if mean.is_floating_point():
                     mean.lerp_(now[name], 1 - keep)
         return {name: value.item() for name, value in terms.items()}
+
+
+def _widened(values: torch.Tensor, like: torch.Tensor) -> torch.Tensor:
+    """Weights of a layer that had fewer inputs: the last ones, which are new, count nothing yet."""
+    more = like.shape[1] - values.shape[1] if values.dim() > 1 else 0
+    if more <= 0:
+        return values
+    return torch.cat([values, values.new_zeros(len(values), more, *values.shape[2:])], dim=1)
 
 
 def _read_network_file(path: Path) -> tuple[dict[str, torch.Tensor], list[dict[str, Any]]]:
