@@ -26,7 +26,7 @@ struct LayerList {
 
 /// Depth completion (fusion at half resolution).
 inline const LayerList kCompletionLayers = {"completion",
-                                            {{"E1", 6, 32, 3, 2, 1},
+                                            {{"E1", 9, 32, 3, 2, 1},
                                              {"E2", 32, 64, 3, 2, 2},
                                              {"E2 residual", 64, 64, 3, 1, 4},
                                              {"E3", 64, 96, 3, 2, 4},

@@ -31,8 +31,9 @@ struct ConvolutionSpec {
 
 constexpr int kConvolutionTile = 4;
 
-/// The most input channels that may lie in kPlanar: pictures and the input of a network.
-constexpr int kMaxPlanarChannels = 8;
+/// The most input channels that may lie in kPlanar: pictures and what a network starts from. The
+/// kernel takes those of one block (16), of which fewer would leave too much empty.
+constexpr int kMaxPlanarChannels = 12;
 
 /// A dense convolution with its weights packed in the order the kernel reads them, its bias, and
 /// what usually follows: y = activation(convolution(x) + bias + residual). NaN and infinity spread

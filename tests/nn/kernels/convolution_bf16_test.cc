@@ -52,7 +52,7 @@ TEST_F(BFloat16Convolution, IsThePlainSumForEveryWidth) {
 }
 
 TEST_F(BFloat16Convolution, IsThePlainSumForEveryNumberOfChannels) {
-  for (const int in : {9, 31, 32, 64, 80}) {
+  for (const int in : {kMaxPlanarChannels + 1, 31, 32, 64, 80}) {
     for (const int out : {1, 16, 17, 32, 38, 64, 97}) {
       ExpectRightInAllFormats({{in, out, 3}, 2, 20});
       ExpectRightInAllFormats({{in, out, 1}, 1, 50});
@@ -61,7 +61,7 @@ TEST_F(BFloat16Convolution, IsThePlainSumForEveryNumberOfChannels) {
 }
 
 TEST_F(BFloat16Convolution, TakesPicturesAsFloats) {
-  for (const int in : {1, 3, 6, 8}) {
+  for (const int in : {1, 3, 6, 8, 9, kMaxPlanarChannels}) {
     for (const int out : {16, 32, 80, 97}) {
       for (const int stride : {1, 2}) {
         for (const int kernel : {1, 3, 5}) {

@@ -86,7 +86,7 @@ TEST(Convolution, IsThePlainSumForEveryNumberOfChannels) {
 }
 
 TEST(Convolution, IsThePlainSumFromAndToPlanes) {
-  for (const int in : {1, 2, 5, 6, 8}) {
+  for (const int in : {1, 2, 5, 6, 8, 9, kMaxPlanarChannels}) {
     for (const int stride : {1, 2}) {
       for (const int kernel : {1, 3, 5}) {
         for (const int width : {1, 7, 33, 64}) {
