@@ -29,8 +29,7 @@ class Network(nn.Module):
             {
                 layer.name: nn.BatchNorm2d(layer.outputs, momentum=0.05)
                 for layer in description.layers
-                if normalizes and layer.shape[2:] == (3, 3) and layer.outputs > 1
-                and not layer.is_normalized
+                if normalizes and _is_inner_convolution(layer)
             }
         )
         self.layers = nn.ModuleDict(
@@ -77,6 +76,11 @@ class Network(nn.Module):
         """Whether the unit of its input does not matter; otherwise it must be metres."""
         return any(port["name"] == "log_depth" for port in self.description.graph.outputs)
 
+    def inner_convolutions(self) -> list[nn.Parameter]:
+        """Weights of the 3 x 3 convolutions between what is given and what is asked for."""
+        layers = filter(_is_inner_convolution, self.description.layers)
+        return [self.layers[layer.name]["weight"] for layer in layers]
+
     def fix_propagation(self) -> None:
         """Leaves normalized convolutions as they are in training."""
         for layer in self.description.layers:
@@ -113,6 +117,10 @@ class Network(nn.Module):
     def forward(self, inputs: Mapping[str, Tensor]) -> dict[str, Tensor]:
         tensors = self.tensors(inputs)
         return {port["name"]: tensors[port["tensor"]] for port in self.description.graph.outputs}
+
+
+def _is_inner_convolution(layer: Layer) -> bool:
+    return layer.shape[2:] == (3, 3) and layer.outputs > 1 and not layer.is_normalized
 
 
 def initial_weights(description: Description, seed: int) -> dict[str, np.ndarray]:

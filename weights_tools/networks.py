@@ -15,7 +15,7 @@ LOG_DEPTH = {
     "confidence": "0..1",
     "log_depth": "ln of depth over scale",
     "scale": "median of the given depths",
-    "error": "1 / confidence - 1 is the mean error of log_depth that is to be expected",
+    "error": "1 / confidence - 1 is the mean relative error of depth that is to be expected",
     "log_metric_scale": "ln of scale in heights of the camera",
     "ground": "probability of the road's plane under the camera",
 }

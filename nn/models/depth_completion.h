@@ -23,7 +23,7 @@ struct SparsePicture {
 
 struct DensePicture {
   std::vector<float> depth;  // in the unit of the points; 0 where the network gives none
-  /// 1 / confidence - 1 is the error to be expected of ln(depth).
+  /// 1 / confidence - 1 is the relative error to be expected of the depth.
   std::vector<float> confidence;
   /// Probability of each pixel that it shows the plane of the road under the camera, where the
   /// network tells it; otherwise empty.

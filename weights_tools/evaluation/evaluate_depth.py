@@ -207,9 +207,9 @@ class Evaluation:
         arrays = (relative, confidence, truth, weight)
         result.cuts.append(error_cut(*(torch.from_numpy(array) for array in arrays)))
         drawn = np.random.RandomState(0).choice(np.flatnonzero(known), 2000)
-        log_error = np.abs(np.log(np.maximum(depth.flat[drawn], 1e-3) / truth.flat[drawn]))
         expected = 1 / np.maximum(confidence.flat[drawn], 1e-4) - 1
-        result.calibration.append(np.stack([expected, log_error, weight.flat[drawn]]))
+        drawn_values = (expected, relative.flat[drawn], weight.flat[drawn])
+        result.calibration.append(np.stack(drawn_values))
 
 
 def _add_scale(scale: Scale, entry: dict[str, Any], frame: Frame) -> None:

@@ -61,7 +61,7 @@ def write_calibration(path: Path, table: np.ndarray) -> None:
         return
     ends = np.array([table.min(), table.max()])
     curves = {"deciles": (table[:, 0], table[:, 1]), "as it should be": (ends, ends)}
-    write_chart(path, "expected |ln error|", "observed |ln error|", curves, log_x=True)
+    write_chart(path, "expected relative error", "observed relative error", curves, log_x=True)
 
 
 def write_chart(

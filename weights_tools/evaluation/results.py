@@ -29,7 +29,7 @@ class Result:
 
     errors: dict[tuple[str, int], DepthErrors] = field(default_factory=dict)
     cuts: list[float] = field(default_factory=list)
-    # Pixels drawn at random: expected error, observed error, solid angle.
+    # Pixels drawn at random: expected and observed relative error, solid angle.
     calibration: list[np.ndarray] = field(default_factory=list)
     scales: list[Scale] = field(default_factory=list)
 
@@ -87,7 +87,7 @@ def _fused(logs: Sequence[float]) -> Iterator[float]:
 
 
 def calibration_table(result: Result) -> np.ndarray:
-    """By decile of the expected error: means of expected and observed |ln error|."""
+    """By decile of the expected error: means of expected and observed relative error."""
     if not result.calibration:
         return np.zeros((0, 2))
     expected, observed, weight = np.concatenate(result.calibration, axis=1)

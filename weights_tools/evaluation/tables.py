@@ -45,4 +45,4 @@ def print_tables(results: dict[str, Result], total: Result) -> None:
         [f"{i + 1}", f"{expected:.4f}", f"{observed:.4f}"]
         for i, (expected, observed) in enumerate(calibration_table(total))
     ]
-    table("Calibration: |ln error| by decile", ["decile", "expected", "observed"], rows)
+    table("Calibration: relative error by decile", ["decile", "expected", "observed"], rows)

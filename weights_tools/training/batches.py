@@ -95,13 +95,15 @@ def augment(frame: Frame, points: SparsePoints, random: np.random.RandomState) -
     # Gains of exposure and of each colour, and a curve: what cameras of several makers do.
     gain = np.exp(random.normal(0, 0.2) + random.normal(0, 0.05, 3))
     curve = np.exp(random.normal(0, 0.15))
-    levels = np.clip(np.linspace(0, 1, 256)[:, None] * gain, 0, 1) ** curve
-    image = levels.astype(np.float32)[move(frame.rgb), np.arange(3)]
+    levels = (np.clip(np.linspace(0, 1, 256)[:, None] * gain, 0, 1) ** curve).astype(np.float32)
+    picture = move(frame.rgb)
+    image = np.stack([levels[:, i].take(picture[..., i]) for i in range(3)], axis=-1)
     if random.uniform() < 0.2:
         image = _blur(image)
     if random.uniform() < 0.5:
-        deviation = random.uniform(0, 0.03)
-        image = image + (deviation * random.standard_normal(image.shape)).astype(np.float32)
+        deviation = np.float32(random.uniform(0, 0.03))
+        noise = np.random.Generator(np.random.PCG64(random.randint(2**31)))
+        image += deviation * noise.standard_normal(image.shape, np.float32)
     moved = SparsePoints(move(points.depth), move(points.confidence), points.scale)
     image = np.clip(image, 0, 1)
     return Sample(image, move(frame.range), move(frame.ground), moved, frame.camera_height)

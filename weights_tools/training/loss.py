@@ -18,7 +18,7 @@ from weights_tools.training.sphere import row_weights
 SHARES = {"depth": 1.0, "confidence": 0.1, "propagated": 0.2, "metric": 0.05, "ground": 0.1}
 # The least depth that a network which predicts metres is understood to mean.
 _LEAST = 1e-2
-# The error that the confidence in any depth of the sky is to tell: a factor of e.
+# The relative error that the confidence in any depth of the sky is to tell.
 _SKY_ERROR = 1.0
 
 
@@ -35,18 +35,18 @@ def losses(network: Network, batch: Batch, bfloat16: bool = False) -> dict[str, 
         return {"depth": _mean(relative, weight)}
     target = (truth / ports["scale"]).log()
     difference = ports["log_depth"] - target
-    error = difference.abs()
-    terms = {"depth": _mean((error + relative_error(difference)) / 2, weight)}
+    relative = relative_error(difference)
+    terms = {"depth": _mean((difference.abs() + relative) / 2, weight)}
     if "ground" not in ports:
         return terms
     everywhere = pixel_weights(torch.ones_like(batch.truth))
-    known = torch.where(batch.truth > 0, error.detach(), _SKY_ERROR)
+    known = torch.where(batch.truth > 0, relative.detach(), _SKY_ERROR)
     odds, ground_odds = tensors["log_odds"].float().split(1, dim=1)
     metric = (ports["scale"] / batch.scale / batch.camera_height).log()
     unlikely = F.binary_cross_entropy_with_logits(ground_odds, batch.ground, reduction="none")
     return {
         **terms,
-        # Laplace's likelihood: least where exp(-odds) is the expected error.
+        # Laplace's likelihood: least where exp(-odds) is the expected relative error.
         "confidence": _mean(known * odds.exp() - odds, everywhere),
         "propagated": _mean((tensors["propagated"] - target).abs(), weight),
         "metric": (ports["log_metric_scale"] - metric).abs().mean(),

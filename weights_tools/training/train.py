@@ -22,6 +22,7 @@ from weights_tools.network import Network
 from weights_tools.networks import NETWORKS
 from weights_tools.training.batches import Batch, Frames, draw
 from weights_tools.training.loss import losses, total
+from weights_tools.training.optimizers import make_optimizers
 from weights_tools.training.sparse_points import NoiseModel
 from weights_tools.training.validate import validate
 
@@ -33,7 +34,7 @@ class Settings:
     batch: int = 4
     rate: float = 1e-3  # the highest, after the warm-up
     warm_up: int = 500  # steps
-    decay: float = 1e-4  # of weights, as AdamW has it
+    decay: float = 1e-4  # of weights, per step and unit of the rate
     clip: float = 1.0  # norm of the gradient
     seed: int = 0
     average: float = 0.999  # share of the mean of weights that a step keeps; the mean is exported
@@ -80,10 +81,8 @@ class Training:
         self.mean = copy.deepcopy(self.network).requires_grad_(False).eval()
         if settings.fixed_propagation:
             self.network.fix_propagation()
-        self.optimizer = torch.optim.AdamW(
-            [values for values in self.network.parameters() if values.requires_grad],
-            lr=settings.rate,
-            weight_decay=settings.decay,
+        self.optimizers = make_optimizers(
+            self.network, settings.rate, settings.decay, settings.bfloat16
         )
         if self._path.exists():
             self._resume()
@@ -123,7 +122,8 @@ class Training:
                 )
         self.network.load_state_dict(state["network"])
         self.mean.load_state_dict(state["mean"])
-        self.optimizer.load_state_dict(state["optimizer"])
+        for optimizer, kept in zip(self.optimizers, state["optimizers"], strict=True):
+            optimizer.load_state_dict(kept)
         self.step, self.stages = state["step"], state["stages"]
 
     def save(self) -> None:
@@ -135,7 +135,7 @@ class Training:
             "stages": self.stages,
             "network": self.network.state_dict(),
             "mean": self.mean.state_dict(),
-            "optimizer": self.optimizer.state_dict(),
+            "optimizers": [optimizer.state_dict() for optimizer in self.optimizers],
         }
         temporary = self._path.with_name(self._path.name + ".tmp")
         torch.save(state, temporary)
@@ -157,13 +157,15 @@ class Training:
 
     def advance(self, batch: Batch) -> dict[str, float]:
         """One step; gives the terms of the loss."""
-        for group in self.optimizer.param_groups:
-            group["lr"] = learning_rate(self.settings, self.step)
-        self.optimizer.zero_grad()
+        for optimizer in self.optimizers:
+            for group in optimizer.param_groups:
+                group["lr"] = learning_rate(self.settings, self.step)
+            optimizer.zero_grad()
         terms = losses(self.network, batch, self.settings.bfloat16)
         total(terms).backward()
         torch.nn.utils.clip_grad_norm_(self.network.parameters(), self.settings.clip)
-        self.optimizer.step()
+        for optimizer in self.optimizers:
+            optimizer.step()
         self.step += 1
         # Young means forget faster.
         keep = min(self.settings.average, self.step / (self.step + 10))
