@@ -4,6 +4,8 @@ import contextlib
 import io
 import json
 import stat
+import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
@@ -180,6 +182,19 @@ print(json.dumps([dict(sparse=str(f), depth=here + "/street.png", confidence=her
         for part in ('"--camera-height", "1.0"', '"--camera-pitch", "5"', '"--depth-every", "5"'):
             self.assertIn(part, text)
         self.assertEqual(Settings().network, "depth_completion")
+
+    def test_unknown_towns_and_missing_files_are_refused_before_anything_is_rendered(self) -> None:
+        script = evaluate_depth.ROOT / "scripts/evaluate-depth"
+        for arguments, complaint in (
+            (["Town6"], "unknown town 'Town6': use Town1"),
+            (["--towns", "Town1", "Twon2"], "unknown town 'Twon2'"),
+            (["--circuits", "absent.acc"], "absent.acc: no such file"),
+            (["--shards", "absent.npz"], "absent.npz: no such file"),
+        ):
+            command = [sys.executable, script, "--skip-build", *arguments]
+            done = subprocess.run(command, capture_output=True, text=True)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn(complaint, done.stderr)
 
 
 if __name__ == "__main__":

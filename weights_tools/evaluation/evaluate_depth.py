@@ -11,6 +11,7 @@ import argparse
 import hashlib
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -226,22 +227,37 @@ def build() -> None:
     subprocess.run(programs, cwd=ROOT, check=True, stdout=sys.stderr)
 
 
+def town_name(text: str) -> str:
+    """Refuses what `town` does not know before anything is rendered."""
+    if not re.fullmatch(r"Town[1-5]|Loop|[0-9]{1,18}", text):
+        raise argparse.ArgumentTypeError(
+            f"unknown town {text!r}: use Town1 ... Town5, Loop, or a seed of at most 18 digits"
+        )
+    return text
+
+
+def existing(text: str) -> Path:
+    if not Path(text).is_file():
+        raise argparse.ArgumentTypeError(f"{text}: no such file")
+    return Path(text)
+
+
 def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("seed", nargs="?", help="a fresh town, besides the others")
+    parser.add_argument("seed", nargs="?", type=town_name, help="a fresh town, besides the others")
     parser.add_argument("--quick", action="store_true", help="20 frames of each town, not 100")
     parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
     towns = [f"Town{i}" for i in range(1, 6)]
-    parser.add_argument("--towns", nargs="*", default=towns, help="[Town1 ... Town5]")
-    parser.add_argument("--circuits", type=Path, nargs="*", default=[], metavar="MESH",
+    parser.add_argument("--towns", type=town_name, nargs="*", default=towns, help="[Town1 ... Town5]")
+    parser.add_argument("--circuits", type=existing, nargs="*", default=[], metavar="MESH",
                         help="circuits of torcs-data (.acc); not part of `all`")  # fmt: skip
-    parser.add_argument("--shards", type=Path, nargs="*", default=[], metavar="FILE",
+    parser.add_argument("--shards", type=existing, nargs="*", default=[], metavar="FILE",
                         help="drives that make_dataset has packed; part of `all` as one town")  # fmt: skip
     parser.add_argument("--points", type=int, nargs="+", default=POINTS, help="[100 ... 3000]")
     weights = ROOT / "weights"
-    parser.add_argument("--weights", type=Path, default=weights / "depth_completion.h5")
+    parser.add_argument("--weights", type=existing, default=weights / "depth_completion.h5")
     parser.add_argument("--published", type=Path, default=weights / "encoder_decoder.h5")
     caches = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
     parser.add_argument("--cache", type=Path, default=caches / "orb360/depth",
