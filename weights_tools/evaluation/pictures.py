@@ -84,7 +84,9 @@ def write_chart(
     for value in scales[0].ticks():
         x = scales[0].pixel(value)
         cv2.line(canvas, (x, margin), (x, height - bottom), (225, 225, 225))
-        text(f"{value:.4g}", (x - 14, height - bottom + 20))
+        words = f"{value:.0f}" if value >= 1000 else f"{value:.3g}"
+        half = 5 * len(words)  # half the width of the words, in pixels
+        text(words, (min(x - half, width - 2 * half - 8), height - bottom + 20))
     for value in scales[1].ticks():
         y = scales[1].pixel(value)
         cv2.line(canvas, (left, y), (width - margin, y), (225, 225, 225))

@@ -66,7 +66,7 @@ def stages(factor: float) -> list[Stage]:
 # does not tell it: the published one's is its mean relative error on towns it has not seen.
 RELEASED = {
     "ours_half": ("depth_completion.h5", None),
-    "published_half": ("encoder_decoder.h5", 0.2),
+    "published_half": ("encoder_decoder.h5", 0.13),
 }
 
 
