@@ -24,8 +24,8 @@ def export(
     log_error: float | None = None,
 ) -> None:
     """Writes a network and its weights; `provenance` says where they come from, `width` which
-    pictures it expects: `nn` resamples others. `log_error` is the error of ln(range) to be expected
-    of a network whose confidence does not tell it."""
+    pictures it expects: `nn` resamples others. `log_error` is the relative error of ranges to be
+    expected of a network whose confidence does not tell it."""
     stated = {"width": width, "log_error": log_error}
     graph = network.description.graph
     graph = dataclasses.replace(
@@ -58,7 +58,7 @@ def main() -> None:
     parser.add_argument("out", type=Path, help="HDF5 file to write")
     parser.add_argument("--seed", type=int, default=0, help="of untrained weights (default: 0)")
     parser.add_argument("--log-error", type=float, metavar="E",
-                        help="of ln(range), to be expected of a network whose confidence does not "
+                        help="relative error of ranges, to be expected of a network whose confidence does not "
                         "tell it")  # fmt: skip
     parser.add_argument("--half", action="store_true", help="store weights as 16-bit floats")
     arguments = parser.parse_args()

@@ -190,6 +190,7 @@ print(json.dumps([dict(sparse=str(f), depth=here + "/street.png", confidence=her
             (["--towns", "Town1", "Twon2"], "unknown town 'Twon2'"),
             (["--circuits", "absent.acc"], "absent.acc: no such file"),
             (["--shards", "absent.npz"], "absent.npz: no such file"),
+            (["--published", "absent.h5"], "absent.h5: no such file"),
         ):
             command = [sys.executable, script, "--skip-build", *arguments]
             done = subprocess.run(command, capture_output=True, text=True)

@@ -1,6 +1,7 @@
 """Steps of convolutions are orthogonal, those of everything else AdamW's."""
 
 import unittest
+from collections.abc import Callable
 
 import torch
 
@@ -50,22 +51,31 @@ class OptimizersTest(unittest.TestCase):
         Muon([weight], lr=0.1, weight_decay=0.5).step()
         torch.testing.assert_close(weight.detach(), torch.full_like(weight, 0.95))
 
-    def test_all_directions_of_an_uneven_problem_are_learned_equally_fast(self) -> None:
-        # Least squares whose inputs differ in size by a hundred: a step downhill that the largest
-        # allows hardly moves the smallest.
+    def test_steps_reach_what_downhill_ones_leave_where_inputs_are_uneven(self) -> None:
+        # Least squares whose inputs differ in size by a hundred, along no axis of the weights.
         generator = torch.Generator().manual_seed(3)
-        inputs = torch.randn(200, 18, generator=generator) * torch.logspace(0, -2, 18)
+        axes, _ = torch.linalg.qr(torch.randn(18, 18, generator=generator))
+        inputs = torch.randn(200, 18, generator=generator) * torch.logspace(0, -2, 18) @ axes.T
         true = torch.randn(4, 18, generator=generator)
-        weight = torch.nn.Parameter(torch.zeros(4, 2, 3, 3))
-        optimizer = Muon([weight], lr=0.0, weight_decay=0)
-        for step in range(200):
-            optimizer.param_groups[0]["lr"] = 0.1 * (1 - step / 200)
-            error = inputs @ (weight.flatten(1) - true).T
-            weight.grad = None
-            error.square().sum().backward()
-            optimizer.step()
-        left = (weight.detach().flatten(1) - true).norm(dim=0) / true.norm(dim=0)
-        self.assertLess(left[:12].max().item(), 0.1)
+
+        def left(make: Callable[[list[torch.nn.Parameter]], torch.optim.Optimizer]) -> float:
+            weight = torch.nn.Parameter(torch.zeros(4, 2, 3, 3))
+            optimizer = make([weight])
+            rate = optimizer.param_groups[0]["lr"]
+            for step in range(200):
+                optimizer.param_groups[0]["lr"] = rate * (1 - step / 200)
+                error = inputs @ (weight.flatten(1) - true).T
+                optimizer.zero_grad()
+                error.square().mean().backward()
+                optimizer.step()
+            off = (weight.detach().flatten(1) - true) @ axes
+            return (off[:, :12].norm() / (true @ axes)[:, :12].norm()).item()
+
+        muon = left(lambda weights: Muon(weights, lr=0.1, weight_decay=0))
+        downhill = min(
+            left(lambda weights, rate=rate: torch.optim.SGD(weights, rate)) for rate in (0.3, 1, 2)
+        )
+        self.assertLess(muon, 0.5 * downhill)
 
     def test_each_parameter_that_is_trained_belongs_to_one_optimizer(self) -> None:
         network = small()
@@ -81,6 +91,14 @@ class OptimizersTest(unittest.TestCase):
         self.assertIn("layers.head1.weight", steps)
         for other in ("n2.weight", "head2.weight", "global1.weight", "encoder1.bias"):
             self.assertNotIn(f"layers.{other}", steps)
+
+    def test_normalized_convolutions_take_the_steps_of_adamw(self) -> None:
+        network = small()
+        muon, _ = make_optimizers(network, 1e-3, 0, bfloat16=False)
+        names = {id(p): name for name, p in network.named_parameters()}
+        steps = {names[id(p)] for group in muon.param_groups for p in group["params"]}
+        self.assertIn("layers.propagated1.weight", names.values())
+        self.assertNotIn("layers.propagated1.weight", steps)
 
 
 if __name__ == "__main__":

@@ -113,12 +113,12 @@ class TrainTest(unittest.TestCase):
     def test_confidence_is_best_where_it_tells_the_relative_error(self) -> None:
         batch = self.batch()
         batch.truth[batch.truth == 0] = 10.0  # no sky, which has a confidence of its own
-        error = 0.05
+        error = 0.5
         values = {
             confidence: losses(
                 self.perfect(batch, np.log1p(error), float(np.log(confidence / (1 - confidence)))), batch
             )["confidence"].item()
-            for confidence in (0.90, 0.94, 1 / (1 + error), 0.96, 0.99)
+            for confidence in (0.6, 1 / (1 + error), 1 / (1 + np.log1p(error)), 0.8)
         }
         self.assertEqual(min(values, key=values.get), 1 / (1 + error))
 

@@ -258,7 +258,7 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--points", type=int, nargs="+", default=POINTS, help="[100 ... 3000]")
     weights = ROOT / "weights"
     parser.add_argument("--weights", type=existing, default=weights / "depth_completion.h5")
-    parser.add_argument("--published", type=Path, default=weights / "encoder_decoder.h5")
+    parser.add_argument("--published", type=existing, default=weights / "encoder_decoder.h5")
     caches = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
     parser.add_argument("--cache", type=Path, default=caches / "orb360/depth",
                         help="folder for the rendered drives [%(default)s]")  # fmt: skip

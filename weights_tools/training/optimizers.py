@@ -1,4 +1,4 @@
-"""Steps of training: orthogonal ones for 3 x 3 convolutions (Muon), those of AdamW for the rest."""
+"""Steps of training: orthogonal ones for inner 3 x 3 convolutions (Muon), AdamW's for the rest."""
 
 import math
 from collections.abc import Iterable
@@ -34,6 +34,8 @@ class Muon(torch.optim.Optimizer):
     def step(self) -> None:
         for group in self.param_groups:
             for parameter in group["params"]:
+                if parameter.grad is None:
+                    continue
                 state = self.state[parameter]
                 if not state:
                     state["momentum"] = torch.zeros_like(parameter)

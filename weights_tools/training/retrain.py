@@ -62,7 +62,7 @@ def stages(factor: float) -> list[Stage]:
     ]
 
 
-# The file of a stage, and the error of ln(range) to be expected where the network's own confidence
+# The file of a stage, and the relative error of ranges to be expected where the network's own confidence
 # does not tell it: the published one's is its mean relative error on towns it has not seen.
 RELEASED = {
     "ours_half": ("depth_completion.h5", None),

@@ -105,6 +105,7 @@ class Training:
         own = self.network.weights()
         common = {n: _widened(values, own[n]) for n, values in weights.items() if n in own}
         self.network.load({name: values.detach() for name, values in {**own, **common}.items()})
+        self.network.to(self.device)
         names = list(self.network.normalizations)
         if names and all(f"{name}.weight" in common for name in names):
             # The step after the last, which training itself never draws.
@@ -120,6 +121,11 @@ class Training:
                     f"{self._path}: was made with other {key}, {state[key]}; "
                     "repeat them or choose another folder"
                 )
+        if "optimizers" not in state:
+            raise ValueError(
+                f"{self._path}: comes from an older version, whose steps were others; "
+                "give it to another folder's training by --start"
+            )
         self.network.load_state_dict(state["network"])
         self.mean.load_state_dict(state["mean"])
         for optimizer, kept in zip(self.optimizers, state["optimizers"], strict=True):
