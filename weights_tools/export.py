@@ -58,8 +58,8 @@ def main() -> None:
     parser.add_argument("out", type=Path, help="HDF5 file to write")
     parser.add_argument("--seed", type=int, default=0, help="of untrained weights (default: 0)")
     parser.add_argument("--log-error", type=float, metavar="E",
-                        help="relative error of ranges, to be expected of a network whose confidence does not "
-                        "tell it")  # fmt: skip
+                        help="relative error of ranges, to be expected of a network whose confidence "
+                        "does not tell it")  # fmt: skip
     parser.add_argument("--half", action="store_true", help="store weights as 16-bit floats")
     arguments = parser.parse_args()
     width = None

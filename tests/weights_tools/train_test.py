@@ -114,13 +114,15 @@ class TrainTest(unittest.TestCase):
         batch = self.batch()
         batch.truth[batch.truth == 0] = 10.0  # no sky, which has a confidence of its own
         error = 0.5
-        values = {
-            confidence: losses(
-                self.perfect(batch, np.log1p(error), float(np.log(confidence / (1 - confidence)))), batch
-            )["confidence"].item()
-            for confidence in (0.6, 1 / (1 + error), 1 / (1 + np.log1p(error)), 0.8)
-        }
-        self.assertEqual(min(values, key=values.get), 1 / (1 + error))
+
+        def loss(confidence: float) -> float:
+            odds = float(np.log(confidence / (1 - confidence)))
+            network = self.perfect(batch, float(np.log1p(error)), odds)
+            return losses(network, batch)["confidence"].item()
+
+        of_the_logarithm = 1 / (1 + np.log1p(error))
+        best = min((0.6, 1 / (1 + error), of_the_logarithm, 0.8), key=loss)
+        self.assertEqual(best, 1 / (1 + error))
 
     def test_only_surfaces_count_and_by_their_solid_angle(self) -> None:
         truth = torch.zeros(1, 1, 4, 2)

@@ -13,8 +13,8 @@ _MOMENTUM = 0.95
 # Mean size of a number's step per unit of the rate: AdamW's are hardly larger than 1 and mostly
 # smaller, and what both train then takes the same rates.
 _STEP = 0.8
-# x -> a x + b x^3 + c x^5 takes what is in 0..1 near 1 in few repetitions; within 0.7 to 1.2 will do
-# (Jordan et al., "Muon: An optimizer for hidden layers in neural networks").
+# x -> a x + b x^3 + c x^5 takes what is in 0..1 near 1 in few repetitions; within 0.7 to 1.2 will
+# do (Jordan et al., "Muon: An optimizer for hidden layers in neural networks").
 _A, _B, _C, _REPETITIONS = 3.4445, -4.7750, 2.0315, 5
 
 
