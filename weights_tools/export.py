@@ -2,6 +2,7 @@
 
 import argparse
 import dataclasses
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ import torch
 from weights_tools import network_file
 from weights_tools.network import Network
 from weights_tools.networks import NETWORKS
-from weights_tools.training.train import checkpoint_network
+from weights_tools.training.train import checkpoint_network, read_checkpoint, stage
 
 
 def export(
@@ -40,10 +41,9 @@ def export(
 def trained(checkpoint: Path) -> tuple[Network, dict[str, Any], int]:
     """The network of a checkpoint of weights_tools.training.train, its provenance, and the width of
     the pictures that it was trained on."""
-    state = torch.load(checkpoint, map_location="cpu")
-    network = checkpoint_network(state)
-    own = {"steps_done": state["step"], **state["settings"], "shards": state["shards"]}
-    return network, {**own, "earlier": state["stages"]}, state["width"]
+    state = read_checkpoint(checkpoint, torch.device("cpu"))
+    provenance = {**stage(state), "earlier": state["stages"]}
+    return checkpoint_network(state), provenance, state["width"]
 
 
 def untrained(name: str, seed: int) -> tuple[Network, dict[str, Any]]:
@@ -64,7 +64,10 @@ def main() -> None:
     arguments = parser.parse_args()
     width = None
     if arguments.checkpoint:
-        network, provenance, width = trained(arguments.checkpoint)
+        try:
+            network, provenance, width = trained(arguments.checkpoint)
+        except (ValueError, OSError) as error:
+            sys.exit(f"export: {error}")
     else:
         network, provenance = untrained(arguments.untrained, arguments.seed)
     dtype = np.float16 if arguments.half else np.float32

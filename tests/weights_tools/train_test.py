@@ -317,6 +317,34 @@ class TrainTest(unittest.TestCase):
         self.assertAlmostEqual(rates[100], 0.01)
         self.assertEqual(rates[10:], sorted(rates[10:], reverse=True))
 
+    def test_damaged_and_foreign_files_are_refused_in_one_line(self) -> None:
+        self.run_training("first", until=1)
+        checkpoint = self.folder / "first/checkpoint.pt"
+        older = torch.load(checkpoint)
+        del older["optimizers"]
+        torch.save(older, self.folder / "older.pt")
+        torch.save({"weights": 1}, self.folder / "foreign.pt")
+        (self.folder / "text").write_text("no checkpoint, no shard")
+        (self.folder / "half.pt").write_bytes(checkpoint.read_bytes()[:-1000])
+        (self.folder / "half.npz").write_bytes(self.shard.read_bytes()[:-1000])
+        np.save(self.folder / "array.npy", np.zeros(3))
+        for name in ("half.npz", "array.npy", "text"):
+            with self.assertRaisesRegex(ValueError, f"{name}: is no shard of frames"):
+                shards.read(self.folder / name)
+        for name in ("half.pt", "foreign.pt", "text"):
+            with self.assertRaisesRegex(ValueError, f"{name}: is no checkpoint"):
+                train.read_checkpoint(self.folder / name, CPU)
+        (self.folder / "older.pt").replace(checkpoint)
+        with self.assertRaisesRegex(ValueError, "checkpoint.pt: comes from an older version"):
+            self.run_training("first")
+        # The command says the same and has no traceback.
+        command = [sys.executable, "-m", "weights_tools.training.train", self.folder / "other"]
+        command += ["--shards", self.folder / "half.npz"]
+        done = subprocess.run(command, cwd=SOURCE, capture_output=True, text=True)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+        self.assertIn("half.npz: is no shard of frames", done.stderr)
+
     def test_training_needs_only_numpy_and_pytorch(self) -> None:
         code = "import sys; sys.modules.update(h5py=None, cv2=None, yaml=None);"
         code += "import weights_tools.training.train"

@@ -62,8 +62,8 @@ def stages(factor: float) -> list[Stage]:
     ]
 
 
-# The file of a stage, and the relative error of ranges to be expected where the network's own confidence
-# does not tell it: the published one's is its mean relative error on towns it has not seen.
+# The file of a stage, and the relative error of ranges to be expected where the network's own
+# confidence does not tell it: the published one's is its mean one on towns it has not seen.
 RELEASED = {
     "ours_half": ("depth_completion.h5", None),
     "published_half": ("encoder_decoder.h5", 0.13),

@@ -1,6 +1,7 @@
 """Frames of a drive, packed for training: one .npz file, read with nothing but NumPy."""
 
 import zipfile
+import zlib
 from dataclasses import dataclass, fields
 from pathlib import Path
 
@@ -86,8 +87,13 @@ def write(path: Path, shard: Shard) -> None:
 
 
 def read(path: Path) -> Shard:
-    with np.load(path) as file:
-        missing = {f.name for f in fields(Shard)} - set(file.files)
-        if missing:
-            raise ValueError(f"{path}: is no shard of frames: it lacks {sorted(missing)}")
-        return Shard(**{f.name: file[f.name] for f in fields(Shard)})
+    names = {f.name for f in fields(Shard)}
+    try:
+        with np.load(path) as file:
+            missing = names - set(file.files)
+            values = {name: file[name] for name in names - missing}
+    except (zipfile.BadZipFile, zlib.error, EOFError, ValueError, TypeError) as error:
+        raise ValueError(f"{path}: is no shard of frames, or a damaged one; make it again") from error
+    if missing:
+        raise ValueError(f"{path}: is no shard of frames: it lacks {sorted(missing)}")
+    return Shard(**values)

@@ -10,6 +10,8 @@ import csv
 import hashlib
 import math
 import os
+import pickle
+import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, fields, replace
@@ -92,10 +94,10 @@ class Training:
         if path.suffix == ".h5":
             weights, stages = _read_network_file(path)
         else:
-            state = torch.load(path, map_location=self.device)
+            state = read_checkpoint(path, self.device)
             other = checkpoint_network(state)
             digest = hashlib.sha256(path.read_bytes()).hexdigest()
-            stages = [*state["stages"], {**_stage(state), "checkpoint": digest}]
+            stages = [*state["stages"], {**stage(state), "checkpoint": digest}]
             if state["settings"]["batch_normalization"] and self.settings.batch_normalization:
                 self.network.load_state_dict(other.state_dict())
                 self.stages += stages
@@ -114,7 +116,7 @@ class Training:
             self.network.calibrate(batch.to(self.device).inputs, self.settings.bfloat16)
 
     def _resume(self) -> None:
-        state = torch.load(self._path, map_location=self.device)
+        state = read_checkpoint(self._path, self.device)
         for key, now in (("settings", asdict(self.settings)), ("shards", self.shards)):
             if state[key] != now:
                 raise ValueError(
@@ -201,6 +203,16 @@ def _read_network_file(path: Path) -> tuple[dict[str, torch.Tensor], list[dict[s
     return {name: torch.from_numpy(values).float() for name, values in weights.items()}, stages
 
 
+def read_checkpoint(path: Path, device: torch.device) -> dict[str, Any]:
+    try:
+        state = torch.load(path, map_location=device)
+    except (RuntimeError, EOFError, KeyError, pickle.UnpicklingError) as error:
+        raise ValueError(f"{path}: is no checkpoint, or a damaged one") from error
+    if not isinstance(state, dict) or not {"settings", "step", "mean"} <= state.keys():
+        raise ValueError(f"{path}: is no checkpoint of a training")
+    return state
+
+
 def checkpoint_network(state: dict[str, Any]) -> Network:
     """The mean network that a checkpoint holds."""
     settings = state["settings"]
@@ -210,7 +222,8 @@ def checkpoint_network(state: dict[str, Any]) -> Network:
     return network.eval()
 
 
-def _stage(state: dict[str, Any]) -> dict[str, Any]:
+def stage(state: dict[str, Any]) -> dict[str, Any]:
+    """Of the provenance of a network: what a checkpoint's training was."""
     return {"steps_done": state["step"], **state["settings"], "shards": state["shards"]}
 
 
@@ -276,14 +289,17 @@ def main() -> None:
     arguments = vars(parser.parse_args())
     torch.set_num_threads(arguments["threads"])
     settings = Settings(**{name: arguments[name] for name in asdict(Settings())})
-    train(
-        settings,
-        arguments["out"],
-        arguments["shards"],
-        arguments["validation"],
-        torch.device(arguments["device"]),
-        arguments["start"],
-    )
+    try:
+        train(
+            settings,
+            arguments["out"],
+            arguments["shards"],
+            arguments["validation"],
+            torch.device(arguments["device"]),
+            arguments["start"],
+        )
+    except (ValueError, OSError) as error:
+        sys.exit(f"train: {error}")
 
 
 if __name__ == "__main__":
