@@ -17,6 +17,7 @@ import torch
 
 from weights_tools import network_file
 from weights_tools.reference_cases import Arrays, Reference, full_networks, references, stored
+from weights_tools.refusal import refusing
 
 DATA = Path(__file__).resolve().parent.parent / "tests/nn/data"
 
@@ -62,6 +63,7 @@ def _plain(values: torch.Tensor) -> np.ndarray:
     return np.where(values.isnan(), np.nan, values.numpy())
 
 
+@refusing("dump_reference")
 def main() -> None:
     parser = argparse.ArgumentParser(description="Writes the references of the tests of nn.")
     parser.add_argument("--out", type=Path, default=DATA, help="folder (default: tests/nn/data)")

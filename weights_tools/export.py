@@ -2,7 +2,6 @@
 
 import argparse
 import dataclasses
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ import torch
 from weights_tools import network_file
 from weights_tools.network import Network
 from weights_tools.networks import NETWORKS
+from weights_tools.refusal import refusing
 from weights_tools.training.train import checkpoint_network, read_checkpoint, stage
 
 
@@ -50,6 +50,7 @@ def untrained(name: str, seed: int) -> tuple[Network, dict[str, Any]]:
     return Network(NETWORKS[name](), seed), {"network": name, "steps": 0, "seed": seed}
 
 
+@refusing("export")
 def main() -> None:
     parser = argparse.ArgumentParser(description="Writes a network to a file.")
     what = parser.add_mutually_exclusive_group(required=True)
@@ -64,10 +65,7 @@ def main() -> None:
     arguments = parser.parse_args()
     width = None
     if arguments.checkpoint:
-        try:
-            network, provenance, width = trained(arguments.checkpoint)
-        except (ValueError, OSError) as error:
-            sys.exit(f"export: {error}")
+        network, provenance, width = trained(arguments.checkpoint)
     else:
         network, provenance = untrained(arguments.untrained, arguments.seed)
     dtype = np.float16 if arguments.half else np.float32

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from weights_tools.refusal import refusing
 from weights_tools.training.batches import Frames
 from weights_tools.training.shards import Frame
 from weights_tools.training.sparse_points import SparsePoints, from_slam, simulate
@@ -53,6 +54,7 @@ def summary(parts: list[np.ndarray]) -> dict[str, float]:
     return result
 
 
+@refusing("compare_points")
 def main() -> None:
     parser = argparse.ArgumentParser(description="Compares simulated points with those of SLAM.")
     parser.add_argument("shards", type=Path, nargs="+", help="made with --run")

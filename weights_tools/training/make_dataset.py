@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from weights_tools.refusal import refusing
 from weights_tools.training import shards
 from weights_tools.training.make_shard import halved, read_drive
 
@@ -132,10 +133,11 @@ def _call(command: Sequence[object]) -> None:
         raise DriveError(f"{command[0]} failed: {done.stderr.strip()}")
 
 
+@refusing("make_dataset")
 def main() -> int:
     parser = argparse.ArgumentParser(description="Renders drives and packs them for training.")
     parser.add_argument("out", type=Path, help="folder for full/, half/ and quarter/ with the shards")
-    parser.add_argument("--seeds", type=int, nargs=2, default=(1000, 1064), metavar=("FIRST", "END"))
+    parser.add_argument("--seeds", type=int, nargs=2, default=(1000, 1220), metavar=("FIRST", "END"))
     parser.add_argument("--frames", type=int, default=24, help="of a drive (default: 24)")
     parser.add_argument("--width", type=int, default=1024, help="of the pictures (default: 1024)")
     parser.add_argument("--tracked-seeds", type=int, nargs="*", default=[],

@@ -5,6 +5,8 @@ DRIVE is a folder of `town render --masks`. Frames without depth (--depth-every)
 """
 
 import argparse
+import contextlib
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +15,7 @@ import h5py
 import numpy as np
 import yaml
 
+from weights_tools.refusal import refusing
 from weights_tools.training import shards
 from weights_tools.training.ground import ground_pixels
 
@@ -27,14 +30,15 @@ MARGIN = 128
 
 def read_drive(folder: Path, halvings: int = 0, run: Path | None = None) -> list[shards.Frame]:
     """Frames of a drive, each side halved so often, with the sparse depth of a run of SLAM."""
-    description = yaml.safe_load((folder / "sequence.yaml").read_text())
-    camera_height = float(description["camera_height"])
+    camera_height = read_camera_height(folder / "sequence.yaml")
     poses = np.loadtxt(folder / "groundtruth.txt", ndmin=2)
     travels = travel_directions(poses[:, 1:4], poses[:, 4:8])
     ups = into_camera(np.tile([0.0, 0.0, 1.0], (len(poses), 1)), poses[:, 4:8])
     sparse = sparse_files(run) if run else {}
     frames = []
     for path in sorted((folder / "depth").glob("*.png")):
+        if int(path.stem) >= len(poses):
+            raise ValueError(f"{path}: groundtruth.txt has no such frame; render the drive again")
         picture = _read(folder / "rgb" / f"{path.stem}.jpg", cv2.IMREAD_COLOR)
         moving = _read(folder / "moving" / path.name, cv2.IMREAD_UNCHANGED)
         metres = _read(path, cv2.IMREAD_UNCHANGED).astype(np.float32) / shards.RANGE_UNITS
@@ -54,6 +58,14 @@ def read_drive(folder: Path, halvings: int = 0, run: Path | None = None) -> list
     if not frames:
         raise ValueError(f"{folder}: has no depth; render it with `town render --masks`")
     return frames
+
+
+def read_camera_height(path: Path) -> float:
+    """Metres above the road."""
+    try:
+        return float(yaml.safe_load(path.read_text())["camera_height"])
+    except (yaml.YAMLError, KeyError, TypeError) as error:
+        raise ValueError(f"{path}: tells no camera_height; render the drive again") from error
 
 
 def halved(frame: shards.Frame) -> shards.Frame:
@@ -78,7 +90,7 @@ def sparse_files(run: Path) -> dict[int, Path]:
     """Of a run's keyframes, by frame."""
     files = {}
     for path in (run / "sparse").glob("*.h5"):
-        with h5py.File(path, "r") as file:
+        with _sparse_file(path) as file:
             files[int(file.attrs["frame_index"])] = path
     if not files:
         raise ValueError(f"{run}: has no sparse depth; run orb360 with --save-sparse")
@@ -90,7 +102,7 @@ def read_points(path: Path | None, metres: np.ndarray) -> np.ndarray:
     scale of its own: the points' median scale makes metres of it."""
     if path is None:
         return np.zeros((0, 4), np.float32)
-    with h5py.File(path, "r") as file:
+    with _sparse_file(path) as file:
         ranges, confidence = file["range"][()], file["confidence"][()]
     if ranges.shape != metres.shape:
         raise ValueError(f"{path}: has another size than the drive; run orb360 without --resize")
@@ -99,6 +111,15 @@ def read_points(path: Path | None, metres: np.ndarray) -> np.ndarray:
     metre = np.median(ranges / truth) if len(rows) else 1
     points = [rows, columns, ranges / metre, confidence[rows, columns]]
     return np.stack(points, axis=1).astype(np.float32)
+
+
+@contextlib.contextmanager
+def _sparse_file(path: Path) -> Iterator[h5py.File]:
+    try:
+        with h5py.File(path, "r") as file:
+            yield file
+    except (OSError, KeyError) as error:
+        raise ValueError(f"{path}: is no sparse depth of orb360, or damaged") from error
 
 
 def _read(path: Path, how: int) -> np.ndarray:
@@ -157,6 +178,7 @@ def into_camera(vectors: np.ndarray, quaternions: np.ndarray) -> np.ndarray:
     return np.stack([-forward, right, -down], axis=1)
 
 
+@refusing("make_shard")
 def main() -> None:
     parser = argparse.ArgumentParser(description="Packs a rendered drive for training.")
     parser.add_argument("drive", type=Path, help="folder of `town render --masks`")

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from weights_tools.evaluation.pictures import write_chart
+from weights_tools.refusal import refusing
 
 COLUMNS = ("depth", "unseen_absrel", "unseen_scale_error")
 
@@ -17,8 +18,11 @@ def draw(out: Path, folders: Sequence[Path]) -> None:
     curves: dict[str, tuple[list[float], list[float]]] = {}
     first = 0
     for folder in folders:
-        with (folder / "log.csv").open() as file:
+        path = folder / "log.csv"
+        with path.open() as file:
             lines = list(csv.DictReader(file))
+        if not all("step" in line for line in lines):
+            raise ValueError(f"{path}: is no log of a training: it has no steps")
         for line in lines:
             for name in COLUMNS:
                 if name in line:
@@ -30,6 +34,7 @@ def draw(out: Path, folders: Sequence[Path]) -> None:
     write_chart(out, "step", "error", arrays)
 
 
+@refusing("plot")
 def main() -> None:
     parser = argparse.ArgumentParser(description="Draws learning curves.")
     parser.add_argument("out", type=Path, help="picture to write (.png)")

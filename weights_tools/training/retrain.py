@@ -16,14 +16,15 @@ import numpy as np
 import torch
 
 from weights_tools.export import export, trained
+from weights_tools.refusal import refusing
 from weights_tools.training import make_dataset, plot
 from weights_tools.training.make_dataset import Programs, circuit_spec, town_spec
 from weights_tools.training.train import Settings, train
 
 # Towns by seed. What networks are compared on while they are trained is never trained on.
-TRAINING_SEEDS, VALIDATION_SEEDS = range(1000, 1064), range(2000, 2008)
+TRAINING_SEEDS, VALIDATION_SEEDS = range(1000, 1220), range(2000, 2008)
 TRACKED_SEEDS = range(3000, 3008)  # whose sparse points come from SLAM itself
-FRAMES, VALIDATION_FRAMES, TRACKED_FRAMES = 30, 6, 200
+FRAMES, VALIDATION_FRAMES, TRACKED_FRAMES = 24, 6, 200
 WIDTH = 1024  # of the rendered pictures; shards are full, half and a quarter of that
 
 
@@ -98,6 +99,7 @@ def release(out: Path) -> None:
         plot.draw(out / f"learning_curve_{name}.png", folders)
 
 
+@refusing("retrain")
 def main() -> None:
     parser = argparse.ArgumentParser(description="Makes the released weights anew.")
     parser.add_argument("out", type=Path, help="folder for shards, checkpoints and weights")

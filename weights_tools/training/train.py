@@ -11,7 +11,6 @@ import hashlib
 import math
 import os
 import pickle
-import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, fields, replace
@@ -22,6 +21,7 @@ import torch
 
 from weights_tools.network import Network
 from weights_tools.networks import NETWORKS
+from weights_tools.refusal import refusing
 from weights_tools.training.batches import Batch, Frames, draw
 from weights_tools.training.loss import losses, total
 from weights_tools.training.optimizers import make_optimizers
@@ -269,6 +269,7 @@ def _log(path: Path, line: dict[str, float]) -> None:
     print(", ".join(f"{name} {value:.4g}" for name, value in line.items()), flush=True)
 
 
+@refusing("train")
 def main() -> None:
     parser = argparse.ArgumentParser(description="Trains a network for depth completion.")
     parser.add_argument("out", type=Path, help="folder for checkpoint.pt and log.csv")
@@ -289,17 +290,14 @@ def main() -> None:
     arguments = vars(parser.parse_args())
     torch.set_num_threads(arguments["threads"])
     settings = Settings(**{name: arguments[name] for name in asdict(Settings())})
-    try:
-        train(
-            settings,
-            arguments["out"],
-            arguments["shards"],
-            arguments["validation"],
-            torch.device(arguments["device"]),
-            arguments["start"],
-        )
-    except (ValueError, OSError) as error:
-        sys.exit(f"train: {error}")
+    train(
+        settings,
+        arguments["out"],
+        arguments["shards"],
+        arguments["validation"],
+        torch.device(arguments["device"]),
+        arguments["start"],
+    )
 
 
 if __name__ == "__main__":
