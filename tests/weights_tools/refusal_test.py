@@ -9,11 +9,13 @@ import unittest
 from pathlib import Path
 from unittest import mock
 
+import cv2
 import h5py
 import torch
 
 from tests.weights_tools import drives
 from weights_tools.refusal import refusing
+from weights_tools.training import make_shard, shards
 
 
 class RefusalTest(unittest.TestCase):
@@ -50,6 +52,7 @@ class RefusalTest(unittest.TestCase):
             ("training.train", out, "--shards", damaged),
             ("training.compare_points", damaged),
             ("training.make_dataset", out, "--seeds", 0, 0, "--circuits", "street-1.acc"),
+            ("training.retrain", out, "--circuits", "street-1.acc"),
             ("training.make_shard", damaged, out),
             ("training.plot", out, log.parent),
             ("export", out, "--checkpoint", damaged),
@@ -70,12 +73,36 @@ class RefusalTest(unittest.TestCase):
         (self.folder / "run/sparse/000002.h5").write_bytes(b"none")
         self.assertIn("000002.h5: is no sparse depth", self.refused("training.make_shard", *options))
         poses = self.folder / "drive/groundtruth.txt"
-        poses.write_text(poses.read_text().splitlines()[1] + "\n")
-        said = self.refused("training.make_shard", *options[:2])
-        self.assertIn("000002.png: groundtruth.txt has no such frame", said)
+        first = poses.read_text().splitlines()[1]
+        for text, message in (
+            (first, "000002.png: groundtruth.txt has no such frame"),
+            ("", "groundtruth.txt: has no poses"),
+            (f"{first}\n1 2 3", "groundtruth.txt: has no poses"),
+            ("a b c d e f g h", "groundtruth.txt: has no poses"),
+        ):
+            poses.write_text(f"# a comment\n{text}\n")
+            self.assertIn(message, self.refused("training.make_shard", *options[:2]))
         (self.folder / "drive/sequence.yaml").write_text("fps: 10\n")
         said = self.refused("training.make_shard", *options[:2])
         self.assertIn("sequence.yaml: tells no camera_height", said)
+
+    def test_pictures_of_another_size_are_named(self) -> None:
+        drive, out = self.folder / "drive", self.folder / "out"
+        drives.write_drive(drive)
+        for name in ("rgb/000000.jpg", "moving/000000.png", "depth/000002.png"):
+            path = drive / name
+            kept = path.read_bytes()
+            cv2.imwrite(str(path), cv2.imread(str(path), cv2.IMREAD_UNCHANGED)[::2, ::2])
+            said = self.refused("training.make_shard", drive, out)
+            self.assertIn(f"{name}: has another size", said)
+            path.write_bytes(kept)
+
+    def test_shards_of_two_sizes_are_named(self) -> None:
+        paths = [self.folder / "half.npz", self.folder / "quarter.npz"]
+        for path, frame in zip(paths, (drives.frame(), make_shard.halved(drives.frame()))):
+            shards.write(path, shards.pack([frame]))
+        said = self.refused("training.train", self.folder / "out", "--shards", *paths)
+        self.assertIn(f"{paths[1]}: has pictures of 64x32, {paths[0]} of 128x64", said)
 
     def test_errors_of_the_program_are_not_hidden(self) -> None:
         with self.assertRaises(KeyError), refusing("any"):

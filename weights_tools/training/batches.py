@@ -33,14 +33,22 @@ class Batch:
 
 
 class Frames:
-    """All frames of some shards. A shard is read when it is first needed, and stays in memory."""
+    """All frames of some shards, of one size. A shard is read when it is first needed, and stays in memory."""
 
     def __init__(self, paths: Sequence[Path]) -> None:
         if not paths:
             raise ValueError("there are no shards to train on")
         self._paths = list(paths)
         self._shards: dict[int, Shard] = {}
-        lengths = [len(self._shard(i)) for i in range(len(self._paths))]
+        lengths = []
+        for i, path in enumerate(self._paths):
+            size, first = (self._shard(j).range.shape[1:] for j in (i, 0))
+            if size != first:
+                raise ValueError(
+                    f"{path}: has pictures of {size[1]}x{size[0]}, {self._paths[0]} of "
+                    f"{first[1]}x{first[0]}; take shards of one size"
+                )
+            lengths.append(len(self._shard(i)))
         self._first = np.cumsum([0, *lengths])
 
     def _shard(self, i: int) -> Shard:

@@ -21,6 +21,8 @@ from weights_tools.training.make_shard import halved, read_drive
 ROOT = Path(__file__).resolve().parent.parent.parent
 LIGHTS = ("noon", "morning", "sunset", "overcast")
 SIZES = ("full", "half", "quarter")
+# Towns to train on, frames of a drive, of one that SLAM tracks, and width in pixels.
+SEEDS, FRAMES, TRACKED_FRAMES, WIDTH = range(1000, 1220), 24, 200, 1024
 # Those that other measurements are made on.
 RESERVED = ("street-1", "aalborg")
 
@@ -137,12 +139,14 @@ def _call(command: Sequence[object]) -> None:
 def main() -> int:
     parser = argparse.ArgumentParser(description="Renders drives and packs them for training.")
     parser.add_argument("out", type=Path, help="folder for full/, half/ and quarter/ with the shards")
-    parser.add_argument("--seeds", type=int, nargs=2, default=(1000, 1220), metavar=("FIRST", "END"))
-    parser.add_argument("--frames", type=int, default=24, help="of a drive (default: 24)")
-    parser.add_argument("--width", type=int, default=1024, help="of the pictures (default: 1024)")
+    parser.add_argument("--seeds", type=int, nargs=2, default=(SEEDS.start, SEEDS.stop),
+                        metavar=("FIRST", "END"))  # fmt: skip
+    parser.add_argument("--frames", type=int, default=FRAMES, help="of a drive (default: %(default)s)")
+    parser.add_argument("--width", type=int, default=WIDTH, help="of the pictures (default: %(default)s)")
     parser.add_argument("--tracked-seeds", type=int, nargs="*", default=[],
                         help="towns that SLAM tracks, for sparse points of its own")  # fmt: skip
-    parser.add_argument("--tracked-frames", type=int, default=200, help="of these (default: 200)")
+    parser.add_argument("--tracked-frames", type=int, default=TRACKED_FRAMES,
+                        help="of these (default: %(default)s)")
     parser.add_argument("--circuits", type=Path, nargs="*", default=[],
                         help="meshes (.acc) of circuits of torcs-data")  # fmt: skip
     parser.add_argument("--build", type=Path, default=ROOT / "build", help="folder of the programs")

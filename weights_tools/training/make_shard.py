@@ -31,17 +31,21 @@ MARGIN = 128
 def read_drive(folder: Path, halvings: int = 0, run: Path | None = None) -> list[shards.Frame]:
     """Frames of a drive, each side halved so often, with the sparse depth of a run of SLAM."""
     camera_height = read_camera_height(folder / "sequence.yaml")
-    poses = np.loadtxt(folder / "groundtruth.txt", ndmin=2)
+    poses = read_poses(folder / "groundtruth.txt")
     travels = travel_directions(poses[:, 1:4], poses[:, 4:8])
     ups = into_camera(np.tile([0.0, 0.0, 1.0], (len(poses), 1)), poses[:, 4:8])
     sparse = sparse_files(run) if run else {}
     frames = []
     for path in sorted((folder / "depth").glob("*.png")):
-        if int(path.stem) >= len(poses):
+        if not path.stem.isdecimal() or int(path.stem) >= len(poses):
             raise ValueError(f"{path}: groundtruth.txt has no such frame; render the drive again")
-        picture = _read(folder / "rgb" / f"{path.stem}.jpg", cv2.IMREAD_COLOR)
-        moving = _read(folder / "moving" / path.name, cv2.IMREAD_UNCHANGED)
-        metres = _read(path, cv2.IMREAD_UNCHANGED).astype(np.float32) / shards.RANGE_UNITS
+        units = _read(path, cv2.IMREAD_UNCHANGED)
+        if frames and units.shape != size:
+            raise ValueError(f"{path}: has another size than frames before it; render the drive again")
+        size = units.shape
+        picture = _read(folder / "rgb" / f"{path.stem}.jpg", cv2.IMREAD_COLOR, size)
+        moving = _read(folder / "moving" / path.name, cv2.IMREAD_UNCHANGED, size)
+        metres = units.astype(np.float32) / shards.RANGE_UNITS
         frame = shards.Frame(
             picture[:, :, ::-1],
             metres,
@@ -58,6 +62,18 @@ def read_drive(folder: Path, halvings: int = 0, run: Path | None = None) -> list
     if not frames:
         raise ValueError(f"{folder}: has no depth; render it with `town render --masks`")
     return frames
+
+
+def read_poses(path: Path) -> np.ndarray:
+    """A row for each frame: time, position (metres), rotation world_from_camera (x y z w)."""
+    lines = [line for line in path.read_text().splitlines() if line and not line.startswith("#")]
+    try:
+        poses = np.array([line.split() for line in lines], float)
+    except ValueError:
+        poses = np.zeros((0, 0))
+    if poses.ndim != 2 or poses.shape[1] != 8:
+        raise ValueError(f"{path}: has no poses of eight numbers; render the drive again")
+    return poses
 
 
 def read_camera_height(path: Path) -> float:
@@ -122,10 +138,12 @@ def _sparse_file(path: Path) -> Iterator[h5py.File]:
         raise ValueError(f"{path}: is no sparse depth of orb360, or damaged") from error
 
 
-def _read(path: Path, how: int) -> np.ndarray:
+def _read(path: Path, how: int, size: tuple[int, int] | None = None) -> np.ndarray:
     picture = cv2.imread(str(path), how)
     if picture is None:
         raise ValueError(f"{path}: cannot be read; render the drive with `town render --masks`")
+    if size and picture.shape[:2] != size:
+        raise ValueError(f"{path}: has another size than the frame's depth; render the drive again")
     return picture
 
 

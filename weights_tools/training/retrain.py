@@ -18,14 +18,20 @@ import torch
 from weights_tools.export import export, trained
 from weights_tools.refusal import refusing
 from weights_tools.training import make_dataset, plot
-from weights_tools.training.make_dataset import Programs, circuit_spec, town_spec
+from weights_tools.training.make_dataset import (
+    FRAMES,
+    SEEDS,
+    TRACKED_FRAMES,
+    WIDTH,
+    Programs,
+    circuit_spec,
+    town_spec,
+)
 from weights_tools.training.train import Settings, train
 
 # Towns by seed. What networks are compared on while they are trained is never trained on.
-TRAINING_SEEDS, VALIDATION_SEEDS = range(1000, 1220), range(2000, 2008)
+VALIDATION_SEEDS, VALIDATION_FRAMES = range(2000, 2008), 6
 TRACKED_SEEDS = range(3000, 3008)  # whose sparse points come from SLAM itself
-FRAMES, VALIDATION_FRAMES, TRACKED_FRAMES = 24, 6, 200
-WIDTH = 1024  # of the rendered pictures; shards are full, half and a quarter of that
 
 
 @dataclass(frozen=True)
@@ -72,7 +78,7 @@ RELEASED = {
 
 
 def render_all(out: Path, programs: Programs, circuits: Sequence[Path]) -> None:
-    specs = [town_spec(seed, FRAMES, WIDTH) for seed in TRAINING_SEEDS]
+    specs = [town_spec(seed, FRAMES, WIDTH) for seed in SEEDS]
     specs += [town_spec(seed, TRACKED_FRAMES, WIDTH, is_tracked=True) for seed in TRACKED_SEEDS]
     specs += [circuit_spec(mesh, FRAMES, WIDTH) for mesh in circuits]
     make_dataset.make_all(specs, programs, out / "training")
