@@ -38,31 +38,6 @@ std::vector<DensePictures::OfKeyframe> DrawKeyframes(const RangeStore& store,
 
 }  // namespace
 
-std::vector<DenseView> MakeDenseViews(const Reconstruction& reconstruction,
-                                      const Rigid3& file_world_from_map) {
-  const std::vector<FramePose>& keyframes = reconstruction.keyframes;
-  std::vector<DenseView> views;
-  constexpr size_t kNone = static_cast<size_t>(-1);
-  std::vector<size_t> view_of(keyframes.size(), kNone);
-  for (size_t i = 0; i < keyframes.size(); ++i) {
-    const auto scale = reconstruction.depth_scales.find(keyframes[i].index);
-    if (scale == reconstruction.depth_scales.end()) continue;
-    view_of[i] = views.size();
-    views.push_back({keyframes[i].index,
-                     file_world_from_map * keyframes[i].world_from_camera,
-                     scale->second,
-                     {}});
-  }
-  for (const CovisibleFrames& pair : reconstruction.covisibility) {
-    const size_t first = view_of[pair.first];
-    const size_t second = view_of[pair.second];
-    if (first == kNone || second == kNone) continue;
-    views[first].neighbours.push_back(second);
-    views[second].neighbours.push_back(first);
-  }
-  return views;
-}
-
 DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const RangeStore& store,
                              std::span<const DenseView> views, const DenseCloudOptions& options) {
   DenseOutput output;

@@ -8,14 +8,9 @@
 #include "slam/depth/dense_cloud.h"
 #include "slam/io/dense_cloud_file.h"
 #include "slam/io/range_store.h"
-#include "slam/pipeline/reconstruction.h"
+#include "slam/pipeline/dense_fusion.h"
 
 namespace orb360 {
-
-/// The keyframes of a reconstruction that have dense depth, in the frame of the written files.
-/// Neighbours are those that see the same landmarks.
-std::vector<DenseView> MakeDenseViews(const Reconstruction& reconstruction,
-                                      const Rigid3& file_world_from_map);
 
 struct DenseOutput {
   DenseCloudSummary cloud;

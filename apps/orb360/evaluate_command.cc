@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -92,7 +94,8 @@ void AddCloudErrors(const EvaluateOptions& options, const std::vector<StampedPos
   if (!IsSurfacePly(cloud) || !std::filesystem::is_directory(sequence / Dataset::kDepthName)) {
     return;
   }
-  (*report)["cloud"] = ToJson(CompareCloudFile(cloud, sequence, truth, pairs));
+  const int num_threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  (*report)["cloud"] = ToJson(CompareCloudFile(cloud, sequence, truth, pairs, num_threads));
 }
 
 int Evaluate(const EvaluateOptions& options) {

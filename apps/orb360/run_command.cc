@@ -24,12 +24,10 @@
 #include "apps/orb360/sparse_output.h"
 #include "nn/base/check.h"
 #include "nn/models/default_weights.h"
-#include "slam/depth/depth_completer.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/map_file.h"
 #include "slam/io/number_text.h"
-#include "slam/io/range_store.h"
 #include "slam/io/sequence.h"
 #include "slam/pipeline/options.h"
 #include "slam/pipeline/system.h"
@@ -111,9 +109,9 @@ RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, b
 }
 
 /// Fuses the keyframes' depth. A failure of the disk is noted, so that the trajectory is written.
-std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction, const RangeStore& depth,
-                                     const RunOptions& options, const RunOutput& output,
-                                     RunRecord* record) {
+std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction, const System& system,
+                                     const RunOptions& options, int num_threads,
+                                     const RunOutput& output, RunRecord* record) {
   const auto start = Clock::now();
   std::optional<DenseOutput> dense;
   if (reconstruction.depth_scales.empty()) return dense;  // nothing could be completed
@@ -121,7 +119,8 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction, const
   malloc_trim(0);  // what tracking and the last bundle adjustment needed would stay beside fusion's
 #endif
   try {
-    dense = output.WriteDense(reconstruction, depth, options.saves_depth);
+    dense =
+        output.WriteDense(reconstruction, *system.depth_maps(), options.saves_depth, num_threads);
   } catch (const std::exception&) {  // the trajectory is written all the same
     if (!record->failure) record->failure = std::current_exception();
   }
@@ -142,7 +141,7 @@ std::optional<StoredMap> ReadMapFor(int width, const std::string& path) {
 /// Of several maps, which nothing relates, the largest is kept.
 void WriteLargestMap(const std::string& path, int width, const Rigid3& file_world_from_map,
                      const System& system) {
-  const std::vector<Map>& maps = system.maps();
+  const std::span<const Map> maps = system.maps();
   const auto largest = std::ranges::max_element(maps, {}, &Map::num_keyframes);
   if (largest == maps.end()) return;
   std::optional<KnownGround> ground = system.grounds()[largest - maps.begin()];
@@ -184,35 +183,21 @@ int Run(const RunOptions& options) {
   CatchInterrupts();
 
   const cv::Size size = sequence->image_size();
+  system_options.num_threads = threads;
   System system(EquirectangularCamera(size.width, size.height), system_options, mask);
-  std::optional<DepthCompleter> completer;
-  std::optional<RangeStore> depth;
-  std::exception_ptr depth_failure;  // a full disk takes the cloud, not the trajectory
   if (options.weights != "none") {
-    const int rows = system_options.depth.height;
-    completer.emplace(options.weights,
-                      DepthCompleterOptions{.size = {2 * rows, rows}, .threads = threads});
-    depth.emplace(output.folder() / "depth.tmp");
-    system.CompleteKeyframes(&*completer, [&](int frame_index, const DenseDepth& dense) {
-      if (depth_failure) return;
-      try {
-        depth->Put(frame_index, dense);
-      } catch (const UserError&) {
-        depth_failure = std::current_exception();
-      }
-    });
+    system.CompleteDepth(options.weights, output.folder() / "depth.tmp");
   }
-  if (stored) system.StartIn(std::move(stored->map), stored->ground, options.localizes);
+  if (stored) options.localizes ? system.Localize(*stored) : system.LoadMap(*stored);
+  stored.reset();
   const auto start = Clock::now();
   RunRecord record = ProcessFrames(sequence.get(), &system, &output, options.is_quiet);
   const auto last_frame = Clock::now();
   const Reconstruction reconstruction = system.Finish();
   record.finishing_seconds = SecondsSince(last_frame);
   record.seconds = SecondsSince(start);
-  if (depth_failure && !record.failure) record.failure = depth_failure;
-  const bool is_complete = depth && !depth_failure;
   const std::optional<DenseOutput> dense =
-      is_complete ? FuseDepth(reconstruction, *depth, options, output, &record) : std::nullopt;
+      FuseDepth(reconstruction, system, options, threads, output, &record);
   const nlohmann::json summary = Summarize(
       reconstruction, record, dense,
       {options.input, options.mask, masked_share, options.weights, system_options.scale, threads});

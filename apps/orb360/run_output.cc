@@ -79,14 +79,10 @@ Rigid3 RunOutput::WorldOf(const Reconstruction& reconstruction) const {
 }
 
 DenseOutput RunOutput::WriteDense(const Reconstruction& reconstruction, const RangeStore& store,
-                                  bool saves_depth) const {
+                                  bool saves_depth, int num_threads) const {
   const std::vector<DenseView> views = MakeDenseViews(reconstruction, WorldOf(reconstruction));
   if (saves_depth) SaveDepth(folder_, store, views);
-  DenseCloudOptions options;
-  if (!reconstruction.maps.empty() && !reconstruction.maps.front().is_metric) {
-    options.voxel_size.reset();
-  }
-  return WriteDenseOutput(folder_, store, views, options);
+  return WriteDenseOutput(folder_, store, views, CloudOptionsFor(reconstruction, num_threads));
 }
 
 Rigid3 RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,

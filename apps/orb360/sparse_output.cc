@@ -24,7 +24,7 @@ std::filesystem::path SampleName(int frame_index) {
 
 }  // namespace
 
-void WriteSparseKeyframes(const std::filesystem::path& folder, const std::vector<Map>& maps,
+void WriteSparseKeyframes(const std::filesystem::path& folder, std::span<const Map> maps,
                           Sequence* sequence) {
   // By frame index; a frame is in one map only. Negative ones are of earlier runs.
   std::map<int, KeyframeOfMap> keyframes;

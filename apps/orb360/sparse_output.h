@@ -1,7 +1,7 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
+#include <span>
 
 #include "slam/io/sequence.h"
 #include "slam/map/map.h"
@@ -12,7 +12,7 @@ namespace orb360 {
 /// `folder`/000123.h5, named by frame index (WriteSparseSample). `sequence` is the input of the
 /// run, opened again: a run does not keep its pictures. Throws UserError where a file cannot be
 /// written.
-void WriteSparseKeyframes(const std::filesystem::path& folder, const std::vector<Map>& maps,
+void WriteSparseKeyframes(const std::filesystem::path& folder, std::span<const Map> maps,
                           Sequence* sequence);
 
 }  // namespace orb360

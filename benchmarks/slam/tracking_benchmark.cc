@@ -2,6 +2,8 @@
 // 2048 x 1024, mapping beside it as in a run.
 #include <benchmark/benchmark.h>
 
+#include "slam/io/frame_source.h"
+#include "slam/pipeline/options.h"
 #include "slam/pipeline/system.h"
 #include "tests/slam/pipeline/box_room.h"
 
@@ -21,7 +23,7 @@ void TrackHall(benchmark::State& state) {
   }
   size_t tracked = 0;
   for (auto _ : state) {
-    System system(camera, {}, {});
+    System system(camera, Options(), cv::Mat());
     for (const Frame& frame : frames) system.Process(frame);
     tracked = system.Finish().frames.size();
   }

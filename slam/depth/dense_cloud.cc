@@ -186,8 +186,8 @@ DenseCloudStatistics FuseCloud(std::span<const DenseView> views, const DepthLoad
     ++statistics.views;
     std::vector<const DepthView*> others;
     for (const auto& other : now.others) others.push_back(&other->depth);
-    std::vector<ConfirmedPoint> points =
-        ConfirmSurface(now.view->depth, others, options.confirmation, sampling);
+    std::vector<ConfirmedPoint> points = ConfirmSurface(
+        now.view->depth, others, options.confirmation, sampling, options.num_threads);
     statistics.confirmed += static_cast<std::int64_t>(points.size());
     if (collecting.valid()) collecting.get();
     collecting = std::async(std::launch::async, collect, std::move(points), now.view->color, i);

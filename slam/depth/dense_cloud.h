@@ -28,6 +28,7 @@ struct DenseCloudOptions {
   int max_views = 32;
   /// Voxels held in memory, at 150 bytes each; what has not been seen for longest goes first.
   size_t max_voxels = 1'400'000;
+  int num_threads = 1;  // of OpenMP; the cloud does not depend on it
 };
 
 /// A keyframe with dense depth, at the end of a run.

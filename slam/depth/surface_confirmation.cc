@@ -55,7 +55,7 @@ void Weigh(const DepthView& view, float max_own_error, TestedRow* points) {
 std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
                                            std::span<const DepthView* const> others,
                                            const ConfirmationOptions& options,
-                                           const SamplingOptions& sampling) {
+                                           const SamplingOptions& sampling, int num_threads) {
   ORB360_CHECK(sampling.spacing > 0, sampling.spacing);
   const Rigid3& world_from_view = view.world_from_camera();
   std::vector<Witness> witnesses;
@@ -94,7 +94,7 @@ std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
   };
 
   std::vector<std::vector<ConfirmedPoint>> rows(static_cast<size_t>(view.height()));
-#pragma omp parallel
+#pragma omp parallel num_threads(num_threads)
   {
     TestedRow points;
 #pragma omp for schedule(dynamic, 8)

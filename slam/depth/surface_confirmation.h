@@ -54,10 +54,10 @@ struct SamplingOptions {
 /// moves and what the network invents meets contradiction, or no support. Where keyframes agree,
 /// the point moves along its normal to the mean of all, weighted by certainty.
 ///
-/// Ordered by row, then column: the same for any number of threads.
+/// Ordered by row, then column: the same for any number of OpenMP threads.
 std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
                                            std::span<const DepthView* const> others,
                                            const ConfirmationOptions& options,
-                                           const SamplingOptions& sampling);
+                                           const SamplingOptions& sampling, int num_threads = 1);
 
 }  // namespace orb360

@@ -133,7 +133,8 @@ std::vector<Surfel> TrueSurface::TakeSurfels() {
   return surfels;
 }
 
-CloudErrors CompareCloud(std::span<const Eigen::Vector3f> cloud, std::span<const Surfel> truth) {
+CloudErrors CompareCloud(std::span<const Eigen::Vector3f> cloud, std::span<const Surfel> truth,
+                         int num_threads) {
   constexpr auto kFarthest = static_cast<float>(CloudErrors::kDistances.back());
   CloudErrors errors;
 
@@ -142,7 +143,7 @@ CloudErrors CompareCloud(std::span<const Eigen::Vector3f> cloud, std::span<const
                           [&](size_t i) { return truth[i].position; });
   const size_t step = StepFor(cloud.size());
   std::vector<float> distances((cloud.size() + step - 1) / step);
-#pragma omp parallel for schedule(dynamic, 1024)
+#pragma omp parallel for schedule(dynamic, 1024) num_threads(num_threads)
   for (size_t i = 0; i < distances.size(); ++i) {
     float nearest = 2.0f * kFarthest;
     surface.VisitAround(cloud[i * step], [&](size_t j) {
@@ -158,7 +159,7 @@ CloudErrors CompareCloud(std::span<const Eigen::Vector3f> cloud, std::span<const
   }
   const size_t wanted_step = StepFor(wanted.size());
   std::vector<float> gaps((wanted.size() + wanted_step - 1) / wanted_step);
-#pragma omp parallel for schedule(dynamic, 1024)
+#pragma omp parallel for schedule(dynamic, 1024) num_threads(num_threads)
   for (size_t i = 0; i < gaps.size(); ++i) {
     const Eigen::Vector3f& place = wanted[i * wanted_step]->position;
     float nearest = 4.0f * kFarthest * kFarthest;

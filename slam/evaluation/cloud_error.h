@@ -62,8 +62,10 @@ struct CloudErrors {
 };
 
 /// Compares a cloud (metres, world of the truth) with the true surface. Of very large clouds every
-/// n-th point is looked at. NaN where there is nothing to compare.
-CloudErrors CompareCloud(std::span<const Eigen::Vector3f> cloud, std::span<const Surfel> truth);
+/// n-th point is looked at. NaN where there is nothing to compare. Runs on `num_threads` OpenMP
+/// threads; the result does not depend on how many.
+CloudErrors CompareCloud(std::span<const Eigen::Vector3f> cloud, std::span<const Surfel> truth,
+                         int num_threads = 1);
 
 /// Moves points of an estimate into the world of the truth, each by what moves the estimate's
 /// nearest pose to the true one: so that the cloud is judged by what is around the camera, not by

@@ -32,7 +32,8 @@ cv::Mat ReadMoving(const std::filesystem::path& path, cv::Size size) {
 
 CloudErrors CompareCloudFile(const std::filesystem::path& cloud,
                              const std::filesystem::path& sequence,
-                             std::span<const StampedPose> truth, std::span<const PosePair> pairs) {
+                             std::span<const StampedPose> truth, std::span<const PosePair> pairs,
+                             int num_threads) {
   std::vector<Eigen::Vector3f> points;
   for (const SurfacePoint& point : ReadSurfacePly(cloud)) points.push_back(point.position);
   AlignLocally(pairs, points);
@@ -53,7 +54,7 @@ CloudErrors CompareCloudFile(const std::filesystem::path& cloud,
     const cv::Mat moving = ReadMoving(sequence / kMovingName / image.filename(), range.size());
     surface.Add(range, moving, truth[*index].world_from_camera);
   }
-  return CompareCloud(points, surface.TakeSurfels());
+  return CompareCloud(points, surface.TakeSurfels(), num_threads);
 }
 
 }  // namespace orb360

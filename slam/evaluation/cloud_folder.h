@@ -15,6 +15,7 @@ namespace orb360 {
 /// poses (AlignLocally). Throws UserError, naming the file, where one cannot be read or used.
 CloudErrors CompareCloudFile(const std::filesystem::path& cloud,
                              const std::filesystem::path& sequence,
-                             std::span<const StampedPose> truth, std::span<const PosePair> pairs);
+                             std::span<const StampedPose> truth, std::span<const PosePair> pairs,
+                             int num_threads);
 
 }  // namespace orb360

@@ -29,10 +29,11 @@ std::vector<Match> KeepMutual(const std::vector<NearestTwo>& forward,
 }
 
 // For each feature of `from`, the nearest two of `to` within the radius.
-std::vector<NearestTwo> FindNearby(const Features& from, const Features& to, double radius) {
+std::vector<NearestTwo> FindNearby(const Features& from, const Features& to, double radius,
+                                   int num_threads) {
   std::vector<NearestTwo> nearest(from.size());
   const double min_cosine = std::cos(std::min(radius, std::numbers::pi));
-#pragma omp parallel
+#pragma omp parallel num_threads(num_threads)
   {
     std::vector<int> candidates;
 #pragma omp for schedule(static)
@@ -57,7 +58,7 @@ std::vector<Match> MatchMutually(std::span<const Descriptor> first,
   std::iota(all_first.begin(), all_first.end(), 0);
   std::vector<NearestTwo> forward(first.size());
   std::vector<int> backward(second.size(), -1);
-#pragma omp parallel
+#pragma omp parallel num_threads(options.num_threads)
   {
 #pragma omp for schedule(static)
     for (size_t i = 0; i < first.size(); ++i) {
@@ -74,7 +75,7 @@ std::vector<Match> MatchMutually(std::span<const Descriptor> first,
 
 std::vector<Match> MatchNearby(const Features& first, const Features& second, double radius,
                                const MatchOptions& options) {
-  std::vector<NearestTwo> forward = FindNearby(first, second, radius);
+  std::vector<NearestTwo> forward = FindNearby(first, second, radius, options.num_threads);
   for (NearestTwo& nearest : forward) {
     if (nearest.second_index >= 0 && second.keypoints[nearest.second_index].level !=
                                          second.keypoints[nearest.best_index].level) {
@@ -83,7 +84,7 @@ std::vector<Match> MatchNearby(const Features& first, const Features& second, do
     if (!IsDistinct(nearest, options)) nearest.best_index = -1;
   }
   std::vector<int> backward;
-  for (const NearestTwo& nearest : FindNearby(second, first, radius)) {
+  for (const NearestTwo& nearest : FindNearby(second, first, radius, options.num_threads)) {
     backward.push_back(nearest.best_index);
   }
   return KeepMutual(forward, backward);

@@ -19,6 +19,7 @@ struct MatchOptions {
   int max_distance = 60;
   /// The best must be this much nearer than the second best.
   double ratio = 0.8;
+  int num_threads = 1;  // of OpenMP; the result does not depend on it
 };
 
 /// Mutual nearest neighbours among all pairs of two sets of descriptors, ordered by `first`.

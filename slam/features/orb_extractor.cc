@@ -39,10 +39,10 @@ OrbExtractor::OrbExtractor(const OrbOptions& options) : options_(options) {
   ORB360_CHECK(options.min_score > 0 && options.min_score < 256, options.min_score);
 }
 
-Features OrbExtractor::Extract(const cv::Mat& gray, const cv::Mat& mask) {
+Features OrbExtractor::Extract(const cv::Mat& gray, const cv::Mat& mask, int num_threads) {
   ORB360_CHECK(mask.empty() || (mask.type() == CV_8U && mask.size() == gray.size()), mask.cols,
                mask.rows);
-  BuildSpherePyramid(gray, options_.num_levels, &levels_);
+  BuildSpherePyramid(gray, options_.num_levels, &levels_, num_threads);
   const SpherePyramid& levels = levels_;
   const std::vector<int> counts = ShareOut(options_.num_features, levels);
   const uint8_t min_score = static_cast<uint8_t>(options_.min_score);
@@ -55,7 +55,7 @@ Features OrbExtractor::Extract(const cv::Mat& gray, const cv::Mat& mask) {
   }
   std::vector<BandMaxima> maxima(num_bands);
   std::vector<std::vector<Corner>> corners(levels.size());
-#pragma omp parallel
+#pragma omp parallel num_threads(num_threads)
   {
 #pragma omp for schedule(dynamic)
     for (int i = 0; i < num_bands; ++i) {
@@ -86,7 +86,7 @@ Features OrbExtractor::Extract(const cv::Mat& gray, const cv::Mat& mask) {
   features.keypoints.resize(sources.size());
   features.bearings.resize(sources.size());
   features.descriptors.resize(sources.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) num_threads(num_threads)
   for (size_t i = 0; i < sources.size(); ++i) {
     const Corner& corner = *sources[i].corner;
     const PyramidLevel& level = levels[sources[i].level];

@@ -24,15 +24,15 @@ struct OrbOptions {
 /// with orientation and descriptor sampled in the tangent plane.
 ///
 /// Rolling the image by k/32 of its width (which must be divisible by 32) gives exactly the same
-/// features, shifted. One object serves one thread, keeping nothing between images but memory; it
-/// uses OpenMP threads itself, whose number does not change the result.
+/// features, shifted. One object serves one thread, keeping nothing between images but memory.
 class OrbExtractor {
  public:
   explicit OrbExtractor(const OrbOptions& options);
 
   /// `gray`: CV_8U, the whole sphere. `mask`: CV_8U of the same size, or empty; features whose
-  /// centre has mask 0 are left out. Features are ordered by level, then row, then column.
-  Features Extract(const cv::Mat& gray, const cv::Mat& mask = {});
+  /// centre has mask 0 are left out. Features are ordered by level, then row, then column. Runs on
+  /// `num_threads` OpenMP threads; the result does not depend on how many.
+  Features Extract(const cv::Mat& gray, const cv::Mat& mask = {}, int num_threads = 1);
 
   /// The pyramid of the last image, which is then no longer here; empty before the first.
   SpherePyramid TakePyramid() { return std::exchange(levels_, {}); }

@@ -109,7 +109,8 @@ void FillSphereMargin(PyramidLevel* level) {
   }
 }
 
-void BuildSpherePyramid(const cv::Mat& gray, int num_levels, SpherePyramid* result) {
+void BuildSpherePyramid(const cv::Mat& gray, int num_levels, SpherePyramid* result,
+                        int num_threads) {
   ORB360_CHECK(gray.type() == CV_8U && gray.cols >= kMinWidth &&
                    gray.rows >= PyramidLevel::kMarginY && num_levels > 0,
                gray.type(), gray.cols, gray.rows, num_levels);
@@ -125,7 +126,7 @@ void BuildSpherePyramid(const cv::Mat& gray, int num_levels, SpherePyramid* resu
   for (int l = 1; l < std::min(kLevelsPerOctave, num_made); ++l) {
     resamplings.emplace_back(levels[0], &levels[l]);
   }
-#pragma omp parallel
+#pragma omp parallel num_threads(num_threads)
   {
     std::vector<uint8_t> scratch;
     for (const Resampling& resampling : resamplings) {

@@ -38,8 +38,10 @@ using SpherePyramid = std::vector<PyramidLevel>;
 /// Scales grow by 2^(1/4) a level: levels 1 to 3 are resampled from the input, and level l + 4 is
 /// level l at half size. `gray` is CV_8U and covers the whole sphere. Levels that would be narrower
 /// than 64 pixels are left out. `levels` is empty, or from an earlier call with the same number and
-/// size: its memory is used again. Runs on OpenMP threads; the result does not depend on how many.
-void BuildSpherePyramid(const cv::Mat& gray, int num_levels, SpherePyramid* levels);
+/// size: its memory is used again. Runs on `num_threads` OpenMP threads; the result does not depend
+/// on how many.
+void BuildSpherePyramid(const cv::Mat& gray, int num_levels, SpherePyramid* levels,
+                        int num_threads = 1);
 
 /// Fills the margins of a level from its image.
 void FillSphereMargin(PyramidLevel* level);

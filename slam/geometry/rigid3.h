@@ -43,6 +43,11 @@ struct Similarity3 {
   }
 };
 
+/// The same transform with scale 1.
+inline Similarity3 ToSimilarity(const Rigid3& transform) {
+  return {1.0, transform.rotation, transform.translation};
+}
+
 /// The pose of a camera after its world is moved and scaled: target_from_camera, with the camera's
 /// own axes and units of length following the world's.
 inline Rigid3 TransformPose(const Similarity3& target_from_world, const Rigid3& world_from_camera) {

@@ -13,9 +13,9 @@ namespace orb360 {
 struct StoredMap {
   int width = 0;  // of the pictures that it was made from, pixels
   /// The world of trajectories and clouds written with it: later runs write in the same one.
-  Rigid3 file_world_from_map;
-  std::optional<KnownGround> ground;  // none: the map is not in metres
-  Map map;
+  Rigid3 file_world_from_map = {};
+  std::optional<KnownGround> ground = {};  // none: the map is not in metres
+  Map map = {};
 };
 
 /// One HDF5 file (docs/loops.md) with a digest, written atomically. Throws UserError where that

@@ -91,13 +91,15 @@ bool Refine(const Features& features1, const Features& features2, TwoViewMap* ma
 }  // namespace
 
 InitializationResult InitializeFromTwoViews(const Features& features1, const Features& features2,
-                                            const InitializerOptions& options) {
-  MatchedViews views = EstimateMotion(
-      features1, features2, MatchNearby(features1, features2, options.nearby_radius, {}), options);
+                                            const InitializerOptions& options, int num_threads) {
+  const MatchOptions matching{.num_threads = num_threads};
+  MatchedViews views =
+      EstimateMotion(features1, features2,
+                     MatchNearby(features1, features2, options.nearby_radius, matching), options);
   if (!views.pose) {
-    views =
-        EstimateMotion(features1, features2,
-                       MatchMutually(features1.descriptors, features2.descriptors, {}), options);
+    views = EstimateMotion(features1, features2,
+                           MatchMutually(features1.descriptors, features2.descriptors, matching),
+                           options);
   }
   InitializationResult result;
   if (!views.pose) return result;

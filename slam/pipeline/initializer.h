@@ -50,8 +50,9 @@ struct InitializationResult {
 
 /// Matches two frames, estimates their motion (five points in RANSAC), triangulates and refines by
 /// bundle adjustment. The points' parallax is measured after the rotation is taken out, so that a
-/// turning camera is not taken for a moving one.
+/// turning camera is not taken for a moving one. Runs on `num_threads` OpenMP threads; the result
+/// does not depend on how many.
 InitializationResult InitializeFromTwoViews(const Features& features1, const Features& features2,
-                                            const InitializerOptions& options);
+                                            const InitializerOptions& options, int num_threads = 1);
 
 }  // namespace orb360

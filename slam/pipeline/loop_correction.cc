@@ -20,8 +20,6 @@ constexpr int kFusedNeighbours = 6;
 // Search window for them, in standard deviations: both sides may be a little bent still.
 constexpr double kFusionSigmas = 10.0;
 
-Similarity3 AsSimilarity(const Rigid3& pose) { return {1.0, pose.rotation, pose.translation}; }
-
 void AddSurroundings(const Map& map, KeyframeId center, std::vector<KeyframeId>* keyframes) {
   keyframes->push_back(center);
   int added = 0;
@@ -61,6 +59,16 @@ void FillRemoved(const Map& map, std::vector<Similarity3>* corrections) {
   }
 }
 
+/// The present map, whose number is `num_finished`, takes the place of the finished one; the maps
+/// after that move up.
+MapRenumbering NumbersAfterMerge(size_t num_finished, int merged) {
+  const int present = static_cast<int>(num_finished);
+  MapRenumbering renumbering{.number_of = std::vector<int>(num_finished + 1), .shifted = present};
+  for (int i = 0; i <= present; ++i) renumbering.number_of[i] = i > merged ? i - 1 : i;
+  renumbering.number_of[merged] = present - 1;
+  return renumbering;
+}
+
 /// How much larger the surroundings of a keyframe became.
 double ScaleOfChange(const Keyframe& before, const Map& map_before, const Map& map_after) {
   const Eigen::Vector3d& after = map_after.keyframe(before.id).world_from_camera.translation;
@@ -85,7 +93,7 @@ std::vector<Similarity3> CloseLoop(const Loop& loop, Map* map) {
   PoseGraph graph;
   for (const KeyframeId id : ids) {
     node_of[id] = static_cast<int>(graph.world_from_node.size());
-    graph.world_from_node.push_back(AsSimilarity(map->keyframe(id).world_from_camera));
+    graph.world_from_node.push_back(ToSimilarity(map->keyframe(id).world_from_camera));
   }
   graph.fixed.assign(ids.size(), 0);
   graph.fixed.front() = 1;
@@ -119,7 +127,7 @@ std::vector<Similarity3> CloseLoop(const Loop& loop, Map* map) {
   return corrections;
 }
 
-Map JoinMaps(const Loop& loop, Map present, Map finished, Similarity3* correction) {
+Map MergeMaps(const Loop& loop, Map present, Map finished, Similarity3* correction) {
   *correction = CorrectionBy(loop.revisits.back(), present, finished);
   present.Transform(*correction);
   const KeyframeId shift = finished.keyframe_end();
@@ -174,6 +182,41 @@ std::vector<Similarity3> AdoptAdjustment(const Map& before, const Map& adjusted,
   map->Deform(corrections);
   for (const Target& target : targets) map->landmark(target.id).position = target.position;
   return corrections;
+}
+
+CorrectedLoop CorrectLoop(LoopCorrection job) {
+  const Loop& loop = job.loop;
+  Map& map = job.active.map;
+  const Revisit& newest = loop.revisits.back();
+  const Map& place_map = loop.finished_map ? job.finished[*loop.finished_map] : map;
+  const auto frame_of = [](const Map& m, KeyframeId id) {
+    return m.keyframe(m.LivingKeyframe(id)).frame_index;
+  };
+  const ClosedLoop closed{frame_of(map, newest.keyframe), frame_of(place_map, newest.place)};
+
+  CorrectedLoop result{.active = std::move(job.active)};
+  MapUpdate& update = result.update;
+  update.reference = job.reference;
+  if (loop.finished_map) {
+    Map finished = place_map;
+    MapRenumbering renumbering = NumbersAfterMerge(job.finished.size(), *loop.finished_map);
+    renumbering.keyframe_shift = finished.keyframe_end();
+    renumbering.landmark_shift = finished.landmark_end();
+    update.reference += renumbering.keyframe_shift;
+    const KeyframeId num_corrected = result.active.map.keyframe_end();
+    result.active.map =
+        MergeMaps(loop, std::move(result.active.map), std::move(finished), &update.correction);
+    update.corrections.assign(num_corrected, update.correction);
+    update.renumbering = std::move(renumbering);
+    result.closed = closed;
+  } else {
+    update.corrections = CloseLoop(loop, &result.active.map);
+    if (!update.corrections.empty()) {
+      update.correction = update.corrections[job.reference];
+      result.closed = closed;
+    }
+  }
+  return result;
 }
 
 }  // namespace orb360

@@ -8,8 +8,6 @@
 namespace orb360 {
 namespace {
 
-Similarity3 AsSimilarity(const Rigid3& pose) { return {1.0, pose.rotation, pose.translation}; }
-
 double Angle(const Eigen::Quaterniond& turn) { return LogSo3(turn).norm(); }
 
 /// Keyframes that see what the newest sees, or what those see: nothing is to be learned from them.
@@ -53,9 +51,17 @@ std::vector<Descriptor> LandmarkDescriptors(const Keyframe& keyframe) {
 
 }  // namespace
 
+void Rescale(std::span<const Similarity3> corrections, Loop* loop) {
+  for (Revisit& revisit : loop->revisits) {
+    const double of_place = loop->finished_map ? 1.0 : corrections[revisit.place].scale;
+    revisit.place_from_keyframe.scale *= of_place / corrections[revisit.keyframe].scale;
+    revisit.place_from_keyframe.translation *= of_place;
+  }
+}
+
 Similarity3 CorrectionBy(const Revisit& revisit, const Map& map, const Map& place_map) {
-  return AsSimilarity(place_map.PoseOf(revisit.place)) * revisit.place_from_keyframe *
-         AsSimilarity(map.PoseOf(revisit.keyframe).Inverse());
+  return ToSimilarity(place_map.PoseOf(revisit.place)) * revisit.place_from_keyframe *
+         ToSimilarity(map.PoseOf(revisit.keyframe).Inverse());
 }
 
 LoopDetector::LoopDetector(const LoopOptions& options, const TrackerOptions& tracker,
@@ -107,9 +113,9 @@ std::vector<std::pair<double, int>> LoopDetector::Rank(const std::vector<double>
 }
 
 std::optional<TrackResult> LoopDetector::TrackAt(const Features& features, const Map& map,
-                                                 const LocalMap& local) const {
+                                                 const LocalMap& local, int num_threads) const {
   std::optional<TrackResult> result =
-      TrackWithoutPrediction(features, local, pixel_sigma_, tracker_);
+      TrackWithoutPrediction(features, local, pixel_sigma_, tracker_, num_threads);
   if (!result || result->num_inliers < options_.min_inliers) return std::nullopt;
   // What has been seen now and then tells nothing when it is missing.
   const auto is_sure = [&](LandmarkId id) {
@@ -128,7 +134,8 @@ std::optional<TrackResult> LoopDetector::TrackAt(const Features& features, const
 
 std::optional<LoopDetector::FoundPose> LoopDetector::FindPose(const Features& features,
                                                               const Map& map,
-                                                              std::span<const Map> finished) const {
+                                                              std::span<const Map> finished,
+                                                              int num_threads) const {
   const int present = static_cast<int>(finished.size());
   const std::vector<uint8_t> none(places_.size(), 0);
   for (const auto& [score, p] :
@@ -139,7 +146,8 @@ std::optional<LoopDetector::FoundPose> LoopDetector::FindPose(const Features& fe
         place.map,
         MakeLocalMap(place_map, place_map.LivingKeyframe(place.keyframe), local_keyframes_),
         {}};
-    if (std::optional<TrackResult> result = TrackAt(features, place_map, found.local)) {
+    if (std::optional<TrackResult> result =
+            TrackAt(features, place_map, found.local, num_threads)) {
       found.result = std::move(*result);
       return found;
     }

@@ -62,6 +62,10 @@ struct Loop {
   std::vector<Revisit> revisits;    // by keyframe, the newest last
 };
 
+/// Lets a loop of the present map follow a change of its unit of length: `corrections` holds, by
+/// keyframe id, what moved the world around each keyframe.
+void Rescale(std::span<const Similarity3> corrections, Loop* loop);
+
 /// What moves the world around a revisiting keyframe to where the place is.
 Similarity3 CorrectionBy(const Revisit& revisit, const Map& map, const Map& place_map);
 
@@ -84,9 +88,9 @@ class LoopDetector {
     LocalMap local;
     TrackResult result;
   };
-  /// Where a lost camera is, if the places that look most like its picture tell.
+  /// Where a lost camera is, if the places that look most like its image tell.
   std::optional<FoundPose> FindPose(const Features& features, const Map& map,
-                                    std::span<const Map> finished) const;
+                                    std::span<const Map> finished, int num_threads = 1) const;
 
   /// The present map has become another one. `number_of` gives maps their new numbers, and the
   /// keyframes of map `shifted` have ids that are larger by `shift`.
@@ -109,7 +113,7 @@ class LoopDetector {
   std::vector<std::pair<double, int>> Rank(const std::vector<double>& scores,
                                            const std::vector<uint8_t>& excluded, int count) const;
   std::optional<TrackResult> TrackAt(const Features& features, const Map& map,
-                                     const LocalMap& local) const;
+                                     const LocalMap& local, int num_threads = 1) const;
   /// The newest keyframe at a place, told from the nearest of the keyframes there that `may_close`
   /// allows.
   std::optional<Revisit> Verify(const Map& map, KeyframeId newest, const Map& place_map,

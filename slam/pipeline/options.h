@@ -51,8 +51,8 @@ struct ScaleOptions {
 };
 
 struct DepthOptions {
-  SparseDepthOptions sparse;
-  DenseGroundOptions ground;
+  SparseDepthOptions sparse = {};
+  DenseGroundOptions ground = {};
   /// Of the pictures that are completed, pixels; they are twice as wide.
   int height = 512;
   /// Every so many keyframes are completed.
@@ -65,6 +65,9 @@ struct DepthOptions {
 
 /// Every setting of the system, by part.
 struct Options {
+  /// Threads that the system may use at once; 0: as many as there are processors. No result depends
+  /// on it.
+  int num_threads = 0;
   OrbOptions orb;
   InitializerOptions initializer;
   TrackerOptions tracker;

@@ -70,7 +70,7 @@ ProjectionMatches SearchByProjection(const Features& features, const Rigid3& wor
   std::vector<int> distance_of(count, NearestTwo::kNone);
   ProjectionMatches matches;
   matches.expected.assign(count, 0);
-#pragma omp parallel
+#pragma omp parallel num_threads(options.num_threads)
   {
     std::vector<int> candidates;
 #pragma omp for schedule(static)

@@ -20,6 +20,7 @@ struct ProjectionSearchOptions {
   double ratio = 0.9;     // against a second best of the same pyramid level
   /// Landmarks seen from more than this angle (cosine) beside their usual direction are skipped.
   double min_view_cosine = 0.5;
+  int num_threads = 1;  // of OpenMP; the result does not depend on it
 };
 
 struct ProjectionMatches {

@@ -7,33 +7,24 @@
 
 namespace orb360 {
 
-void Renumber(const MapRenumbering& maps, Placement* placement) {
-  if (placement->map == maps.shifted) {
-    placement->reference += maps.keyframe_shift;
-    for (Sighting& sighting : placement->sightings) sighting.landmark += maps.landmark_shift;
-  }
-  placement->map = maps.number_of[placement->map];
-}
-
-Reconstruction MakeReconstruction(const std::vector<Map>& maps,
-                                  const std::map<int, Placement>& placements) {
+Reconstruction MakeReconstruction(std::span<const Map> maps, const FrameAnchors& anchors,
+                                  int num_threads) {
   Reconstruction result;
   result.maps.resize(maps.size());
-  std::vector<const Placement*> ordered;
-  for (const auto& [index, placement] : placements) {
-    result.frames.push_back({index, placement.timestamp, placement.map, Rigid3()});
-    ordered.push_back(&placement);
-    MapSummary& summary = result.maps[placement.map];
+  std::vector<const FrameAnchor*> ordered;
+  for (const auto& [index, anchor] : anchors) {
+    result.frames.push_back({index, anchor.timestamp, anchor.map, Rigid3()});
+    ordered.push_back(&anchor);
+    MapSummary& summary = result.maps[anchor.map];
     if (summary.tracked++ == 0) summary.first_frame = index;
     summary.last_frame = index;
   }
-#pragma omp parallel for schedule(dynamic, 16)
+#pragma omp parallel for schedule(dynamic, 16) num_threads(num_threads)
   for (size_t i = 0; i < ordered.size(); ++i) {
-    const Placement& placement = *ordered[i];
-    const Map& map = maps[placement.map];
-    result.frames[i].world_from_camera =
-        RefineFrame(map, map.PoseOf(placement.reference) * placement.reference_from_camera,
-                    placement.sightings);
+    const FrameAnchor& anchor = *ordered[i];
+    const Map& map = maps[anchor.map];
+    result.frames[i].world_from_camera = RefineFrame(
+        map, map.PoseOf(anchor.reference) * anchor.reference_from_camera, anchor.sightings);
   }
   int64_t num_matched = 0;
   int64_t num_seen = 0;

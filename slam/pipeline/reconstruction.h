@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -9,27 +10,9 @@
 #include "slam/features/features.h"
 #include "slam/geometry/rigid3.h"
 #include "slam/map/map.h"
-#include "slam/pipeline/frame_refinement.h"
+#include "slam/pipeline/frame_anchor.h"
 
 namespace orb360 {
-
-/// A frame's pose relative to a keyframe of a map, so that it follows the keyframe's corrections.
-struct Placement {
-  double timestamp;  // s
-  int map;
-  KeyframeId reference;
-  Rigid3 reference_from_camera;
-  std::vector<Sighting> sightings;  // landmarks of the map by which the pose was found
-};
-
-/// How maps are called after one has been joined to another, or changed places with it.
-struct MapRenumbering {
-  std::vector<int> number_of;  // new by old
-  int shifted = 0;             // old number of the map whose ids grow
-  KeyframeId keyframe_shift = 0;
-  LandmarkId landmark_shift = 0;
-};
-void Renumber(const MapRenumbering& maps, Placement* placement);
 
 struct FramePose {
   int index;         // in the sequence; negative: of a run that a loaded map was made in
@@ -81,7 +64,7 @@ struct Reconstruction {
   int lost = 0;                       // times tracking was lost after that
   int relocalized = 0;                // times a lost camera was found again
   std::vector<ClosedLoop> loops;      // closed within a map
-  std::vector<ClosedLoop> joints;     // by which a map was joined to an older one
+  std::vector<ClosedLoop> merges;     // by which a map was merged into an older one
   double features_per_keyframe = 0;   // mean number of corners that are landmarks
   double landmarks_per_keyframe = 0;  // mean number it sees: a corner counts once
   /// Of the keyframes that were given dense depth, by frame index: units of the result in one unit
@@ -92,9 +75,9 @@ struct Reconstruction {
 };
 
 /// Everything but `initialized_at`, `depth_scales`, what is counted and which maps are metric.
-/// Placements are by frame index. Keyframes have the pose that the map gives them, and the other
-/// frames the one in which they see its landmarks best (frame_refinement.h).
-Reconstruction MakeReconstruction(const std::vector<Map>& maps,
-                                  const std::map<int, Placement>& placements);
+/// Keyframes have the pose that the map gives them, and the other frames the one in which they see
+/// its landmarks best (frame_refinement.h). Runs on `num_threads` OpenMP threads.
+Reconstruction MakeReconstruction(std::span<const Map> maps, const FrameAnchors& anchors,
+                                  int num_threads = 1);
 
 }  // namespace orb360

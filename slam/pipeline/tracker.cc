@@ -85,9 +85,11 @@ struct LocalFit {
 // From a pose known to a few sigmas: all of the local map.
 std::optional<LocalFit> TrackLocalMap(const Features& features, const Rigid3& initial,
                                       const LocalMap& local, double pixel_sigma,
-                                      const TrackerOptions& options) {
-  const ProjectionSearchOptions search{
-      .radius = options.local_radius_sigmas * pixel_sigma, .scale_radius = true, .ratio = 0.8};
+                                      const TrackerOptions& options, int num_threads) {
+  const ProjectionSearchOptions search{.radius = options.local_radius_sigmas * pixel_sigma,
+                                       .scale_radius = true,
+                                       .ratio = 0.8,
+                                       .num_threads = num_threads};
   const ProjectionMatches matches =
       SearchByProjection(features, initial, local.landmarks, {}, search);
   const PoseFit fit = FitPose(features, initial, local.landmarks, matches.landmark_of_feature);
@@ -109,14 +111,15 @@ std::optional<LocalFit> TrackLocalMap(const Features& features, const Rigid3& in
 // From the predicted pose, with the last frame's landmarks.
 std::optional<Rigid3> FollowPrediction(const Features& features, const Rigid3& predicted,
                                        const TrackedFrame& last, const LocalMap& local,
-                                       const TrackerOptions& options) {
+                                       const TrackerOptions& options, int num_threads) {
   std::vector<LocalLandmark> recent;
   for (const LandmarkId id : last.landmarks) {
     const LocalLandmark* landmark = id == kNoId ? nullptr : local.Find(id);
     if (landmark != nullptr) recent.push_back(*landmark);
   }
   const ProjectionMatches matches =
-      SearchByProjection(features, predicted, recent, {}, {.radius = options.motion_radius});
+      SearchByProjection(features, predicted, recent, {},
+                         {.radius = options.motion_radius, .num_threads = num_threads});
   if (matches.num_matches < options.min_motion_inliers) return std::nullopt;
   const PoseFit fit = FitPose(features, predicted, recent, matches.landmark_of_feature);
   if (fit.pose.num_inliers < options.min_motion_inliers) return std::nullopt;
@@ -163,14 +166,17 @@ std::optional<Rigid3> FollowLandmarks(const Features& features, const TrackedFra
 std::optional<TrackResult> TrackFromPrediction(const Features& features,
                                                const Rigid3& predicted_world_from_camera,
                                                const TrackedFrame& last, const LocalMap& local,
-                                               double pixel_sigma, const TrackerOptions& options) {
+                                               double pixel_sigma, const TrackerOptions& options,
+                                               int num_threads) {
   std::vector<Match> matches;  // with the last frame, once needed
   const auto find_start = [&](int attempt) {
     if (attempt == 0) {
-      return FollowPrediction(features, predicted_world_from_camera, last, local, options);
+      return FollowPrediction(features, predicted_world_from_camera, last, local, options,
+                              num_threads);
     }
     if (attempt == 1) {
-      matches = MatchNearby(*last.features, features, options.nearby_radius, {});
+      matches = MatchNearby(*last.features, features, options.nearby_radius,
+                            {.num_threads = num_threads});
       return FollowLandmarks(features, last, local, matches, options);
     }
     return PoseFromMotion(features, last, local, matches);
@@ -180,7 +186,8 @@ std::optional<TrackResult> TrackFromPrediction(const Features& features,
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const std::optional<Rigid3> start = find_start(attempt);
     if (!start) continue;
-    std::optional<LocalFit> fit = TrackLocalMap(features, *start, local, pixel_sigma, options);
+    std::optional<LocalFit> fit =
+        TrackLocalMap(features, *start, local, pixel_sigma, options, num_threads);
     if (!fit) continue;
     const bool convinces = fit->inlier_share >= options.min_inlier_share;
     if (!best || fit->result.num_inliers > best->num_inliers) best = std::move(fit->result);
@@ -190,12 +197,13 @@ std::optional<TrackResult> TrackFromPrediction(const Features& features,
 }
 
 std::optional<TrackResult> TrackWithoutPrediction(const Features& features, const LocalMap& local,
-                                                  double pixel_sigma,
-                                                  const TrackerOptions& options) {
+                                                  double pixel_sigma, const TrackerOptions& options,
+                                                  int num_threads) {
   std::vector<Descriptor> descriptors;
   descriptors.reserve(local.landmarks.size());
   for (const LocalLandmark& landmark : local.landmarks) descriptors.push_back(landmark.descriptor);
-  const std::vector<Match> matches = MatchMutually(descriptors, features.descriptors, {});
+  const std::vector<Match> matches =
+      MatchMutually(descriptors, features.descriptors, {.num_threads = num_threads});
   std::vector<const LocalLandmark*> landmarks;
   std::vector<int> paired;
   for (const Match& match : matches) {
@@ -204,7 +212,8 @@ std::optional<TrackResult> TrackWithoutPrediction(const Features& features, cons
   }
   const std::optional<Rigid3> start = EstimatePose(features, landmarks, paired, options);
   if (!start) return std::nullopt;
-  std::optional<LocalFit> fit = TrackLocalMap(features, *start, local, pixel_sigma, options);
+  std::optional<LocalFit> fit =
+      TrackLocalMap(features, *start, local, pixel_sigma, options, num_threads);
   if (!fit) return std::nullopt;
   return std::move(fit->result);
 }

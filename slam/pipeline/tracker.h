@@ -1,12 +1,12 @@
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 
 #include "slam/features/features.h"
 #include "slam/geometry/rigid3.h"
 #include "slam/pipeline/local_map.h"
+#include "slam/pipeline/tracked_frame.h"
 
 namespace orb360 {
 
@@ -28,19 +28,9 @@ struct TrackerOptions {
   int min_inliers = 30;
 };
 
-/// A frame whose pose is known.
-struct TrackedFrame {
-  int index = 0;         // in the sequence
-  double timestamp = 0;  // s
-  std::shared_ptr<const Features> features;
-  Rigid3 world_from_camera;
-  std::vector<LandmarkId> landmarks;  // by feature, inliers of the pose only; kNoId where none
-  int num_inliers = 0;
-};
-
 struct TrackResult {
   Rigid3 world_from_camera;
-  std::vector<LandmarkId> landmarks;  // as above
+  std::vector<LandmarkId> landmarks;  // as in TrackedFrame
   int num_inliers = 0;
   std::vector<LandmarkId> expected;  // landmarks that should have been seen, ordered by id
 };
@@ -50,16 +40,18 @@ struct TrackResult {
 /// matches agree, other starts are tried: P3P in RANSAC from landmarks of the last frame matched
 /// from feature to feature, then the motion between both frames (frame_motion.h); the pose with
 /// most landmarks wins. Empty where too little is found. `pixel_sigma` is the angular noise on
-/// pyramid level 0, rad.
+/// pyramid level 0, rad. Runs on `num_threads` OpenMP threads; the result does not depend on how
+/// many.
 std::optional<TrackResult> TrackFromPrediction(const Features& features,
                                                const Rigid3& predicted_world_from_camera,
                                                const TrackedFrame& last, const LocalMap& local,
-                                               double pixel_sigma, const TrackerOptions& options);
+                                               double pixel_sigma, const TrackerOptions& options,
+                                               int num_threads = 1);
 
 /// Pose of a frame without any prediction: descriptors of the local map against all features,
 /// P3P in RANSAC, then as above.
 std::optional<TrackResult> TrackWithoutPrediction(const Features& features, const LocalMap& local,
-                                                  double pixel_sigma,
-                                                  const TrackerOptions& options);
+                                                  double pixel_sigma, const TrackerOptions& options,
+                                                  int num_threads = 1);
 
 }  // namespace orb360

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include "tests/slam/depth/range_room.h"
 
@@ -35,12 +34,13 @@ std::vector<DepthView> Views(const std::vector<DenseDepth>& depths,
 
 /// The points of the view in the middle, compared with all others.
 std::vector<ConfirmedPoint> ConfirmMiddle(const std::vector<DepthView>& views,
-                                          const ConfirmationOptions& options = {}) {
+                                          const ConfirmationOptions& options = {},
+                                          int num_threads = 1) {
   std::vector<const DepthView*> others;
   for (size_t i = 0; i < views.size(); ++i) {
     if (i != views.size() / 2) others.push_back(&views[i]);
   }
-  return ConfirmSurface(views[views.size() / 2], others, options, {.spacing = 0.02});
+  return ConfirmSurface(views[views.size() / 2], others, options, {.spacing = 0.02}, num_threads);
 }
 
 std::vector<DenseDepth> RenderAll(double confidence = 0.99) {
@@ -167,12 +167,8 @@ TEST(ConfirmSurface, RangesOfNextToNothingEndAsWell) {
 
 TEST(ConfirmSurface, IsTheSameForAnyNumberOfThreads) {
   const std::vector<DepthView> views = Views(RenderAll());
-  const int threads = omp_get_max_threads();
-  omp_set_num_threads(1);
   const std::vector<ConfirmedPoint> one = ConfirmMiddle(views);
-  omp_set_num_threads(3);
-  const std::vector<ConfirmedPoint> three = ConfirmMiddle(views);
-  omp_set_num_threads(threads);
+  const std::vector<ConfirmedPoint> three = ConfirmMiddle(views, {}, 3);
   ASSERT_EQ(one.size(), three.size());
   for (size_t i = 0; i < one.size(); ++i) {
     ASSERT_EQ(one[i].position, three[i].position);

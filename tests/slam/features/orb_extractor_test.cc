@@ -4,7 +4,6 @@
 #include <map>
 
 #include <gtest/gtest.h>
-#include <omp.h>
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
 
@@ -204,12 +203,9 @@ TEST(OrbExtractor, APyramidThatWasTakenStaysAsItIs) {
 TEST(OrbExtractor, DoesNotDependOnTheNumberOfThreads) {
   const cv::Mat image = Picture(Eigen::Quaterniond::Identity());
   OrbExtractor extractor(Thousand());
-  const int before = omp_get_max_threads();
-  omp_set_num_threads(1);
   const Features one = extractor.Extract(image);
   for (const int threads : {2, 3}) {
-    omp_set_num_threads(threads);
-    const Features more = extractor.Extract(image);
+    const Features more = extractor.Extract(image, {}, threads);
     ASSERT_EQ(more.size(), one.size());
     EXPECT_EQ(more.descriptors, one.descriptors);
     for (int i = 0; i < one.size(); ++i) {
@@ -217,7 +213,6 @@ TEST(OrbExtractor, DoesNotDependOnTheNumberOfThreads) {
       ASSERT_EQ(more.keypoints[i].angle, one.keypoints[i].angle);
     }
   }
-  omp_set_num_threads(before);
 }
 
 TEST(OrbExtractor, FindsTheSameFeaturesOnEveryInstructionSet) {

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include "slam/io/ply.h"
 #include "tests/slam/depth/range_room.h"
@@ -55,12 +54,8 @@ TEST_F(DenseCloudFileTest, ABoundOnMemoryChangesNoPointButByRounding) {
 }
 
 TEST_F(DenseCloudFileTest, GivesTheSameBytesForAnyNumberOfThreads) {
-  const int threads = omp_get_max_threads();
-  omp_set_num_threads(1);
-  WriteDenseCloud(folder_ / "one.ply", store_, views_, {});
-  omp_set_num_threads(3);
-  WriteDenseCloud(folder_ / "three.ply", store_, views_, {});
-  omp_set_num_threads(threads);
+  WriteDenseCloud(folder_ / "one.ply", store_, views_, {.num_threads = 1});
+  WriteDenseCloud(folder_ / "three.ply", store_, views_, {.num_threads = 3});
   EXPECT_EQ(ReadText(folder_ / "one.ply"), ReadText(folder_ / "three.ply"));
 }
 

@@ -6,6 +6,8 @@
 
 #include "slam/geometry/alignment.h"
 #include "slam/geometry/so3.h"
+#include "slam/io/frame_source.h"
+#include "slam/pipeline/options.h"
 #include "slam/pipeline/system.h"
 #include "tests/slam/pipeline/box_room.h"
 
@@ -33,8 +35,11 @@ inline Options SmallOptions() {
 inline Frame MakeFrame(int index, const cv::Mat& image) { return {index, index / 25.0, image}; }
 
 /// Feeds `frames` and returns everything; a frame number that is not whole is still its own frame.
-inline Reconstruction Track(const BoxRoom& room, const std::vector<double>& frames) {
-  System system(kHallCamera, SmallOptions(), {});
+inline Reconstruction Track(const BoxRoom& room, const std::vector<double>& frames,
+                            int num_threads = 2) {
+  Options options = SmallOptions();
+  options.num_threads = num_threads;
+  System system(kHallCamera, options, {});
   for (size_t i = 0; i < frames.size(); ++i) {
     system.Process(MakeFrame(static_cast<int>(i), room.Render(kHallCamera, TruePose(frames[i]))));
   }

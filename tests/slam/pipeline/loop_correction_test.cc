@@ -149,7 +149,7 @@ TEST(AdoptAdjustment, WhatIsNewerMovesAlong) {
   }
 }
 
-TEST(JoinMaps, PutsTheNewMapIntoTheOldOnesWorld) {
+TEST(MergeMaps, PutsTheNewMapIntoTheOldOnesWorld) {
   RingStreet street(2000);
   LoopDetector detector({}, {}, 12, RingStreet::kSigma);
   RingStreet::Drive first;
@@ -166,7 +166,7 @@ TEST(JoinMaps, PutsTheNewMapIntoTheOldOnesWorld) {
   }
   ASSERT_TRUE(loop.has_value());
   Similarity3 correction;
-  const Map joined = JoinMaps(*loop, second.map, first.map, &correction);
+  const Map joined = MergeMaps(*loop, second.map, first.map, &correction);
   joined.CheckConsistency();
   const KeyframeId shift = first.map.keyframe_end();
   EXPECT_EQ(joined.num_keyframes(), first.map.num_keyframes() + second.map.num_keyframes());

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/io/map_file.h"
 #include "slam/pipeline/system.h"
 #include "tests/slam/pipeline/hall_walk.h"
 
@@ -79,7 +80,7 @@ TEST(SystemSlow, FindsItselfAgainWhereverItIsPutAndHoweverItIsTurned) {
 
 // Two maps of one hall, of which the first shows one half of the walls and the second the other,
 // until both are seen.
-TEST(SystemSlow, JoinsTwoMapsWhereItSeesWhatIsInBoth) {
+TEST(SystemSlow, MergesTwoMapsWhereItSeesWhatIsInBoth) {
   const BoxRoom room = Hall();
   System system(kHallCamera, SmallOptions(), {});
   std::vector<double> frames;
@@ -91,14 +92,14 @@ TEST(SystemSlow, JoinsTwoMapsWhereItSeesWhatIsInBoth) {
     cv::Mat image = room.Render(kHallCamera, TruePose(frames.back()));
     if (i < 60) image(right).setTo(cv::Scalar::all(128));
     if (i >= 60 && i < 130) image(left).setTo(cv::Scalar::all(128));
-    system.Process(MakeFrame(i, image));
+    const FrameReport report = system.Process(MakeFrame(i, image));
     if (i == 129) {
-      EXPECT_EQ(system.maps().size(), 1u);  // and the present one
+      EXPECT_EQ(report.map, 1);  // the second one
     }
   }
   const Reconstruction result = system.Finish();
   EXPECT_EQ(result.maps.size(), 1u);
-  EXPECT_EQ(result.joints.size(), 1u);
+  EXPECT_EQ(result.merges.size(), 1u);
   EXPECT_GE(result.frames.size(), 185u);
   EXPECT_LT(Compare(result.frames, frames).rmse, 0.01);
 }
@@ -118,7 +119,7 @@ TEST(SystemSlow, LocatesTheCameraInAMapOfAnEarlierRunAndLeavesItAsItIs) {
   const Similarity3 fit = AlignSimilarity(found, expected).value();
 
   System later(kHallCamera, SmallOptions(), {});
-  later.StartIn(map, earlier.grounds().front(), /*is_kept=*/true);
+  later.Localize({.ground = earlier.grounds().front(), .map = map});
   std::vector<double> frames;
   for (int i = 0; i < 30; ++i) {
     frames.push_back(70.5 - 2 * i);  // the other way
@@ -154,7 +155,7 @@ TEST(SystemSlow, GoesOnInAMapOfAnEarlierRun) {
   EXPECT_GT(aligned, 0.6 * observed);
   for (const KeyframeId id : map.KeyframeIds()) EXPECT_EQ(map.keyframe(id).picture, nullptr);
   System later(kHallCamera, SmallOptions(), {});
-  later.StartIn(map, earlier.grounds().front(), /*is_kept=*/false);
+  later.LoadMap({.ground = earlier.grounds().front(), .map = map});
   std::vector<double> frames;
   for (int i = 0; i < 60; ++i) {
     frames.push_back(50 + i);

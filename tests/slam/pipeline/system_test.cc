@@ -1,17 +1,16 @@
 #include "slam/pipeline/system.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <filesystem>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include "nn/base/check.h"
+#include "slam/io/range_store.h"
+#include "slam/map/map.h"
 #include "tests/slam/io/temp_folder.h"
 #include "tests/slam/pipeline/hall_walk.h"
 #include "tests/slam/pipeline/propagation_network.h"
@@ -67,13 +66,9 @@ TEST(SystemSlow, TracksAWholeWalkWithinHalfAPercent) {
 TEST(SystemSlow, GivesTheSameBytesForAnyNumberOfThreadsAndEveryTime) {
   const BoxRoom room = Hall();
   const std::vector<double> frames = Count(60);
-  omp_set_num_threads(2);
-  const Reconstruction two = Track(room, frames);
-  omp_set_num_threads(1);
-  const Reconstruction one = Track(room, frames);
-  omp_set_num_threads(3);
-  const Reconstruction three = Track(room, frames);
-  omp_set_num_threads(2);
+  const Reconstruction two = Track(room, frames, 2);
+  const Reconstruction one = Track(room, frames, 1);
+  const Reconstruction three = Track(room, frames, 3);
   ASSERT_GT(two.frames.size(), 50u);
   ExpectSame(two, one);
   ExpectSame(two, three);
@@ -86,22 +81,23 @@ struct Completed {
   std::vector<Map> maps;
 };
 
-Completed TrackAndComplete(const BoxRoom& room, const std::vector<double>& frames) {
+Completed TrackAndComplete(const BoxRoom& room, const std::vector<double>& frames,
+                           int num_threads = 2) {
   const TempFolder folder;
-  DepthCompleter completer(WritePropagation(folder), {.size = {256, 128}});
-  System system(kHallCamera, SmallOptions(), {});
+  Options options = SmallOptions();
+  options.depth.height = 128;
+  options.num_threads = num_threads;
+  System system(kHallCamera, options, {});
   Completed completed;
-  system.CompleteKeyframes(&completer, [&](int frame_index, DenseDepth depth) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    completed.depths.emplace_back(frame_index, std::move(depth));
-  });
+  system.CompleteDepth(WritePropagation(folder), folder / "depth");
   for (size_t i = 0; i < frames.size(); ++i) {
     system.Process(MakeFrame(static_cast<int>(i), room.Render(kHallCamera, TruePose(frames[i]))));
   }
   completed.result = system.Finish();
-  // None is on its way to a slow disk any more.
-  EXPECT_EQ(completed.depths.size(), completed.result.depth_scales.size());
-  completed.maps = system.maps();
+  for (const auto& [frame_index, scale] : completed.result.depth_scales) {
+    completed.depths.emplace_back(frame_index, system.depth_maps()->Get(frame_index));
+  }
+  completed.maps.assign(system.maps().begin(), system.maps().end());
   return completed;
 }
 
@@ -161,10 +157,8 @@ TEST(SystemSlow, KeyframesKnowTheRangesOfFeaturesWithoutALandmark) {
 TEST(SystemSlow, CompletesTheSameForAnyNumberOfThreads) {
   const BoxRoom room = Hall();
   const std::vector<double> frames = Count(40);
-  const Completed two = TrackAndComplete(room, frames);
-  omp_set_num_threads(1);
-  const Completed one = TrackAndComplete(room, frames);
-  omp_set_num_threads(2);
+  const Completed two = TrackAndComplete(room, frames, 2);
+  const Completed one = TrackAndComplete(room, frames, 1);
   ASSERT_EQ(two.depths.size(), one.depths.size());
   for (size_t i = 0; i < two.depths.size(); ++i) {
     EXPECT_EQ(two.depths[i].first, one.depths[i].first);

@@ -1,4 +1,4 @@
-#include "slam/pipeline/keyframe_depth.h"
+#include "slam/pipeline/keyframe_completion.h"
 
 #include <chrono>
 #include <cmath>
@@ -10,16 +10,18 @@
 
 namespace orb360 {
 
-KeyframeDepth::KeyframeDepth(DepthCompleter* completer, DepthSink sink, const Options& options)
-    : completer_(completer), sink_(std::move(sink)), options_(options.depth) {}
+KeyframeCompletion::KeyframeCompletion(DepthCompleter* completer, DepthSink sink,
+                                       const DepthOptions& options)
+    : completer_(completer), sink_(std::move(sink)), options_(options) {}
 
-void KeyframeDepth::Start(const Keyframe& keyframe, const cv::Mat& color,
-                          std::vector<SparsePoint> points, int num_frames) {
+bool KeyframeCompletion::Start(const Keyframe& keyframe, const cv::Mat& color,
+                               std::vector<SparsePoint> points, int num_frames) {
   ORB360_CHECK(!job_);
-  if (static_cast<int>(points.size()) < options_.min_points) return;
-  scales_[keyframe.frame_index] = 1;
+  if (static_cast<int>(points.size()) < options_.min_points) return false;
   std::promise<Found> found;
-  job_ = Job{found.get_future(), keyframe.frame_index, num_frames + options_.adoption_frames};
+  job_ = Job{.found = found.get_future(),
+             .frame_index = keyframe.frame_index,
+             .due = num_frames + options_.adoption_frames};
   auto complete = [this, index = keyframe.frame_index, features = keyframe.features,
                    landmarks = keyframe.landmarks, color, points = std::move(points),
                    found = std::move(found), previous = std::move(stored_)]() mutable {
@@ -36,29 +38,29 @@ void KeyframeDepth::Start(const Keyframe& keyframe, const cv::Mat& color,
     sink_(index, std::move(depth));
   };
   stored_ = std::async(std::launch::async, std::move(complete));
+  return true;
 }
 
-bool KeyframeDepth::IsRunning() const {
+std::optional<int> KeyframeCompletion::pending() const {
+  return job_ ? std::optional(job_->frame_index) : std::nullopt;
+}
+
+bool KeyframeCompletion::IsRunning() const {
   return stored_.valid() && stored_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
 }
 
-void KeyframeDepth::Flush() {
+void KeyframeCompletion::Flush() {
   if (stored_.valid()) stored_.get();
 }
 
-KeyframeDepth::Completed KeyframeDepth::Take() {
+CompletedKeyframe KeyframeCompletion::Take(double unit_scale) {
   Job job = std::move(job_.value());
   job_.reset();
   Found found = job.found.get();
-  const double scale = scales_.at(job.frame_index);
-  for (RangePrior& prior : found.priors) prior.range *= static_cast<float>(scale);
-  if (found.ground) found.ground->log_height += std::log(scale);
-  return {job.frame_index, std::move(found.priors), found.ground};
-}
-
-void KeyframeDepth::Rescale(int frame_index, double factor) {
-  const auto scale = scales_.find(frame_index);
-  if (scale != scales_.end()) scale->second *= factor;
+  for (RangePrior& prior : found.priors) prior.range *= static_cast<float>(unit_scale);
+  if (found.ground) found.ground->log_height += std::log(unit_scale);
+  return {
+      .frame_index = job.frame_index, .priors = std::move(found.priors), .ground = found.ground};
 }
 
 }  // namespace orb360

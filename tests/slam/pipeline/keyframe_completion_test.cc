@@ -1,4 +1,4 @@
-#include "slam/pipeline/keyframe_depth.h"
+#include "slam/pipeline/keyframe_completion.h"
 
 #include <cmath>
 #include <future>
@@ -16,11 +16,10 @@ namespace {
 constexpr double kHeight = 4;  // of the camera over a level ground
 constexpr int kFrame = 30;
 
-class KeyframeDepthTest : public testing::Test {
+class KeyframeCompletionTest : public testing::Test {
  protected:
-  KeyframeDepthTest() {
-    options_.depth.every_keyframes = 2;
-    options_.depth.adoption_frames = 5;
+  KeyframeCompletionTest() {
+    options_.adoption_frames = 5;
     // One feature without a landmark, looking down and ahead.
     auto features = std::make_shared<Features>();
     features->bearings.push_back(Eigen::Vector3d(-1, 0, -1).normalized());
@@ -46,29 +45,27 @@ class KeyframeDepthTest : public testing::Test {
     return points;
   }
   cv::Mat Picture() const { return {64, 128, CV_8UC3, cv::Scalar::all(90)}; }
-  KeyframeDepth Make() {
+  KeyframeCompletion Make() {
     return {&completer_, [this](int frame, DenseDepth depth) { sunk_.emplace_back(frame, depth); },
             options_};
   }
 
   TempFolder folder_;
   DepthCompleter completer_{WritePropagation(folder_), {.size = {128, 64}}};
-  Options options_;
+  DepthOptions options_;
   Keyframe keyframe_;
   std::vector<std::pair<int, DenseDepth>> sunk_;
 };
 
-TEST_F(KeyframeDepthTest, TellsTheRangesOfFeaturesAndTheGroundWhenDue) {
-  KeyframeDepth depth = Make();
-  EXPECT_TRUE(depth.Wants(0));
-  EXPECT_FALSE(depth.Wants(1));
-  EXPECT_FALSE(depth.is_pending());
-  depth.Start(keyframe_, Picture(), Points(), 100);
-  EXPECT_TRUE(depth.is_pending());
+TEST_F(KeyframeCompletionTest, TellsTheRangesOfFeaturesAndTheGroundWhenDue) {
+  KeyframeCompletion depth = Make();
+  EXPECT_FALSE(depth.pending().has_value());
+  EXPECT_TRUE(depth.Start(keyframe_, Picture(), Points(), 100));
+  EXPECT_EQ(depth.pending(), kFrame);
   EXPECT_FALSE(depth.IsDue(104));
   EXPECT_TRUE(depth.IsDue(105));
-  const KeyframeDepth::Completed completed = depth.Take();
-  EXPECT_FALSE(depth.is_pending());
+  const CompletedKeyframe completed = depth.Take(1.0);
+  EXPECT_FALSE(depth.pending().has_value());
   depth.Flush();
   EXPECT_FALSE(depth.IsRunning());
   EXPECT_EQ(completed.frame_index, kFrame);
@@ -82,47 +79,42 @@ TEST_F(KeyframeDepthTest, TellsTheRangesOfFeaturesAndTheGroundWhenDue) {
   EXPECT_EQ(sunk_[0].first, kFrame);
 }
 
-TEST_F(KeyframeDepthTest, FollowsChangesOfTheUnit) {
-  KeyframeDepth depth = Make();
+TEST_F(KeyframeCompletionTest, FollowsChangesOfTheUnit) {
+  KeyframeCompletion depth = Make();
   depth.Start(keyframe_, Picture(), Points(), 0);
-  depth.Rescale(kFrame, 0.5);
-  depth.Rescale(kFrame + 1, 7);  // has no depth
-  const KeyframeDepth::Completed completed = depth.Take();
+  const CompletedKeyframe completed = depth.Take(0.5);
   EXPECT_NEAR(completed.priors[0].range, 0.5 * kHeight * std::sqrt(2.0), 0.05);
   EXPECT_NEAR(completed.ground->log_height, std::log(0.5 * kHeight), 0.02);
-  depth.Rescale(kFrame, 3);
-  EXPECT_EQ(depth.scales(), (std::map<int, double>{{kFrame, 1.5}}));
 }
 
-TEST_F(KeyframeDepthTest, LeavesOutAKeyframeWithTooFewPoints) {
-  KeyframeDepth depth = Make();
+TEST_F(KeyframeCompletionTest, LeavesOutAKeyframeWithTooFewPoints) {
+  KeyframeCompletion depth = Make();
   std::vector<SparsePoint> points = Points();
-  points.resize(static_cast<size_t>(options_.depth.min_points) - 1);
-  depth.Start(keyframe_, Picture(), points, 0);
-  EXPECT_FALSE(depth.is_pending());
-  EXPECT_TRUE(depth.scales().empty());
+  points.resize(static_cast<size_t>(options_.min_points) - 1);
+  EXPECT_FALSE(depth.Start(keyframe_, Picture(), points, 0));
+  EXPECT_FALSE(depth.pending().has_value());
 }
 
-TEST_F(KeyframeDepthTest, PassesOnWhatTheSinkThrowsWithTheNextKeyframeOrInTheEnd) {
-  KeyframeDepth depth(
+TEST_F(KeyframeCompletionTest, PassesOnWhatTheSinkThrowsWithTheNextKeyframeOrInTheEnd) {
+  KeyframeCompletion depth(
       &completer_, [](int, const DenseDepth&) { throw UserError("the disk is full"); }, options_);
   depth.Start(keyframe_, Picture(), Points(), 0);
-  EXPECT_NO_THROW(depth.Take());
-  EXPECT_FALSE(depth.is_pending());
+  EXPECT_NO_THROW(depth.Take(1.0));
+  EXPECT_FALSE(depth.pending().has_value());
   depth.Start(keyframe_, Picture(), Points(), 0);
-  EXPECT_THROW(depth.Take(), UserError);
-  EXPECT_FALSE(depth.is_pending());
+  EXPECT_THROW(depth.Take(1.0), UserError);
+  EXPECT_FALSE(depth.pending().has_value());
   depth.Start(keyframe_, Picture(), Points(), 0);
-  EXPECT_NO_THROW(depth.Take());
+  EXPECT_NO_THROW(depth.Take(1.0));
   EXPECT_THROW(depth.Flush(), UserError);
 }
 
-TEST_F(KeyframeDepthTest, TellsWhatIsCompletedWhileTheSinkIsStillAtIt) {
+TEST_F(KeyframeCompletionTest, TellsWhatIsCompletedWhileTheSinkIsStillAtIt) {
   std::promise<void> may_end;
-  KeyframeDepth depth(
+  KeyframeCompletion depth(
       &completer_, [&](int, const DenseDepth&) { may_end.get_future().wait(); }, options_);
   depth.Start(keyframe_, Picture(), Points(), 0);
-  EXPECT_EQ(depth.Take().frame_index, kFrame);
+  EXPECT_EQ(depth.Take(1.0).frame_index, kFrame);
   EXPECT_TRUE(depth.IsRunning());
   may_end.set_value();
   depth.Flush();

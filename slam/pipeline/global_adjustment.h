@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+
+#include "slam/map/map.h"
+#include "slam/pipeline/map_update.h"
+#include "slam/pipeline/options.h"
+
+namespace orb360 {
+
+/// Bundle adjustment of a copy of the whole map, beside tracking and mapping.
+struct GlobalAdjustment {
+  Map map;
+  std::optional<KnownGround> ground;
+};
+
+struct AdjustedMap {
+  Map before;
+  Map after;
+};
+
+AdjustedMap AdjustMap(GlobalAdjustment job, const Options& options);
+
+/// Takes the result over into the map that was copied, which has changed in the meantime.
+/// `reference`: the keyframe around which tracking goes on.
+MapUpdate TakeOver(const AdjustedMap& adjusted, KeyframeId reference, Map* map);
+
+}  // namespace orb360

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "slam/map/map.h"
+#include "slam/pipeline/initializer.h"
+#include "slam/pipeline/panoramic_triangulation.h"
+#include "slam/pipeline/pending_frames.h"
+
+namespace orb360 {
+
+/// A map of two keyframes, and the frames that they are.
+struct InitialMap {
+  static constexpr KeyframeId kFirst = 0;
+  static constexpr KeyframeId kSecond = 1;
+
+  Map map;
+  PendingFrame first;
+  PendingFrame second;
+};
+
+/// Makes two views into a map and refines it. The first camera is the world's origin; the unit of
+/// length is arbitrary.
+InitialMap MakeInitialMap(const PendingFrame& first, const PendingFrame& second,
+                          const TwoViewMap& views, const TriangulationOptions& options);
+
+}  // namespace orb360

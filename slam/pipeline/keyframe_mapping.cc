@@ -1,0 +1,46 @@
+#include "slam/pipeline/keyframe_mapping.h"
+
+#include <utility>
+
+#include "slam/pipeline/ground.h"
+
+namespace orb360 {
+namespace {
+
+/// The ground as the newest keyframes see it: to be found at first, then to be followed uphill and
+/// downhill.
+std::optional<KnownGround> LookForGround(const Map& map, const std::optional<KnownGround>& known,
+                                         const ScaleOptions& options) {
+  if (!options.from_ground) return std::nullopt;
+  const std::vector<KeyframeId> keyframes = map.KeyframeIds();
+  if (!known) {
+    constexpr size_t kEnough = 5;  // keyframes
+    if (keyframes.size() < kEnough) return std::nullopt;
+    return EstimateGround(map, std::span(keyframes).last(kEnough));
+  }
+  constexpr double kWeight = 0.2;  // of a new normal: roads bend slowly
+  const std::optional<Eigen::Vector3d> normal = GroundNormal(map, keyframes.back(), known->up);
+  if (!normal) return known;
+  return KnownGround{.up = ((1 - kWeight) * known->up + kWeight * *normal).normalized(),
+                     .camera_height = known->camera_height};
+}
+
+}  // namespace
+
+MappedKeyframe MapKeyframe(KeyframeMapping job, const Options& options) {
+  MappedKeyframe result{.active = std::move(job.active), .color = std::move(job.color)};
+  Map& map = result.active.map;
+  const KeyframeId id =
+      IntegrateKeyframe(job.frame, std::move(job.pyramid), options.mapper, job.ground, &map);
+  result.update.reference = id;
+  result.update.correction =
+      ToSimilarity(map.keyframe(id).world_from_camera * job.frame.world_from_camera.Inverse());
+  result.ground = LookForGround(map, job.ground, options.scale);
+  if (job.completed_camera) {
+    result.sparse = ProjectLandmarks(map, id, *job.completed_camera, options.depth.sparse);
+  }
+  if (options.loop.enabled) result.loop = result.active.places.Observe(map, id, job.finished);
+  return result;
+}
+
+}  // namespace orb360

@@ -1,0 +1,199 @@
+#include "slam/pipeline/pipeline.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <thread>
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+#include "nn/base/check.h"
+
+namespace orb360 {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double MillisecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+int NumThreads(const Options& options) {
+  if (options.num_threads > 0) return options.num_threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const EquirectangularCamera& camera, const Options& options, const cv::Mat& mask)
+    : camera_(camera),
+      options_(options),
+      num_threads_(NumThreads(options)),
+      front_end_(camera, options, mask),
+      atlas_(LoopDetector(options.loop, options.tracker, options.keyframe.local_keyframes,
+                          front_end_.pixel_sigma())),
+      back_end_(options) {}
+
+void Pipeline::LoadMap(const StoredMap& stored, bool keeps_map) {
+  ORB360_CHECK(num_frames_ == 0 && stored.map.num_keyframes() > 0, num_frames_);
+  Map map = stored.map;
+  // Frames of this run count from 0: those that the map was made of come before.
+  int first_free = 0;
+  for (const KeyframeId id : map.KeyframeIds()) {
+    first_free = std::max(first_free, map.keyframe(id).frame_index + 1);
+  }
+  for (const KeyframeId id : map.KeyframeIds()) map.keyframe(id).frame_index -= first_free;
+  atlas_.Begin(std::move(map));
+  atlas_.SetGround(stored.ground);
+  if (options_.loop.enabled) atlas_.places().Learn(atlas_.map(), atlas_.present_number());
+  keeps_map_ = keeps_map;
+  front_end_.StartLost(atlas_.map());
+  CountMap();
+}
+
+void Pipeline::CompleteDepth(const std::filesystem::path& weights,
+                             const std::filesystem::path& folder) {
+  ORB360_CHECK(num_frames_ == 0 && !dense_, num_frames_);
+  dense_.emplace(weights, folder, options_.depth, num_threads_);
+}
+
+FrameReport Pipeline::Process(const Frame& frame) {
+  ORB360_CHECK(frame.image.type() == CV_8UC3 && frame.image.cols == camera_.width() &&
+                   frame.image.rows == camera_.height(),
+               frame.image.type(), frame.image.cols, frame.image.rows);
+  FrameReport report;
+  const Clock::time_point start = Clock::now();
+  free_threads_ = FreeThreads();
+  const PendingFrame pending =
+      front_end_.Extract(frame.index, frame.timestamp, frame.image, free_threads_);
+  report.timing_ms["extraction"] = MillisecondsSince(start);
+
+  ++num_frames_;
+  const Clock::time_point adoption = Clock::now();
+  AdoptDue();
+  report.timing_ms["adoption"] = MillisecondsSince(adoption);
+
+  const Clock::time_point tracking = Clock::now();
+  if (front_end_.tracking() != nullptr) {
+    Track(pending);
+  } else if (front_end_.lost() != nullptr) {
+    Recover(pending);
+  } else {
+    Initialize(pending);
+  }
+  StartDue(frame.image);
+  report.timing_ms["tracking"] = MillisecondsSince(tracking);
+  report.timing_ms["frame"] = MillisecondsSince(start);
+
+  report.state = front_end_.is_initializing() ? TrackingState::kInitializing : TrackingState::kLost;
+  if (const FrontEnd::Tracking* now = front_end_.tracking()) {
+    report.state = TrackingState::kTracking;
+    report.world_from_camera = now->last.world_from_camera;
+    report.num_inliers = now->last.num_inliers;
+  }
+  report.map = atlas_.present_number();
+  if (!atlas_.is_lent()) CountMap();
+  report.num_keyframes = num_keyframes_;
+  report.num_landmarks = num_landmarks_;
+  return report;
+}
+
+void Pipeline::CountMap() {
+  num_keyframes_ = atlas_.map().num_keyframes();
+  num_landmarks_ = atlas_.map().num_landmarks();
+}
+
+// Threads waiting for one that has no core cost more than they bring: each job has one.
+int Pipeline::FreeThreads() const {
+  const bool is_mapping = back_end_.IsMapping() || (dense_ && dense_->IsRunning());
+  return std::max(1, num_threads_ - is_mapping - back_end_.IsAdjusting());
+}
+
+// --- tracking ---------------------------------------------------------------------------------
+
+void Pipeline::Track(const PendingFrame& frame) {
+  if (front_end_.Track(frame, free_threads_, &atlas_)) return;
+  if (back_end_.has_map()) {
+    AdoptMap();  // the newest landmarks may save the day
+    if (front_end_.Track(frame, free_threads_, &atlas_)) return;
+  }
+  front_end_.Lose(frame, num_frames_, atlas_.map());
+  atlas_.found_loop.reset();
+  atlas_.places().Restart();
+}
+
+void Pipeline::Recover(const PendingFrame& frame) {
+  if (std::optional<Relocalization> found = front_end_.Find(frame, free_threads_, &atlas_)) {
+    if (found->map != atlas_.present_number()) {
+      if (back_end_.is_adjusting()) AdoptAdjustment();
+      front_end_.LeaveMap(&atlas_.map());
+      if (dense_) dense_->ForgetGrounds();
+      Apply(atlas_.SwitchTo(found->map, found->local.reference));
+    }
+    front_end_.Resume(frame, std::move(*found), free_threads_, &atlas_);
+    return;
+  }
+  const int num_frames_lost = num_frames_ - front_end_.lost()->since;
+  if (!keeps_map_ && num_frames_lost >= options_.recovery.patience_frames) {
+    Initialize(frame);
+  } else {
+    front_end_.Remember(frame);
+  }
+}
+
+void Pipeline::Initialize(const PendingFrame& frame) {
+  std::optional<InitialMap> initial = front_end_.Initialize(frame, free_threads_);
+  if (!initial) return;
+  if (back_end_.is_adjusting()) AdoptAdjustment();
+  if (dense_) dense_->ForgetGrounds();
+  atlas_.Begin(std::move(initial->map));
+  if (options_.loop.enabled) atlas_.places().Learn(atlas_.map(), atlas_.present_number());
+  front_end_.StartTracking(*initial, free_threads_, &atlas_);
+}
+
+// --- result -----------------------------------------------------------------------------------
+
+void Pipeline::FinishMap() {
+  if (dense_ && dense_->pending()) AdoptDepth();
+  if (back_end_.is_adjusting()) AdoptAdjustment();
+  if (atlas_.found_loop) {  // by the last keyframe
+    StartLoopCorrection();
+    AdoptMap();
+  }
+  if (atlas_.loops.empty() && atlas_.merges.empty()) return;
+  // What came after the last loop takes part as well.
+  if (!back_end_.is_adjusting()) StartAdjustment();
+  AdoptAdjustment();
+}
+
+Reconstruction Pipeline::Finish() {
+  if (back_end_.has_map()) AdoptMap();
+  if (!atlas_.is_lent()) FinishMap();  // else a job has thrown, and its map is lost
+  atlas_.Finish();
+  if (dense_) dense_->Flush();
+
+  Reconstruction result = MakeReconstruction(atlas_.maps(), atlas_.anchors(), num_threads_);
+  const std::span<const std::optional<KnownGround>> grounds = atlas_.grounds();
+  for (size_t i = 0; i < result.maps.size(); ++i) {
+    result.maps[i].is_metric = grounds[i].has_value();
+    result.maps[i].is_rough = grounds[i] && grounds[i]->is_rough;
+  }
+  // Better the ground of another place than none.
+  if (!result.up && !grounds.empty() && grounds.front()) result.up = grounds.front()->up;
+  if (dense_) {
+    for (const int frame : dense_->frames()) {
+      result.depth_scales[frame] = atlas_.anchors().at(frame).unit_scale;
+    }
+  }
+  const FrontEnd::Events& events = front_end_.events();
+  result.initialized_at = events.initialized_at;
+  result.lost = events.num_lost;
+  result.relocalized = events.num_relocalized;
+  result.loops = atlas_.loops;
+  result.merges = atlas_.merges;
+  return result;
+}
+
+}  // namespace orb360
