@@ -8,11 +8,11 @@ from weights_tools.graph import Graph, Node
 
 @dataclass(frozen=True)
 class Symbol:
-    """A tensor of the network, for pictures of any size."""
+    """A tensor of the network, for images of any size."""
 
     name: str
     channels: int
-    level: int | None = 0  # the picture's size is halved so often; None: one pixel
+    level: int | None = 0  # number of times the image's size is halved; None: one pixel
 
 
 class Pair(NamedTuple):
@@ -141,7 +141,7 @@ class Builder:
         return self.pointwise("leaky_relu", name, x, slope=slope)
 
     def pointwise(self, op: str, name: str, *inputs: Symbol, **attributes: float) -> Symbol:
-        """Of every number by itself, or of those in the same place of two tensors."""
+        """An element-wise operation on one tensor or on two of equal shape."""
         result = Symbol(name, inputs[0].channels, inputs[0].level)
         self.node(op, list(inputs), [result], **attributes)
         return result
@@ -233,7 +233,7 @@ class Description:
         return sum(layer.parameters for layer in self.layers)
 
     def multiply_accumulates(self, height: int, width: int) -> dict[str, int]:
-        """Of each node with weights, for a picture of that size."""
+        """Multiply-accumulates of each node with weights, for an image of that size."""
         return {
             cost.node: cost.per_pixel
             * (1 if cost.level is None else (height >> cost.level) * (width >> cost.level))

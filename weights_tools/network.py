@@ -38,7 +38,7 @@ class Network(nn.Module):
         self.load(initial_weights(description, seed))
 
     def load(self, weights: Mapping[str, np.ndarray]) -> None:
-        """Takes weights as they stand in a file."""
+        """Loads weights in the form that files have."""
         for layer in self.description.layers:
             weight = torch.as_tensor(weights[f"{layer.name}.weight"])
             bias = torch.as_tensor(weights[f"{layer.name}.bias"])
@@ -87,7 +87,7 @@ class Network(nn.Module):
             self.layers[layer.name].requires_grad_(not layer.is_normalized)
 
     def weights(self) -> dict[str, Tensor]:
-        """Weights as operations take them and files hold them."""
+        """Weights in the form that operations and files have."""
         result = self._plain_weights()
         if self.training:
             return result
@@ -99,7 +99,7 @@ class Network(nn.Module):
         return result
 
     def _plain_weights(self) -> dict[str, Tensor]:
-        """Without what normalizes batches."""
+        """The same network without batch normalization."""
         result = {}
         for layer in self.description.layers:
             weight, bias = (self.layers[layer.name][role] for role in ("weight", "bias"))
@@ -110,7 +110,7 @@ class Network(nn.Module):
         return result
 
     def tensors(self, inputs: Mapping[str, Tensor], bfloat16: bool = False) -> dict[str, Tensor]:
-        """What every node writes, by name."""
+        """The result of every node, by name."""
         behind = self.normalizations if self.training else {}
         return run(self.description.graph, self.weights(), inputs, bfloat16, behind)
 
@@ -124,7 +124,7 @@ def _is_inner_convolution(layer: Layer) -> bool:
 
 
 def initial_weights(description: Description, seed: int) -> dict[str, np.ndarray]:
-    """Weights as they stand in a file, the same on every machine."""
+    """Initial weights in the form that files have, the same on every machine."""
     generator = np.random.RandomState(seed)  # the same numbers in every version of NumPy
     return {
         f"{layer.name}.{role}": values

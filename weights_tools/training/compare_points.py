@@ -22,7 +22,7 @@ OUTLIER = 0.25  # of |ln(range / truth)|: farther off than noise is at the confi
 def errors(
     frames: Frames, give: Callable[[Frame, np.random.RandomState], SparsePoints]
 ) -> Iterator[np.ndarray]:
-    """Of each frame that SLAM has points for: ln(range / truth), confidence, truth."""
+    """ln(range / truth), confidence and truth of the points, for each frame with points of SLAM."""
     for i in range(len(frames)):
         frame = frames[i]
         if len(frame.points) == 0:
@@ -42,13 +42,13 @@ def summary(parts: list[np.ndarray]) -> dict[str, float]:
         "points of a frame, median": float(np.median([part.shape[1] for part in parts])),
         "|ln error|, median": float(np.median(error)),
         "|ln error|, 90th percentile": float(np.percentile(error, 90)),
-        f"share with |ln error| > {OUTLIER}": float((error > OUTLIER).mean()),
+        f"fraction with |ln error| > {OUTLIER}": float((error > OUTLIER).mean()),
     }
     spreads = (("confidence", confidence, CONFIDENCES), ("metres", truth, RANGES))
     for name, values, limits in spreads:
         for low, high in zip(limits, limits[1:]):
             inside = (values > low) & (values <= high)
-            result[f"{name} {low} to {high}: share"] = float(inside.mean())
+            result[f"{name} {low} to {high}: fraction"] = float(inside.mean())
             median = np.median(error[inside]) if inside.any() else np.nan
             result[f"{name} {low} to {high}: |ln error|, median"] = float(median)
     return result

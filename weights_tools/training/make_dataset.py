@@ -76,8 +76,8 @@ def circuit_spec(mesh: Path, frames: int, width: int) -> DriveSpec:
 
 def _sensor(random: np.random.RandomState) -> list[str]:
     options = []
-    for option, share in (("--auto-exposure", 0.5), ("--noise", 0.3), ("--dual-lens", 0.2)):
-        if random.uniform() < share:
+    for option, probability in (("--auto-exposure", 0.5), ("--noise", 0.3), ("--dual-lens", 0.2)):
+        if random.uniform() < probability:
             options.append(option)
     if random.uniform() < 0.3:
         options += ["--jpeg-quality", str(random.randint(40, 95))]
@@ -142,7 +142,7 @@ def main() -> int:
     parser.add_argument("--seeds", type=int, nargs=2, default=(SEEDS.start, SEEDS.stop),
                         metavar=("FIRST", "END"))  # fmt: skip
     parser.add_argument("--frames", type=int, default=FRAMES, help="of a drive (default: %(default)s)")
-    parser.add_argument("--width", type=int, default=WIDTH, help="of the pictures (default: %(default)s)")
+    parser.add_argument("--width", type=int, default=WIDTH, help="of the images (default: %(default)s)")
     parser.add_argument("--tracked-seeds", type=int, nargs="*", default=[],
                         help="towns that SLAM tracks, for sparse points of its own")  # fmt: skip
     parser.add_argument("--tracked-frames", type=int, default=TRACKED_FRAMES,

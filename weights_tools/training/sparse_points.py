@@ -15,7 +15,7 @@ from weights_tools.training.sphere import bearings
 
 @dataclass(frozen=True)
 class NoiseModel:
-    """The defaults give what SLAM gives (compare_points), and a share that is noisier."""
+    """The defaults give what SLAM gives (compare_points), and some of them with more noise."""
 
     points: tuple[int, int] = (100, 3000)  # drawn evenly in the logarithm, like all pairs below
     # Metres between the places that see a landmark 10 m away; it grows with the square root of the
@@ -24,16 +24,16 @@ class NoiseModel:
     observations: tuple[int, int] = (2, 12)  # of a landmark
     scale: tuple[float, float] = (0.05, 20.0)  # units of the map in a metre
     noise: tuple[float, float] = (0.7, 2.5)  # factor on the corners' noise, one for each frame
-    largest_error: float = 0.2  # share of the range; SLAM makes no landmarks of less parallax
+    largest_error: float = 0.2  # fraction of the range; SLAM makes no landmarks of less parallax
     near: float = 1.2  # points are chosen by 1 / range to this power: more keyframes saw near ones
     half_confidence_error: float = 0.1  # as SparseDepthOptions has it
     min_confidence: float = 0.5  # likewise
     estimate_bias: float = 0.4  # of the error that SLAM estimates: it finds its points too good
     estimate_error: float = 0.3  # standard deviation of ln of that
-    outliers: float = 0.05  # share of points matched wrongly, anywhere
-    edge_outliers: float = 0.1  # share of those at an occlusion edge with the other side's range
-    moving_kept: float = 0.4  # share of the points on moving objects that SLAM does not drop
-    from_slam: float = 0.5  # of frames with points of SLAM itself, the share that uses them
+    outliers: float = 0.05  # fraction of points matched wrongly, anywhere
+    edge_outliers: float = 0.1  # fraction of those at an occlusion edge with the other side's range
+    moving_kept: float = 0.4  # fraction of the points on moving objects that SLAM does not drop
+    from_slam: float = 0.5  # of frames with points of SLAM itself, the fraction that uses them
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ def _range_errors(
     random: np.random.RandomState,
     model: NoiseModel,
 ) -> np.ndarray:
-    """Standard deviation of each range as a share of it: RangeError of slam/depth."""
+    """Standard deviation of each range as a fraction of it: RangeError of slam/depth."""
     if not travel.any():  # it moved before
         travel = random.standard_normal(3)
         travel /= np.linalg.norm(travel)
