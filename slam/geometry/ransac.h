@@ -24,10 +24,11 @@ struct RansacOptions {
   /// A model with fewer inliers is rejected. Of 1000 wrong matches about 10 fit any epipolar
   /// geometry by chance.
   int min_inliers = 12;
-  /// Sampling ends when a sample without outliers has been drawn with this probability,
+  /// Sampling ends when a sample without outliers has been drawn with this probability, if the
+  /// fraction of correct correspondences is min_inlier_share.
   double confidence = 0.999;
-  /// assuming that at least this fraction of the correspondences is correct. 0.4 allows 40 samples
-  /// of two, 105 of three, and 672 of five.
+  /// Least fraction of correct correspondences that is assumed. 0.4 allows 40 samples of two, 105
+  /// of three, and 672 of five.
   double min_inlier_share = 0.4;
   /// The same seed gives the same result.
   uint64_t seed = 1;
