@@ -22,8 +22,7 @@ namespace {
 
 constexpr SealedKind kKind = {
     "ORB360NN", 1, "network", "weights_tools", "use the weights that belong to it",
-    // The largest file: all accepted weights as 32-bit floats, and as many bytes again for
-    // everything else.
+    // The largest file: all accepted weights as 32-bit floats, and as many bytes for the rest.
     std::uintmax_t{limits::kWeights} * 8};
 
 std::string ReadText(hid_t file, const std::string& name) {

@@ -9,7 +9,7 @@
 
 namespace orb360::nn {
 
-/// What a node computes of its inputs: loops in double precision, written from docs/networks.md and
+/// What a node computes of its inputs: loops in double precision, written from docs/formats/network.md and
 /// sharing nothing with the kernels.
 struct NodeResult {
   std::vector<PlainPicture> outputs;
