@@ -10,9 +10,9 @@ namespace orb360::nn {
 /// CpuBackend::NeedsOf without the kernels. `precision` is the type in which convolutions multiply.
 NodeNeeds CpuNeedsOf(const Graph& graph, const FusedNode& node, DataType precision);
 
-/// Returns the type in which a convolution multiplies when `precision` is requested. Planar tensors
-/// of few channels are multiplied as floats if the result again has few channels or is added to
-/// another tensor.
+/// Returns the type in which a convolution multiplies when `precision` is requested. An input of
+/// few channels is multiplied as floats if the result has few channels too or is added to another
+/// tensor.
 DataType ConvolutionType(const Graph& graph, const FusedNode& node, DataType precision);
 
 }  // namespace orb360::nn
