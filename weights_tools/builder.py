@@ -1,4 +1,4 @@
-"""Writes a network down node by node: the one description that PyTorch runs and files hold."""
+"""Describes a network node by node; PyTorch runs this description, and files contain it."""
 
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -58,7 +58,7 @@ class Cost(NamedTuple):
 
 @dataclass
 class Builder:
-    """`padding` is that of every node that reaches over an edge."""
+    """Builds a description. `padding` applies to every node that reaches over an edge."""
 
     name: str
     size_multiple: int
@@ -116,7 +116,7 @@ class Builder:
         slope: float = 1.0,
         gain: float = 1.0,
     ) -> Symbol:
-        """A convolution and the activation that `slope` says: 1 none, 0 ReLU, else leaky."""
+        """A convolution and its activation: none for slope 1, ReLU for 0, else leaky ReLU."""
         layer = self.layer(Layer(name, (outputs, x.channels, size, size), False, slope, gain))
         assert x.level is not None
         linear = Symbol(_before_activation(name, slope), outputs, x.level + stride // 2)

@@ -54,8 +54,8 @@ class Network(nn.Module):
 
     @torch.no_grad()
     def calibrate(self, inputs: Mapping[str, Tensor], bfloat16: bool = False) -> None:
-        """Makes what normalizes batches change nothing for these inputs, so that a network whose
-        weights came without it goes on from where it was."""
+        """Initializes the batch normalization so that it changes nothing for these inputs, and
+        training continues from loaded weights."""
 
         def observe(norm: nn.BatchNorm2d) -> Callable[[Tensor], Tensor]:
             def identity(x: Tensor) -> Tensor:
@@ -73,16 +73,16 @@ class Network(nn.Module):
 
     @property
     def knows_any_unit(self) -> bool:
-        """Whether the unit of its input does not matter; otherwise it must be metres."""
+        """Whether the input may have any unit; otherwise it must be metres."""
         return any(port["name"] == "log_depth" for port in self.description.graph.outputs)
 
     def inner_convolutions(self) -> list[nn.Parameter]:
-        """Weights of the 3 x 3 convolutions between what is given and what is asked for."""
+        """Weights of the 3 x 3 convolutions between inputs and outputs."""
         layers = filter(_is_inner_convolution, self.description.layers)
         return [self.layers[layer.name]["weight"] for layer in layers]
 
     def fix_propagation(self) -> None:
-        """Leaves normalized convolutions as they are in training."""
+        """Excludes normalized convolutions from training."""
         for layer in self.description.layers:
             self.layers[layer.name].requires_grad_(not layer.is_normalized)
 
@@ -139,7 +139,7 @@ def _initial(layer: Layer, generator: np.random.RandomState) -> dict[str, np.nda
         # A mean that prefers near points, a little different in each channel.
         size = layer.shape[-1]
         offset = np.arange(size) - size // 2
-        sigma = max(size / 4, 0.5)  # pixels: the corners count little, but they count
+        sigma = max(size / 4, 0.5)  # pixels; corners have small but positive weights
         bump = np.exp(-(offset[:, None] ** 2 + offset**2) / (2 * sigma**2))
         weight = bump * generator.uniform(0.5, 1.5, layer.shape)
         bias = generator.uniform(-0.01, 0.01, layer.outputs)

@@ -1,4 +1,4 @@
-"""What the tests of `nn` compare with PyTorch: graphs with weights, and inputs for them."""
+"""Graphs with weights and inputs, for which the tests of `nn` compare with PyTorch."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class Reference:
 
 
 def references() -> list[Reference]:
-    """Everything in tests/nn/data."""
+    """All networks in tests/nn/data."""
     return [
         _operation("convolution", _convolution, FLAT, np.float16),
         _operation("convolution_across_poles", _convolution, ACROSS, np.float16),
@@ -43,7 +43,7 @@ def references() -> list[Reference]:
 
 
 def full_networks() -> list[Reference]:
-    """The networks with all their channels: too large to be kept."""
+    """The networks with all their channels, which are too large to be stored."""
     return [
         network("encoder_decoder", networks.encoder_decoder(), (64, 128)),
         network("multi_stream", networks.multi_stream(), (64, 128)),
@@ -149,7 +149,7 @@ def _forget(values: np.ndarray) -> None:
 
 
 def _spoil(values: np.ndarray) -> None:
-    """Sparse input in which no two values are covered by one kernel."""
+    """Inserts NaN and infinity, so far apart that no kernel covers both."""
     values[0, 0, 0] = np.nan
     values[-1, values.shape[1] // 2, values.shape[2] // 2] = np.inf
 

@@ -22,7 +22,7 @@ class Batch:
 
     inputs: dict[str, Tensor]  # image, depth, confidence: what networks read
     truth: Tensor  # metres; 0 where there is no surface
-    ground: Tensor  # 1 where it is the road's plane under the camera, else 0
+    ground: Tensor  # 1 in the plane of the road under the camera, else 0
     scale: Tensor  # units of the input's depth in a metre
     camera_height: Tensor  # metres
 
@@ -86,13 +86,13 @@ class Sample:
 
 
 def plain(frame: Frame, points: SparsePoints) -> Sample:
-    """A sample as it was taken."""
+    """A sample without augmentation."""
     image = frame.rgb.astype(np.float32) / 255
     return Sample(image, frame.range, frame.ground, points, frame.camera_height)
 
 
 def augment(frame: Frame, points: SparsePoints, random: np.random.RandomState) -> Sample:
-    """Turned, mirrored, and seen by another camera in another light."""
+    """A sample that is turned and mirrored, with other exposure, colours and noise."""
     columns = random.randint(frame.range.shape[1])
     mirror = random.randint(2) == 1
 
@@ -118,7 +118,7 @@ def augment(frame: Frame, points: SparsePoints, random: np.random.RandomState) -
 
 
 def _blur(image: np.ndarray) -> np.ndarray:
-    """A binomial filter of three pixels that goes round the seam."""
+    """A binomial filter of three pixels that continues across the seam."""
     image = (np.roll(image, 1, axis=1) + 2 * image + np.roll(image, -1, axis=1)) / 4
     rows = np.pad(image, ((1, 1), (0, 0), (0, 0)), mode="edge")
     return (rows[:-2] + 2 * rows[1:-1] + rows[2:]) / 4

@@ -1,4 +1,4 @@
-"""How well the simulated sparse points resemble SLAM's, on frames that have both:
+"""Compares simulated sparse points with those of SLAM on frames that have both:
 
     python3 -m weights_tools.training.compare_points SHARD.npz ...
 """
@@ -16,7 +16,7 @@ from weights_tools.training.sparse_points import SparsePoints, from_slam, simula
 
 CONFIDENCES = (0.0, 0.25, 0.5, 0.75, 0.9, 1.0)
 RANGES = (0, 5, 10, 20, 40, 80)  # metres
-OUTLIER = 0.25  # of |ln(range / truth)|: farther off than noise is at the confidences that matter
+OUTLIER = 0.25  # of |ln(range / truth)|; noise is smaller than this at the confidences that matter
 
 
 def errors(
@@ -35,7 +35,7 @@ def errors(
 
 
 def summary(parts: list[np.ndarray]) -> dict[str, float]:
-    """Counts, errors and how they are spread, by name."""
+    """Counts, errors and their distribution, by name."""
     error, confidence, truth = np.concatenate(parts, axis=1)
     error = np.abs(error)
     result = {

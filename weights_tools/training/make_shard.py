@@ -77,7 +77,7 @@ def read_poses(path: Path) -> np.ndarray:
 
 
 def read_camera_height(path: Path) -> float:
-    """Metres above the road."""
+    """Height of the camera above the road, metres."""
     try:
         return float(yaml.safe_load(path.read_text())["camera_height"])
     except (yaml.YAMLError, KeyError, TypeError) as error:
@@ -158,7 +158,7 @@ def shrink_range(image: np.ndarray) -> np.ndarray:
 
 
 def shrink_mask(mask: np.ndarray) -> np.ndarray:
-    """Where two of four pixels or more are set."""
+    """Halves a mask; a pixel is set where at least two of four are."""
     height, width = mask.shape[0] // 2, mask.shape[1] // 2
     return mask[: 2 * height, : 2 * width].reshape(height, 2, width, 2).sum(axis=(1, 3)) >= 2
 

@@ -40,7 +40,7 @@ class Muon(torch.optim.Optimizer):
                 if not state:
                     state["momentum"] = torch.zeros_like(parameter)
                 momentum = state["momentum"].mul_(_MOMENTUM).add_(parameter.grad)
-                ahead = (parameter.grad + _MOMENTUM * momentum).flatten(1)  # Nesterov's
+                ahead = (parameter.grad + _MOMENTUM * momentum).flatten(1)  # Nesterov momentum
                 step = orthogonal(ahead.to(self._type)).to(parameter.dtype)
                 # An orthogonal matrix of m x n numbers has a mean square of 1 / max(m, n).
                 size = _STEP * group["lr"] * math.sqrt(max(step.shape))

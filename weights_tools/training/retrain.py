@@ -29,9 +29,9 @@ from weights_tools.training.make_dataset import (
 )
 from weights_tools.training.train import Settings, train
 
-# Towns by seed. What networks are compared on while they are trained is never trained on.
+# Towns by seed. The validation towns are never used for training.
 VALIDATION_SEEDS, VALIDATION_FRAMES = range(2000, 2008), 6
-TRACKED_SEEDS = range(3000, 3008)  # whose sparse points come from SLAM itself
+TRACKED_SEEDS = range(3000, 3008)  # their sparse points come from SLAM
 
 
 @dataclass(frozen=True)
@@ -70,8 +70,8 @@ def stages(factor: float) -> list[Stage]:
     ]
 
 
-# The file of a stage, and the relative error of ranges to be expected where the network's own
-# confidence does not tell it: the published one's is its mean one on towns it has not seen.
+# The file of a stage, and the expected relative error of ranges where the network's confidence does
+# not state it. For the published network it is the mean error on unseen towns.
 RELEASED = {
     "ours_half": ("depth_completion.h5", None),
     "published_half": ("encoder_decoder.h5", 0.13),
