@@ -29,7 +29,7 @@ void StoreFloat(void* data, DataType type, std::ptrdiff_t index, float value) {
   }
 }
 
-// Where a channel of a pixel lies, counted from `data`.
+// Returns the offset of a channel of a pixel from `data`.
 std::ptrdiff_t Offset(const TensorView& tensor, int channel, int y, int x) {
   const int block = static_cast<int>(PixelStride(tensor));
   return channel / block * tensor.plane_stride + y * tensor.row_stride + std::ptrdiff_t{x} * block +
@@ -41,7 +41,7 @@ std::ptrdiff_t Offset(const TensorView& tensor, int channel, int y, int x) {
 std::ptrdiff_t TensorFormat::row_stride() const {
   const std::ptrdiff_t per_line = BlockOf(type);
   if (layout == Layout::kBlocked) return (shape.width + 2 * halo) * per_line;
-  // Both halos of a planar row are as wide as a cache line, so that its first pixel is aligned.
+  // Each halo of a planar row is as wide as a cache line, so that the row's first pixel is aligned.
   return RoundUp(shape.width, per_line) + (halo > 0 ? 2 * RoundUp(halo, per_line) : 0);
 }
 
@@ -99,7 +99,7 @@ void FillHalo(const TensorView& tensor, Padding padding, int width) {
           std::memset(at(plane, y, -1 - i), 0, pixel);
           std::memset(at(plane, y, columns + i), 0, pixel);
         } else {
-          // A picture narrower than the halo goes around more than once.
+          // An image narrower than the halo is repeated.
           std::memcpy(at(plane, y, -1 - i), at(plane, y, columns - 1 - i % columns), pixel);
           std::memcpy(at(plane, y, columns + i), at(plane, y, i % columns), pixel);
         }
@@ -114,7 +114,7 @@ void FillHalo(const TensorView& tensor, Padding padding, int width) {
         } else if (padding == Padding::kWrapReplicate) {
           std::memcpy(at(plane, y, -width), at(plane, top ? 0 : rows - 1, -width), whole);
         } else {
-          // A picture lower than the halo is left at the other pole again.
+          // In an image lower than the halo, rows continue beyond the other pole.
           const int beyond = i % (2 * rows);
           const int from_pole = beyond < rows ? beyond : 2 * rows - 1 - beyond;
           const int shift = beyond < rows ? columns / 2 : 0;

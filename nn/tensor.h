@@ -5,8 +5,8 @@
 
 namespace orb360::nn {
 
-/// Channels, rows and columns of one picture's activations. There is no batch: a SLAM system
-/// completes one picture at a time, and several threads run one picture each.
+/// Channels, rows and columns of the activations of one image. There is no batch dimension: a SLAM
+/// system completes one image at a time, and several threads run one image each.
 struct Shape {
   int channels = 0;
   int height = 0;
@@ -14,14 +14,14 @@ struct Shape {
   friend bool operator==(const Shape&, const Shape&) = default;
 };
 
-/// How the channels of a tensor lie in memory.
+/// Order of the channels of a tensor in memory.
 enum class Layout : std::uint8_t {
-  /// [channel][row][column]. For few channels: normalized convolution, pictures.
+  /// [channel][row][column], for tensors of few channels: images and normalized convolutions.
   kPlanar,
   /// [channel block][row][column][channel in block], where a block fills one cache line and one
-  /// AVX-512 register: 16 channels of float, 32 of bfloat16. The channels that fill up the last
-  /// block are zero. For convolutions, whose inner loop then is a row of broadcasts against a
-  /// vector of output channels.
+  /// AVX-512 register: 16 channels of float, or 32 of bfloat16. The channels that fill up the last
+  /// block are zero. It is for convolutions, whose inner loop becomes a sequence of broadcasts
+  /// times a vector of output channels.
   kBlocked,
 };
 
@@ -29,26 +29,27 @@ enum class DataType : std::uint8_t { kFloat, kBFloat16 };
 
 constexpr std::size_t SizeOf(DataType type) { return type == DataType::kFloat ? 4 : 2; }
 
-/// Bytes of a block of channels, and what every row of every tensor is aligned to.
+/// Bytes of a block of channels. Every row of every tensor is aligned to it.
 constexpr int kAlignment = 64;
 
-/// Channels in a block of Layout::kBlocked.
+/// Number of channels in a block of Layout::kBlocked.
 constexpr int BlockOf(DataType type) { return static_cast<int>(kAlignment / SizeOf(type)); }
 
-/// What stands around a picture when a kernel reaches over its edge.
+/// Values around an image where a kernel reaches over its edge.
 enum class Padding : std::uint8_t {
   kZero,
-  /// Columns continue at the other side (longitude), rows repeat the first and last (latitude).
+  /// Columns continue at the other side (longitude); the first and last rows are repeated
+  /// (latitude).
   kWrapReplicate,
-  /// Columns continue at the other side; beyond a pole the picture goes on down the opposite
-  /// meridian: row -1-i is row i shifted by half the width. Width must be even.
+  /// Columns continue at the other side. Beyond a pole the image continues along the opposite
+  /// meridian: row -1-i is row i shifted by half the width. The width must be even.
   kWrapCrossPole,
 };
 
-/// A tensor in memory that somebody else owns, with `halo` pixels around it that belong to it:
-/// kernels find their padding there instead of testing for edges (FillHalo). Strides are in
-/// elements; a plane is a channel (kPlanar) or a block of channels (kBlocked). A slice of the
-/// channels of a tensor is a view as well: concatenation is writing next to each other.
+/// A view of a tensor in memory with another owner. It includes `halo` pixels around the tensor, in
+/// which kernels find their padding, so that they need not test for edges (FillHalo). Strides are
+/// in elements; a plane is a channel (kPlanar) or a block of channels (kBlocked). A slice of the
+/// channels of a tensor is a view too: concatenation writes tensors next to each other.
 struct TensorView {
   void* data = nullptr;  // of row 0, column 0 of the first channel: behind the halo
   Shape shape;
@@ -58,7 +59,7 @@ struct TensorView {
   std::ptrdiff_t row_stride = 0;
   std::ptrdiff_t plane_stride = 0;
 
-  /// Start of a row of a plane. Rows -halo to height + halo - 1 exist.
+  /// Returns the start of a row of a plane. Rows -halo to height + halo - 1 exist.
   template <typename T>
   T* row(int plane, int y) const {
     return static_cast<T*>(data) + plane * plane_stride + y * row_stride;
@@ -69,7 +70,7 @@ struct TensorView {
   }
 };
 
-/// Where a tensor's parts lie: what the memory plan needs to know before there is memory.
+/// Layout, type, size and halo of a tensor, which the memory plan needs before there is memory.
 struct TensorFormat {
   Shape shape;
   Layout layout = Layout::kPlanar;
@@ -78,21 +79,21 @@ struct TensorFormat {
 
   std::ptrdiff_t row_stride() const;    // elements
   std::ptrdiff_t plane_stride() const;  // elements
-  /// Bytes of the whole with its halo, a multiple of kAlignment.
+  /// Bytes of the whole tensor with its halo, a multiple of kAlignment.
   std::size_t bytes() const;
-  /// The tensor in `memory`, which has bytes() bytes and is aligned to kAlignment.
+  /// Views the tensor in `memory`, which has bytes() bytes and is aligned to kAlignment.
   TensorView View(void* memory) const;
 };
 
-/// Channels `first` to `first + count - 1` of a tensor. In kBlocked `first` must be a multiple of
-/// the block.
+/// Views channels `first` to `first + count - 1` of a tensor. In kBlocked `first` must be a
+/// multiple of the block.
 TensorView ChannelSlice(const TensorView& tensor, int first, int count);
 
-/// Writes what `padding` says into `width` pixels of the halo on each side.
+/// Fills `width` pixels of the halo on each side according to `padding`.
 void FillHalo(const TensorView& tensor, Padding padding, int width);
 
 /// Copies between layouts and data types; shapes must be equal. Rounds to nearest, ties to even,
-/// on the way to bfloat16. The halo of `to` is left as it is.
+/// when converting to bfloat16. The halo of `to` is not changed.
 void Reorder(const TensorView& from, const TensorView& to);
 
 }  // namespace orb360::nn

@@ -1,4 +1,4 @@
-"""Writes a network down node by node: the one description that PyTorch runs and files hold."""
+"""Describes a network node by node; PyTorch runs this description, and files contain it."""
 
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -8,11 +8,11 @@ from weights_tools.graph import Graph, Node
 
 @dataclass(frozen=True)
 class Symbol:
-    """A tensor of the network, for pictures of any size."""
+    """A tensor of the network, for images of any size."""
 
     name: str
     channels: int
-    level: int | None = 0  # the picture's size is halved so often; None: one pixel
+    level: int | None = 0  # number of times the image's size is halved; None: one pixel
 
 
 class Pair(NamedTuple):
@@ -58,7 +58,7 @@ class Cost(NamedTuple):
 
 @dataclass
 class Builder:
-    """`padding` is that of every node that reaches over an edge."""
+    """Builds a description. `padding` applies to every node that reaches over an edge."""
 
     name: str
     size_multiple: int
@@ -116,7 +116,7 @@ class Builder:
         slope: float = 1.0,
         gain: float = 1.0,
     ) -> Symbol:
-        """A convolution and the activation that `slope` says: 1 none, 0 ReLU, else leaky."""
+        """A convolution and its activation: none for slope 1, ReLU for 0, else leaky ReLU."""
         layer = self.layer(Layer(name, (outputs, x.channels, size, size), False, slope, gain))
         assert x.level is not None
         linear = Symbol(_before_activation(name, slope), outputs, x.level + stride // 2)
@@ -141,7 +141,7 @@ class Builder:
         return self.pointwise("leaky_relu", name, x, slope=slope)
 
     def pointwise(self, op: str, name: str, *inputs: Symbol, **attributes: float) -> Symbol:
-        """Of every number by itself, or of those in the same place of two tensors."""
+        """An element-wise operation on one tensor or on two of equal shape."""
         result = Symbol(name, inputs[0].channels, inputs[0].level)
         self.node(op, list(inputs), [result], **attributes)
         return result
@@ -233,7 +233,7 @@ class Description:
         return sum(layer.parameters for layer in self.layers)
 
     def multiply_accumulates(self, height: int, width: int) -> dict[str, int]:
-        """Of each node with weights, for a picture of that size."""
+        """Multiply-accumulates of each node with weights, for an image of that size."""
         return {
             cost.node: cost.per_pixel
             * (1 if cost.level is None else (height >> cost.level) * (width >> cost.level))

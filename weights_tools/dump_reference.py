@@ -59,7 +59,7 @@ def dump(reference: Reference, folder: Path, outputs_only: bool = False) -> Path
 
 
 def _plain(values: torch.Tensor) -> np.ndarray:
-    """One kind of NaN: which of the many comes out depends on the processor."""
+    """Replaces every NaN by one kind, because the bits of a NaN depend on the processor."""
     return np.where(values.isnan(), np.nan, values.numpy())
 
 

@@ -25,7 +25,7 @@ def export(
     log_error: float | None = None,
 ) -> None:
     """Writes a network and its weights; `provenance` says where they come from, `width` which
-    pictures it expects: `nn` resamples others. `log_error` is the relative error of ranges to be
+    images it expects: `nn` resamples others. `log_error` is the relative error of ranges to be
     expected of a network whose confidence does not tell it."""
     stated = {"width": width, "log_error": log_error}
     graph = network.description.graph
@@ -40,7 +40,7 @@ def export(
 
 def trained(checkpoint: Path) -> tuple[Network, dict[str, Any], int]:
     """The network of a checkpoint of weights_tools.training.train, its provenance, and the width of
-    the pictures that it was trained on."""
+    the images that it was trained on."""
     state = read_checkpoint(checkpoint, torch.device("cpu"))
     provenance = {**stage(state), "earlier": state["stages"]}
     return checkpoint_network(state), provenance, state["width"]

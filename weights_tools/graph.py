@@ -1,4 +1,4 @@
-"""A network as the file of docs/networks.md describes it, and PyTorch running it."""
+"""A network as the file of docs/formats/network.md describes it, and PyTorch running it."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -61,7 +61,7 @@ def run(
         given = [tensors[name] for name in node.inputs]
         own = {role: weights[name] for role, name in node.weights.items()}
         if node.op == "convolution":
-            # With channels last it is faster, in bfloat16 several times.
+            # The format with channels last is faster, in bfloat16 several times.
             given = [values.contiguous(memory_format=torch.channels_last) for values in given]
             if bfloat16:
                 given = [values.bfloat16() for values in given]

@@ -38,7 +38,7 @@ class Network(nn.Module):
         self.load(initial_weights(description, seed))
 
     def load(self, weights: Mapping[str, np.ndarray]) -> None:
-        """Takes weights as they stand in a file."""
+        """Loads weights in the form that files have."""
         for layer in self.description.layers:
             weight = torch.as_tensor(weights[f"{layer.name}.weight"])
             bias = torch.as_tensor(weights[f"{layer.name}.bias"])
@@ -54,8 +54,8 @@ class Network(nn.Module):
 
     @torch.no_grad()
     def calibrate(self, inputs: Mapping[str, Tensor], bfloat16: bool = False) -> None:
-        """Makes what normalizes batches change nothing for these inputs, so that a network whose
-        weights came without it goes on from where it was."""
+        """Initializes the batch normalization so that it changes nothing for these inputs, and
+        training continues from loaded weights."""
 
         def observe(norm: nn.BatchNorm2d) -> Callable[[Tensor], Tensor]:
             def identity(x: Tensor) -> Tensor:
@@ -73,21 +73,21 @@ class Network(nn.Module):
 
     @property
     def knows_any_unit(self) -> bool:
-        """Whether the unit of its input does not matter; otherwise it must be metres."""
+        """Whether the input may have any unit; otherwise it must be metres."""
         return any(port["name"] == "log_depth" for port in self.description.graph.outputs)
 
     def inner_convolutions(self) -> list[nn.Parameter]:
-        """Weights of the 3 x 3 convolutions between what is given and what is asked for."""
+        """Weights of the 3 x 3 convolutions between inputs and outputs."""
         layers = filter(_is_inner_convolution, self.description.layers)
         return [self.layers[layer.name]["weight"] for layer in layers]
 
     def fix_propagation(self) -> None:
-        """Leaves normalized convolutions as they are in training."""
+        """Excludes normalized convolutions from training."""
         for layer in self.description.layers:
             self.layers[layer.name].requires_grad_(not layer.is_normalized)
 
     def weights(self) -> dict[str, Tensor]:
-        """Weights as operations take them and files hold them."""
+        """Weights in the form that operations and files have."""
         result = self._plain_weights()
         if self.training:
             return result
@@ -99,7 +99,7 @@ class Network(nn.Module):
         return result
 
     def _plain_weights(self) -> dict[str, Tensor]:
-        """Without what normalizes batches."""
+        """The same network without batch normalization."""
         result = {}
         for layer in self.description.layers:
             weight, bias = (self.layers[layer.name][role] for role in ("weight", "bias"))
@@ -110,7 +110,7 @@ class Network(nn.Module):
         return result
 
     def tensors(self, inputs: Mapping[str, Tensor], bfloat16: bool = False) -> dict[str, Tensor]:
-        """What every node writes, by name."""
+        """The result of every node, by name."""
         behind = self.normalizations if self.training else {}
         return run(self.description.graph, self.weights(), inputs, bfloat16, behind)
 
@@ -124,7 +124,7 @@ def _is_inner_convolution(layer: Layer) -> bool:
 
 
 def initial_weights(description: Description, seed: int) -> dict[str, np.ndarray]:
-    """Weights as they stand in a file, the same on every machine."""
+    """Initial weights in the form that files have, the same on every machine."""
     generator = np.random.RandomState(seed)  # the same numbers in every version of NumPy
     return {
         f"{layer.name}.{role}": values
@@ -139,7 +139,7 @@ def _initial(layer: Layer, generator: np.random.RandomState) -> dict[str, np.nda
         # A mean that prefers near points, a little different in each channel.
         size = layer.shape[-1]
         offset = np.arange(size) - size // 2
-        sigma = max(size / 4, 0.5)  # pixels: the corners count little, but they count
+        sigma = max(size / 4, 0.5)  # pixels; corners have small but positive weights
         bump = np.exp(-(offset[:, None] ** 2 + offset**2) / (2 * sigma**2))
         weight = bump * generator.uniform(0.5, 1.5, layer.shape)
         bias = generator.uniform(-0.01, 0.01, layer.outputs)

@@ -1,4 +1,4 @@
-"""Network files as docs/networks.md describes them: HDF5 behind a header with a digest.
+"""Network files as docs/formats/network.md describes them: HDF5 behind a header with a digest.
 
 The same network gives the same bytes: no time stamps, one order, one version of the format.
 """

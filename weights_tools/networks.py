@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 from weights_tools.builder import Builder, Description, Layer, Pair, Symbol
 
-# For people who read a file: what its inputs and outputs are.
+# Units of inputs and outputs, for people who read a file.
 METRES = {"image": "RGB in 0..1", "depth": "metres, 0 where unknown", "confidence": "0..1"}
 LOG_DEPTH = {
     "image": "RGB in 0..1",
@@ -59,7 +59,7 @@ def _unguided(b: Builder, sparse: Pair) -> Pair:
 
 
 def encoder_decoder(encoder: int = 80, decoder: Sequence[int] = (64, 64, 32, 32)) -> Description:
-    """The image guides from the start, as the paper describes it: 484,203 parameters."""
+    """Guided by the image from the first layer, as the paper describes it: 484,203 parameters."""
     b = Builder("guided encoder-decoder", 32, "zero")
     image, sparse = _image_and_points(b)
     propagated = _unguided(b, sparse)
@@ -78,9 +78,9 @@ def encoder_decoder(encoder: int = 80, decoder: Sequence[int] = (64, 64, 32, 32)
 
 
 def multi_stream(depth: int = 16, image: int = 64, narrow: int = 32) -> Description:
-    """Depth and image meet late, at full resolution throughout: 356,242 parameters."""
+    """Fuses depth and image late, at full resolution: 356,242 parameters."""
     b = Builder("guided multi-stream", 8, "zero")
-    picture, sparse = _image_and_points(b)
+    panorama, sparse = _image_and_points(b)
     propagated = _unguided(b, sparse)
 
     def stream(name: str, x: Symbol, widths: Sequence[int]) -> Symbol:
@@ -88,7 +88,7 @@ def multi_stream(depth: int = 16, image: int = 64, narrow: int = 32) -> Descript
             x = b.convolution(f"{name}{i}", x, width, slope=0)
         return x
 
-    coloured = b.concatenate("coloured", picture, propagated.c)
+    coloured = b.concatenate("coloured", panorama, propagated.c)
     x = b.concatenate(
         "streams",
         stream("depth", propagated.x, [depth] * 6),
@@ -105,7 +105,7 @@ def depth_completion(
     padding: str = "wrap_replicate",
 ) -> Description:
     """The project's own: 2.46 million parameters, 12.39 GMAC at 512 x 1024."""
-    # 64 of the picture's pixels are one at the last level, which must be even to cross the poles.
+    # 64 of the image's pixels are one at the last level, which must be even to cross the poles.
     multiple = 128 if padding == "wrap_cross_pole" else 64
     b = Builder("panoramic depth completion", multiple, padding)
     image, sparse = _image_and_points(b)
@@ -144,7 +144,7 @@ def depth_completion(
 
 
 def propagation(padding: str = "wrap_replicate") -> Description:
-    """The part of depth_completion that sees no picture."""
+    """The part of depth_completion that does not use the image."""
     b = Builder("panoramic confidence propagation", 64, padding)
     points, scale = b.median_log("points", b.input("depth", 1), b.input("confidence", 1))
     pair = _propagate(b, points)
@@ -163,13 +163,13 @@ def _image_and_points(b: Builder) -> tuple[Symbol, Pair]:
 
 
 def _propagate(b: Builder, points: Pair) -> Pair:
-    """A dense first guess from the points alone, with its confidence."""
+    """A dense first estimate from the points alone, with its confidence."""
     first, second = b.normalized_layer("n1", 1, 2, 5), b.normalized_layer("n2", 2, 2, 5)
     shared = b.normalized_layer("n3", 2, 2, 5)
     level = b.normalized_convolution("level0.n1", points, first)
     levels = [b.normalized_convolution("level0", level, second)]
     for i in range(1, _LEVELS):
-        # With a quarter of the confidence at each level none would be left at the last.
+        # With the rule `quarter` hardly any confidence would remain at the last level.
         pooled = b.confidence_pool(f"level{i}.pool", levels[-1], "sqrt")
         levels.append(b.normalized_convolution(f"level{i}", pooled, shared))
     decoded = levels.pop()
@@ -225,7 +225,7 @@ def _residual_block(b: Builder, name: str, x: Symbol) -> Symbol:
 
 
 def _decode(b: Builder, encoded: Sequence[Symbol]) -> Symbol:
-    """Up again, adding what was there on the way down, to half the picture's size."""
+    """The decoder up to half the image's size, with skip connections from the encoder."""
     x = encoded[-1]
     for i, skip in reversed(list(enumerate(encoded[:-1], 1))):
         lateral = b.convolution(f"lateral{i}", x, skip.channels, size=1, gain=_SMALL)

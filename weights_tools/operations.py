@@ -1,4 +1,4 @@
-"""Every operation of docs/networks.md in PyTorch, by the name it has in a network file.
+"""Every operation of docs/formats/network.md in PyTorch, by the name it has in a network file.
 
 Tensors are N x C x H x W: training has batches, the C++ library has not. Tensors come first, then
 weights and attributes by the names they have in the file. Values are those of the document in every
@@ -93,8 +93,8 @@ def _halfway(size: int, edge: str, like: Tensor) -> Tensor:
 def convex_upsample(x: Tensor, weights: Tensor, *, padding: str) -> Tensor:
     n, _, height, width = x.shape
     neighbours = F.unfold(pad(x, 1, padding), 3).view(n, 1, 9, height, width)
-    shares = weights.view(n, 4, 9, height, width).softmax(dim=2)
-    return F.pixel_shuffle((shares * neighbours).sum(dim=2), 2)
+    fractions = weights.view(n, 4, 9, height, width).softmax(dim=2)
+    return F.pixel_shuffle((fractions * neighbours).sum(dim=2), 2)
 
 
 def average_pool(x: Tensor) -> Tensor:
@@ -131,7 +131,7 @@ def slice_channels(x: Tensor, *, first: int, count: int) -> Tensor:
 
 
 def median_log(depth: Tensor, confidence: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-    """Sparse depth relative to its median, in logarithms; each picture of a batch has its own."""
+    """Sparse depth relative to its median, in logarithms; each image of a batch has its own."""
     point = depth.isfinite() & (depth > 0) & (confidence > 0)
     medians = [d[p].median() if p.any() else d.new_ones(()) for d, p in zip(depth, point)]
     median = torch.stack(medians)[:, None, None, None]

@@ -1,4 +1,4 @@
-"""What stands around a picture when an operation reaches over its edge (docs/networks.md)."""
+"""Padding of images (docs/formats/network.md)."""
 
 from typing import Any
 
@@ -59,7 +59,7 @@ class _WrapReplicate(torch.autograd.Function):
 
 
 def _wrap_columns(x: Tensor, width: int) -> Tensor:
-    """Longitude goes on at the other side. A picture narrower than `width` goes round again."""
+    """Longitude continues at the other side; an image narrower than `width` is repeated."""
     while width > 0:
         step = min(width, x.shape[-1])
         x = torch.cat([x[..., -step:], x, x[..., :step]], dim=-1)
@@ -68,7 +68,7 @@ def _wrap_columns(x: Tensor, width: int) -> Tensor:
 
 
 def _cross_poles(x: Tensor, width: int) -> Tensor:
-    """Beyond a pole the picture goes on down the opposite meridian, half a turn away."""
+    """Beyond a pole the image continues along the opposite meridian, half a turn away."""
     if x.shape[-1] % 2 != 0:
         raise ValueError(f"wrap_cross_pole needs an even width, not {x.shape[-1]}")
     while width > 0:

@@ -1,4 +1,4 @@
-"""What the tests of `nn` compare with PyTorch: graphs with weights, and inputs for them."""
+"""Graphs with weights and inputs, for which the tests of `nn` compare with PyTorch."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class Reference:
 
 
 def references() -> list[Reference]:
-    """Everything in tests/nn/data."""
+    """All networks in tests/nn/data."""
     return [
         _operation("convolution", _convolution, FLAT, np.float16),
         _operation("convolution_across_poles", _convolution, ACROSS, np.float16),
@@ -43,7 +43,7 @@ def references() -> list[Reference]:
 
 
 def full_networks() -> list[Reference]:
-    """The networks with all their channels: too large to be kept."""
+    """The networks with all their channels, which are too large to be stored."""
     return [
         network("encoder_decoder", networks.encoder_decoder(), (64, 128)),
         network("multi_stream", networks.multi_stream(), (64, 128)),
@@ -82,11 +82,11 @@ def stored(path: Path) -> Reference:
     return Reference(path.stem, graph, weights, {f"{size[0]}x{size[1]}": inputs}, dtype)
 
 
-def _panorama_inputs(graph: Graph, size: tuple[int, int], share: float, seed: int) -> Arrays:
+def _panorama_inputs(graph: Graph, size: tuple[int, int], fraction: float, seed: int) -> Arrays:
     random = np.random.RandomState(seed)
-    known = random.uniform(size=(1, *size)) < share
+    known = random.uniform(size=(1, *size)) < fraction
     inputs = {
-        # As pictures have them, and cameras: whole numbers, which compress well.
+        # Whole numbers, as in images, compress well.
         "image": random.randint(0, 256, (3, *size)) / 255,
         "depth": known * random.randint(256, 80 * 256, known.shape) / 256,
         "confidence": known * random.randint(1, 256, known.shape) / 255,
@@ -149,7 +149,7 @@ def _forget(values: np.ndarray) -> None:
 
 
 def _spoil(values: np.ndarray) -> None:
-    """Far enough from each other that they do not meet in one kernel."""
+    """Inserts NaN and infinity, so far apart that no kernel covers both."""
     values[0, 0, 0] = np.nan
     values[-1, values.shape[1] // 2, values.shape[2] // 2] = np.inf
 
@@ -161,7 +161,7 @@ _CHANGES: dict[str, Callable[[np.ndarray], None]] = {
 
 
 def _convolution(b: Builder, sizes: Sizes) -> dict[str, list[str]]:
-    """Few channels, as a picture has, and some that fill no block of 16 or 32."""
+    """Few channels, as an image has, and some that fill no block of 16 or 32."""
     for name, x, outputs in (("few", b.input("few", 3), 17), ("many", b.input("many", 18), 20)):
         for size in (1, 3, 5):
             layer = b.layer(Layer(f"{name}{size}", (outputs, x.channels, size, size)))
@@ -215,7 +215,7 @@ def _elementwise(b: Builder, _: Sizes) -> dict[str, list[str]]:
 
 
 def _panorama(b: Builder, _: Sizes) -> dict[str, list[str]]:
-    """Of the whole picture, or of where a pixel is in it."""
+    """Operations on the whole image, or on the position of a pixel in it."""
     depth, c, wide = b.input("depth", 1), b.input("c", 1), b.input("wide", 18)
     b.median_log("median_log", depth, c)
     b.latitude_sine("latitude", wide)

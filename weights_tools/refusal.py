@@ -1,4 +1,4 @@
-"""How commands refuse bad input."""
+"""Refusal of bad input by commands."""
 
 import contextlib
 import sys

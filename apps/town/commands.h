@@ -4,7 +4,7 @@
 
 namespace orb360::town {
 
-/// Each adds a subcommand that does its work when the command line is parsed; it may throw
+/// Each function adds a subcommand that runs when the command line is parsed; it may throw
 /// UserError.
 void AddRenderCommand(CLI::App* app);
 void AddStitchCommand(CLI::App* app);

@@ -4,10 +4,11 @@
 
 namespace orb360::town {
 
-/// A bar that is redrawn on a terminal, and a line now and then elsewhere.
+/// A bar that is redrawn on a terminal, or a line from time to time elsewhere.
 class ProgressBar {
  public:
-  /// `made`: frames made now, of the `done` that are there, for the speed.
+  /// `made` is the number of frames made now, among the `done` that exist; the speed is computed
+  /// from it.
   void Show(int done, int made, int all);
 
  private:

@@ -59,7 +59,7 @@ SensorOptions SensorOf(const Arguments& arguments) {
   return sensor;
 }
 
-/// `width` and `cube_size` where the user says nothing of the picture's size.
+/// Returns the recording. `width` and `cube_size` are used if the user does not state the size.
 Recording RecordingOf(const Arguments& arguments, int width, int cube_size) {
   const int chosen = arguments.width.value_or(width);
   Recording recording{EquirectangularCamera(chosen, chosen / 2), arguments.fps};
@@ -89,7 +89,7 @@ std::unique_ptr<Drive> MakeImportedDrive(const Arguments& arguments) {
   if (arguments.light) spec.light = *arguments.light;
   if (arguments.traffic) throw UserError("--traffic is for a --town: nothing moves in a --scene");
   const CameraPath path = ReadCameraPath(spec.path);
-  // A thousandth of a frame more: times in files are rounded.
+  // A thousandth of a frame is added, because times in files are rounded.
   const int whole = static_cast<int>((path.end() - path.begin()) * recording.fps + 1e-3) + 1;
   recording.frames = arguments.frames.value_or(whole);
   if (recording.frames > whole) {

@@ -8,9 +8,9 @@
 
 namespace orb360::nn {
 
-/// Starts memory at a multiple of the cache line, where the widest vectors are aligned as well;
-/// much of it at a multiple of the large page, and asks for such pages, since touching small ones
-/// for the first time takes longer than filling them.
+/// Allocates memory at a multiple of the cache line, where the widest vectors are aligned too.
+/// Large blocks begin at a multiple of a large page and ask for such pages, because touching small
+/// pages for the first time takes longer than filling them.
 template <typename T>
 struct CacheLineAllocator {
   using value_type = T;
@@ -25,7 +25,7 @@ struct CacheLineAllocator {
     const std::size_t bytes = count * sizeof(T);
     void* memory = ::operator new(bytes, Alignment(count));
 #ifdef MADV_HUGEPAGE
-    // A wish: without it, or without such pages, memory works all the same.
+    // This is a hint; memory works without it and on systems without such pages.
     if (bytes >= kLargePage) madvise(memory, bytes, MADV_HUGEPAGE);
 #endif
     return static_cast<T*>(memory);

@@ -15,7 +15,7 @@ inline float ToFloat(BFloat16 value) {
   return std::bit_cast<float>(std::uint32_t{value.bits} << 16);
 }
 
-/// Rounds to nearest, ties to even; NaN stays (quiet) NaN.
+/// Rounds to nearest, ties to even. NaN becomes a quiet NaN.
 inline BFloat16 ToBFloat16(float value) {
   const auto bits = std::bit_cast<std::uint32_t>(value);
   const bool is_nan = (bits & 0x7fffffffu) > 0x7f800000u;

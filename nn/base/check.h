@@ -6,14 +6,14 @@
 
 namespace orb360 {
 
-/// A mistake of the user's (a file, an option, an image): `what()` is the one line to show, which
+/// A mistake of the user (in a file, an option or an image). `what()` is one line to show, which
 /// says what is wrong, where, and what to do.
 class UserError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A contract broken by code; thrown by ORB360_CHECK.
+/// A contract violated by code; thrown by ORB360_CHECK.
 class ContractError : public std::logic_error {
  public:
   using std::logic_error::logic_error;
@@ -33,7 +33,8 @@ template <typename... Values>
 }  // namespace internal
 }  // namespace orb360
 
-/// Throws ContractError with the expression, and the further arguments as values, unless it holds.
+/// Throws ContractError with the expression, and with the further arguments as values, unless the
+/// expression holds.
 #define ORB360_CHECK(expression, ...)                                  \
   ((expression) ? static_cast<void>(0)                                 \
                 : ::orb360::internal::FailContract(__FILE__, __LINE__, \

@@ -13,15 +13,15 @@ namespace {
 
 bool IsSet(unsigned word, int bit) { return (word >> bit & 1) != 0; }
 
-// The parts of a thread's registers that the operating system saves.
+// Returns which parts of a thread's registers the operating system saves.
 std::uint64_t SavedState() {
   unsigned low = 0, high = 0;
   asm("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
   return std::uint64_t{high} << 32 | low;
 }
 
-// Tiles are 8 KiB more to save for every thread, so Linux wants to be asked (since version 5.16).
-// The answer holds for the whole process.
+// Tiles are 8 KiB more to save for every thread, so Linux requires a request (since version 5.16).
+// The answer is valid for the whole process.
 bool AskForTiles() {
   constexpr int kRequestPermission = 0x1023;  // ARCH_REQ_XCOMP_PERM of asm/prctl.h
   constexpr int kTileData = 18;               // bit of the saved state

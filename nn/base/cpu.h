@@ -4,8 +4,8 @@
 
 namespace orb360::nn {
 
-/// What multiplies bfloat16 numbers and adds them up as floats, best last. Highway does not
-/// dispatch to these.
+/// Units that multiply bfloat16 numbers and add them up as floats, the best one last. Highway does
+/// not dispatch to these.
 enum class BFloat16Unit : std::uint8_t {
   kNone,
   /// AVX-512's VDPBF16PS: Intel since Cooper Lake, AMD since Zen 4.
@@ -14,7 +14,7 @@ enum class BFloat16Unit : std::uint8_t {
   kAmx,
 };
 
-/// The best that this processor has and this operating system lets us use.
+/// Returns the best unit that this processor has and that the operating system allows.
 BFloat16Unit BestBFloat16Unit();
 
 }  // namespace orb360::nn

@@ -6,7 +6,7 @@
 
 namespace orb360 {
 
-/// Owns an identifier of the HDF5 library. Invalid (negative) ones are left alone.
+/// Owns an identifier of the HDF5 library. Invalid (negative) identifiers are not closed.
 class Hdf5Handle {
  public:
   using Closer = herr_t (*)(hid_t);
@@ -27,8 +27,8 @@ class Hdf5Handle {
   Closer close_;
 };
 
-/// Keeps the HDF5 library from printing its error stack while this exists; failures are reported
-/// through return values.
+/// Keeps the HDF5 library from printing its error stack while an object of this class exists.
+/// Failures are reported through return values.
 class Hdf5Quiet {
  public:
   Hdf5Quiet() {

@@ -123,7 +123,7 @@ Hdf5Handle CreateSealedContent() {
 
 std::string TakeContent(const Hdf5Handle& file) {
   ORB360_CHECK(H5Fflush(file.get(), H5F_SCOPE_LOCAL) >= 0);
-  // The image lacks the user block, where the header will be.
+  // The image lacks the user block, which will hold the header.
   const ssize_t size = H5Fget_file_image(file.get(), nullptr, 0);
   ORB360_CHECK(size > 0, size);
   std::string bytes(static_cast<std::size_t>(size), '\0');

@@ -10,9 +10,9 @@
 
 namespace orb360 {
 
-/// A sort of file that holds HDF5 behind a header of 512 bytes: 8 characters, the version
-/// (little-endian, 4 bytes) and, from byte 16 on, the SHA-256 of all that follows the header; the
-/// rest is 0. The HDF5 library only sees bytes whose digest is right.
+/// A kind of file that contains HDF5 behind a header of 512 bytes: 8 characters, the version
+/// (little-endian, 4 bytes) and, from byte 16 on, the SHA-256 of everything after the header. The
+/// rest of the header is 0. The HDF5 library sees only bytes whose digest is correct.
 struct SealedKind {
   std::string_view magic;  // 8 characters
   std::uint32_t version;
@@ -24,22 +24,23 @@ struct SealedKind {
 
 using FileBytes = std::vector<unsigned char>;
 
-/// The whole file. Throws UserError, which does not name the file, for one that is missing, of
+/// Reads the whole file. Throws UserError, which does not name the file, if it is missing, of
 /// another kind or version, or damaged.
 FileBytes ReadSealedFile(const std::filesystem::path& path, const SealedKind& kind);
 
-/// The header for HDF5 content.
+/// Returns the header for HDF5 content.
 std::string MakeSeal(const SealedKind& kind, std::string_view content);
 
-/// The file in memory as the HDF5 library sees it: `bytes` themselves, which must outlive the
-/// handle. (Copies of them would take as long as the digest.)
+/// Opens the file in memory for the HDF5 library. It uses `bytes` themselves, which must outlive
+/// the handle, because copying them would take as long as the digest.
 Hdf5Handle OpenSealed(FileBytes* bytes);
 
-/// A new file in memory, for content that MakeSeal is to precede; TakeContent gives its bytes.
+/// Creates a file in memory for content that follows the header of MakeSeal. TakeContent returns
+/// its bytes.
 Hdf5Handle CreateSealedContent();
 std::string TakeContent(const Hdf5Handle& file);
 
-/// A dataset whose bytes are in this file, and nowhere else. Throws UserError.
+/// Opens a dataset whose bytes are in this file and not in an external one. Throws UserError.
 Hdf5Handle OpenOwnDataset(hid_t group, const std::string& name);
 
 }  // namespace orb360

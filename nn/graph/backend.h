@@ -12,7 +12,7 @@
 
 namespace orb360::nn {
 
-/// How a kernel needs one of its inputs to lie, or leaves one of its outputs.
+/// The format in which a kernel needs one of its inputs, or leaves one of its outputs.
 struct PortNeeds {
   enum class Layouts : std::uint8_t { kPlanar, kBlocked, kEither };
   enum class Types : std::uint8_t { kFloat, kBFloat16, kEither };
@@ -21,30 +21,31 @@ struct PortNeeds {
   Types types = Types::kFloat;
   /// All tied ports of a node have the same layout and type.
   bool is_tied = false;
-  /// Of an input: pixels of halo that the kernel fills and reads.
+  /// For an input: pixels of halo that the kernel fills and reads.
   int halo = 0;
 };
 
 struct NodeNeeds {
   std::vector<PortNeeds> inputs;
   std::vector<PortNeeds> outputs;
-  /// Inputs whose memory the first output may take over, where both have the same format.
+  /// Inputs whose memory the first output may reuse if both have the same format.
   std::vector<int> replaceable;
 };
 
-/// One kernel with its packed weights, for tensors of the formats that were asked for. Runs from
-/// several threads at once, without allocating.
+/// One kernel with its packed weights, for tensors of the requested formats. It can run on several
+/// threads at once and does not allocate.
 struct Step {
   using Run =
       std::function<void(std::span<const TensorView> inputs, std::span<const TensorView> outputs,
                          std::span<std::byte> scratch)>;
   Run run;
-  /// Of memory aligned to kAlignment that a run needs for itself.
+  /// Bytes of memory, aligned to kAlignment, that one run needs for itself.
   std::size_t scratch_bytes = 0;
 };
 
-/// What runs on a kind of processor. The only way from a graph to kernels: whoever implements it
-/// can execute every network. Concatenation and slices need no kernel but MakeCopy's.
+/// The interface to one kind of processor, and the only connection between a graph and kernels:
+/// whoever implements it can execute every network. Concatenation and slices need only the kernel
+/// of MakeCopy.
 class Backend {
  public:
   Backend() = default;
@@ -53,10 +54,12 @@ class Backend {
   virtual ~Backend() = default;
 
   virtual NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const = 0;
-  /// One for each node, for pictures of that size; empty ones for concatenations and slices.
+  /// Returns one step for each node, for images of that size. The steps of concatenations and
+  /// slices are empty.
   virtual std::vector<Step> MakeSteps(const Graph& graph, std::span<const FusedNode> nodes,
                                       int height, int width) const = 0;
-  /// Copies `count` channels of the only input to the only output, between any formats.
+  /// Returns a step that copies `count` channels of its only input to its only output, between any
+  /// formats.
   virtual Step MakeCopy(int from_first, int to_first, int count) const = 0;
 };
 

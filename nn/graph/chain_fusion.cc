@@ -19,7 +19,7 @@ bool Is(const FusedNode& fused) {
   return std::holds_alternative<Op>(fused.node.operation);
 }
 
-/// A value and its confidence: tensors.
+/// The tensors of a value and its confidence.
 struct Pair {
   int x = 0;
   int c = 0;
@@ -67,7 +67,8 @@ class ChainFusion {
     return {fused.node.outputs[0], fused.node.outputs[1]};
   }
 
-  /// The chain then stands where its last link did: everything it reads is there by then.
+  /// Merges node i into the next one. The chain runs where its last link was: everything that it
+  /// reads has been written by then.
   void MergeIntoNext(std::size_t i) {
     const Pair result = OutputsOf(nodes_[i]);
     const std::vector<int>& readers = readers_[Index(result.x)];
@@ -93,7 +94,7 @@ class ChainFusion {
     return &nodes_[Index(writer)].node;
   }
 
-  /// Reads what was concatenated and up-sampled instead of the result.
+  /// Lets the node read the concatenated and up-sampled tensors themselves in place of the result.
   void SplitInputs(FusedNode* fused) const {
     const std::vector<Pair> parts = PartsOf({fused->node.inputs[0], fused->node.inputs[1]});
     fused->node.inputs.clear();

@@ -7,9 +7,10 @@
 
 namespace orb360::nn {
 
-/// Merges what surrounds normalized convolutions into them (FusedNode::chain, doubled, pool): other
-/// normalized convolutions that alone read what they write, concatenations and nearest up-sampling
-/// before them, confidence pooling behind. Nodes whose results nobody reads any more stay.
+/// Merges the neighbours of normalized convolutions into them (FusedNode::chain, doubled, pool):
+/// other normalized convolutions that are the only readers of their results, concatenations and
+/// nearest up-sampling before them, and confidence pooling after them. Nodes whose results are no
+/// longer read remain.
 std::vector<FusedNode> MergeChains(const Graph& graph, std::vector<FusedNode> nodes);
 
 }  // namespace orb360::nn

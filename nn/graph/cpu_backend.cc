@@ -162,8 +162,8 @@ Step MakeConvolution(const Graph& graph, const FusedNode& fused, DataType precis
     return graph.weights[static_cast<std::size_t>(fused.node.weights[i])];
   };
   const auto& op = std::get<ConvolutionOp>(fused.node.operation);
-  // A panorama that turns by the smallest step the network takes must turn by whole tiles here as
-  // well, so that the result turns with it bit for bit.
+  // If a panorama is turned by the smallest step to which the network is equivariant, it must be
+  // turned by whole tiles here too, so that the result is turned bit for bit.
   const int halvings =
       graph.tensors[static_cast<std::size_t>(fused.node.outputs[0])].extent.halvings;
   const int step = graph.size_multiple >> std::max(halvings, 0);

@@ -4,11 +4,11 @@
 
 namespace orb360::nn {
 
-/// The kernels of nn/kernels.
+/// The backend that uses the kernels of nn/kernels.
 class CpuBackend : public Backend {
  public:
-  /// `precision`: what convolutions multiply; they add up floats in any case. Throws UserError for
-  /// kBFloat16 where the processor has nothing for it.
+  /// `precision` is the type in which convolutions multiply; they always sum in floats. Throws
+  /// UserError for kBFloat16 if the processor does not support it.
   explicit CpuBackend(int threads, DataType precision = DataType::kFloat);
 
   NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const override;

@@ -65,7 +65,7 @@ class Needs {
     return {{kPlanar, kPlanar}, {kPlanar, kPlanar, kPlanar}, {}};
   }
   NodeNeeds operator()(const LatitudeSineOp&) const { return {{kFree}, {kFree}, {}}; }
-  /// Functions of one number.
+  /// Element-wise functions of one tensor.
   template <typename Elementwise>
   NodeNeeds operator()(const Elementwise&) const {
     return {{kTied}, {kTied}, {0}};

@@ -7,11 +7,12 @@
 
 namespace orb360::nn {
 
-/// CpuBackend::NeedsOf without the kernels themselves. `precision`: what convolutions multiply.
+/// CpuBackend::NeedsOf without the kernels. `precision` is the type in which convolutions multiply.
 NodeNeeds CpuNeedsOf(const Graph& graph, const FusedNode& node, DataType precision);
 
-/// What a convolution multiplies where `precision` is asked for: pictures become floats where their
-/// few channels make few channels again, or are added to something.
+/// Returns the type in which a convolution multiplies when `precision` is requested. An input of
+/// few channels is multiplied as floats if the result has few channels too or is added to another
+/// tensor.
 DataType ConvolutionType(const Graph& graph, const FusedNode& node, DataType precision);
 
 }  // namespace orb360::nn

@@ -30,7 +30,7 @@ void CheckPictureSize(const Graph& graph, int height, int width) {
                   std::to_string(height));
 }
 
-/// Floats without gaps as a tensor. Nobody writes through it when it stands for an input.
+/// Views contiguous floats as a tensor. The view of an input is never written.
 TensorView DenseView(const float* data, const Shape& shape) {
   return {const_cast<float*>(data),  // NOLINT: as above
           shape,

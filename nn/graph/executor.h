@@ -16,20 +16,20 @@ namespace orb360::nn {
 
 struct ExecutorOptions {
   int threads = 1;
-  /// What convolutions multiply: kBFloat16 is faster and rounds to 8 bits, for processors that have
-  /// it (UserError for others). Everything else is computed with floats.
+  /// The type in which convolutions multiply. kBFloat16 is faster and rounds to 8 bits; it needs a
+  /// processor that supports it (UserError otherwise). Everything else is computed in floats.
   DataType precision = DataType::kFloat;
-  /// Runs every node by itself and keeps what each of them writes (Executor::Find): to look inside,
-  /// not to be fast.
+  /// Runs every node by itself and keeps its result (Executor::Find). This is for inspection and is
+  /// slow.
   bool keeps_tensors = false;
 };
 
-/// A network made ready for pictures of one size: formats chosen, nodes fused, weights packed,
-/// memory planned. It does not need the graph any more and never changes, so any number of threads
-/// may run it at once, each in a workspace of its own.
+/// A network prepared for images of one size: formats chosen, nodes fused, weights packed, memory
+/// planned. It does not need the graph any more and never changes, so any number of threads may run
+/// it at once, each with a workspace of its own.
 class Executor {
  public:
-  /// The memory of one run at a time.
+  /// Memory of one run. A workspace serves one run at a time.
   class Workspace {
    public:
     explicit Workspace(const Executor& executor);
@@ -46,28 +46,28 @@ class Executor {
     std::vector<Bound> bound_;       // by instruction
   };
 
-  /// A tensor that goes in or out: channels x height x width floats, row by row.
+  /// An input or output: channels x height x width floats, row by row.
   struct Port {
     std::string name;
     Shape shape;
   };
 
-  /// Throws UserError for a size of picture that the graph does not take.
+  /// Throws UserError for an image size that the graph does not accept.
   Executor(const Graph& graph, int height, int width, const ExecutorOptions& options = {});
 
   const std::vector<Port>& inputs() const { return inputs_; }
   const std::vector<Port>& outputs() const { return outputs_; }
 
-  /// Computes `outputs` of `inputs`, both in the order of inputs() and outputs() and of their
-  /// sizes. Nothing is allocated. The same bits for any number of threads.
+  /// Computes `outputs` from `inputs`, which have the order and sizes of inputs() and outputs().
+  /// Nothing is allocated. The bits are the same for any number of threads.
   void Run(std::span<const std::span<const float>> inputs,
            std::span<const std::span<float>> outputs, Workspace* workspace) const;
 
-  /// What the last run in `workspace` has written under that name in the graph. Only with
-  /// keeps_tensors.
+  /// Returns what the last run in `workspace` wrote to the tensor of that name in the graph.
+  /// Requires keeps_tensors.
   TensorView Find(const Workspace& workspace, std::string_view tensor) const;
 
-  /// Bytes of a workspace, and what they would be if every tensor had memory of its own.
+  /// Bytes of a workspace, and the bytes it would have if every tensor had memory of its own.
   std::size_t planned_bytes() const { return placement_.bytes; }
   std::size_t naive_bytes() const { return placement_.separate_bytes; }
 

@@ -12,7 +12,7 @@ using Types = PortNeeds::Types;
 
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
-/// What the readers of a tensor want.
+/// The format that the readers of a tensor want.
 struct Wish {
   std::optional<Layout> layout;
   std::optional<DataType> type;
@@ -27,7 +27,8 @@ Wish WishOf(const PortNeeds& port, const Wish& of_result) {
   return wish;
 }
 
-/// Up to here a block of channels is at least half empty, and planes are the smaller evil.
+/// With at most this many channels, a block of channels is at least half empty, and planes are
+/// better.
 constexpr int kFewChannels = BlockOf(DataType::kFloat) / 2;
 
 Layout UsualLayout(int channels) {
@@ -93,7 +94,7 @@ class Choice {
       if (needs.layouts == Layouts::kBlocked) format.layout = Layout::kBlocked;
       if (needs.types == Types::kFloat) format.type = DataType::kFloat;
       if (needs.types == Types::kBFloat16) format.type = DataType::kBFloat16;
-      // bfloat16 is for convolutions, which read blocks.
+      // Only convolutions use bfloat16, and they read blocks.
       if (format.layout == Layout::kPlanar) format.type = DataType::kFloat;
       formats_[Index(tensor)] = format;
     }
@@ -143,7 +144,7 @@ std::vector<Format> ChooseFormats(const Graph& graph, std::span<const FusedNode>
 bool IsViewOfChannels(const Format& format, int channels, int first, int count) {
   if (format.layout == Layout::kPlanar) return true;
   const int block = BlockOf(format.type);
-  // A view's last block must be filled up with zeros, not with somebody else's channels.
+  // The last block of a view must be filled up with zeros, not with channels of another tensor.
   return first % block == 0 && (count % block == 0 || first + count == channels);
 }
 

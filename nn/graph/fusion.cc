@@ -15,7 +15,7 @@ constexpr int kSeveral = -2;  // or an output of the graph
 
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
-/// The slope of an operation that a convolution can do in the same pass.
+/// Returns the slope of an activation that a convolution can apply in the same pass.
 std::optional<float> SlopeOf(const Operation& operation) {
   if (std::holds_alternative<ReluOp>(operation)) return 0.0f;
   if (const auto* relu = std::get_if<LeakyReluOp>(&operation)) return relu->slope;
@@ -41,7 +41,7 @@ class ConvolutionFusion {
   }
 
   std::vector<FusedNode> Run() {
-    // A fused node runs where its last part stood: everything it reads is there by then.
+    // A fused node runs where its last part was: everything that it reads has been written by then.
     std::vector<std::optional<FusedNode>> at(graph_.nodes.size());
     for (std::size_t i = 0; i < graph_.nodes.size(); ++i) {
       if (is_merged_[i]) continue;
@@ -61,7 +61,7 @@ class ConvolutionFusion {
   }
 
  private:
-  /// The only reader of what the node writes, if there is just one.
+  /// Returns the only reader of the node's result, if there is exactly one.
   int OnlyReader(const FusedNode& fused) const {
     return reader_[Index(fused.node.outputs.front())];
   }
@@ -79,7 +79,7 @@ class ConvolutionFusion {
     if (!std::holds_alternative<AddOp>(addition.operation)) return;
     const bool is_first = addition.inputs[0] == fused->node.outputs.front();
     const int other = addition.inputs[is_first ? 1 : 0];
-    // Of two convolutions the later one adds.
+    // If both summands are results of convolutions, the later one adds.
     const int writer = writer_[Index(other)];
     const bool is_for_the_other =
         writer > static_cast<int>(*position) && reader_[Index(other)] == reader &&
@@ -105,7 +105,7 @@ class ConvolutionFusion {
   std::vector<bool> is_merged_;
 };
 
-/// Those that the graph's outputs depend on, in order.
+/// Returns the nodes on which the graph's outputs depend, in order.
 std::vector<FusedNode> Needed(const Graph& graph, std::vector<FusedNode> nodes) {
   std::vector<bool> is_tensor_needed(graph.tensors.size());
   for (const Graph::Output& output : graph.outputs) is_tensor_needed[Index(output.tensor)] = true;

@@ -8,31 +8,34 @@
 
 namespace orb360::nn {
 
-/// A node and what is done in the same pass.
+/// A node and the operations that are done in the same pass.
 struct FusedNode {
   Node node;  // with the inputs and outputs of the whole
 
-  /// A convolution's: y = activation(node + residual), where the residual is the last of the inputs
-  /// and the activation is y > 0 ? y : slope * y.
+  /// For a convolution: y = activation(node + residual), where the residual is the last input and
+  /// the activation is y > 0 ? y : slope * y.
   bool adds_residual = false;
   float slope = 1;
 
-  /// A normalized convolution's: others that follow, each on what the one before it gives.
+  /// For a normalized convolution: further normalized convolutions, each applied to the result of
+  /// the previous one.
   std::vector<Node> chain = {};
-  /// It reads the concatenation of pairs x, c: at most so many. `doubled`: by pair, whether every
-  /// pixel stands for 2x2. Empty: one pair, which is not.
+  /// The node reads the concatenation of at most kMostPairs pairs x, c. `doubled` states for each
+  /// pair whether every pixel stands for 2x2. If it is empty, there is one pair, which is not
+  /// doubled.
   static constexpr std::size_t kMostPairs = 8;
   std::vector<bool> doubled = {};
-  /// The third and fourth output are what this makes of the first two.
+  /// The third and fourth outputs are the result of this operation on the first two.
   std::optional<ConfidencePoolOp> pool = {};
 };
 
-/// The graph's nodes in an order they can run in, with additions and activations merged into the
-/// convolutions before them where nobody else needs what lies between, normalized convolutions
-/// merged with what surrounds them (chain_fusion.h), and without nodes that no output depends on.
+/// Returns the graph's nodes in an order in which they can run. Additions and activations are
+/// merged into the convolutions before them if no other node needs the results between; normalized
+/// convolutions are merged with their neighbours (chain_fusion.h); nodes on which no output depends
+/// are removed.
 std::vector<FusedNode> FuseNodes(const Graph& graph);
 
-/// The graph's nodes as they are.
+/// Returns the graph's nodes unchanged.
 std::vector<FusedNode> KeepNodes(const Graph& graph);
 
 }  // namespace orb360::nn

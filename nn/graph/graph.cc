@@ -13,7 +13,7 @@ int Scaled(int size, int halvings) {
 }  // namespace
 
 const char* NameOf(const Operation& operation) {
-  // In the order of the variant's alternatives.
+  // The order is that of the variant's alternatives.
   static constexpr std::array<const char*, std::variant_size_v<Operation>> kNames = {
       "normalized_convolution",
       "confidence_pool",

@@ -9,7 +9,7 @@
 
 namespace orb360::nn {
 
-/// The operations, with their attributes. What they compute: docs/networks.md.
+/// The operations with their attributes. docs/formats/network.md defines what they compute.
 struct NormalizedConvolutionOp {
   Padding padding = Padding::kZero;
 };
@@ -63,24 +63,24 @@ using Operation = std::variant<NormalizedConvolutionOp, ConfidencePoolOp, Convol
                                SoftplusOp, ExpOp, LogOp, LeakyReluOp, ClampOp, AffineOp, AddOp,
                                MultiplyOp, ConcatenateOp, SliceOp, MedianLogOp, LatitudeSineOp>;
 
-/// How the name of an operation is written in a file.
+/// Returns the name of an operation in a file.
 const char* NameOf(const Operation& operation);
 
-/// The size of a tensor for pictures of any size.
+/// Size of a tensor in relation to the image.
 struct Extent {
   bool is_single = false;  // one pixel, however large the picture is
   int halvings = 0;        // the picture's size is divided by 2 so often; below 0: multiplied
   friend bool operator==(const Extent&, const Extent&) = default;
 };
 
-/// What flows between nodes; written by one of them or by the caller.
+/// A tensor between nodes, written by one of them or by the caller.
 struct Tensor {
   std::string name;
   int channels = 0;
   Extent extent;
 };
 
-/// The tensor for a picture of that size. Halves are rounded up.
+/// Returns the shape of the tensor for an image of that size. Halves are rounded up.
 Shape ShapeFor(const Tensor& tensor, int height, int width);
 
 struct Weight {
@@ -94,13 +94,13 @@ struct Node {
   Operation operation;
   std::vector<int> inputs;   // indices into Graph::tensors
   std::vector<int> outputs;  // likewise
-  /// Indices into Graph::weights: `weight` and `bias` of the operations that have them.
+  /// Indices into Graph::weights: `weight` and `bias`, for operations that have them.
   std::vector<int> weights;
 };
 
-/// A network. Whoever holds one that ParseGraph made may rely on everything docs/networks.md asks
-/// for: every index, shape, attribute and weight is valid for every picture whose size is a
-/// multiple of `size_multiple`.
+/// A network. The result of ParseGraph satisfies everything that docs/formats/network.md requires:
+/// every index, shape, attribute and weight is valid for every image whose size is a multiple of
+/// `size_multiple`.
 struct Graph {
   struct Output {
     std::string name;
@@ -114,19 +114,19 @@ struct Graph {
   std::vector<Node> nodes;  // in the order they run in
   std::vector<Output> outputs;
   std::vector<Weight> weights;
-  /// For people: what the network expects and where it comes from. Text of JSON objects.
+  /// Text of JSON objects, for people: what the network expects and where it comes from.
   std::string normalisation;
   std::string provenance;
 };
 
-/// Side of the kernel of a normalized or plain convolution.
+/// Returns the side of the kernel of a normalized or plain convolution.
 int KernelSize(const Graph& graph, const Node& node);
 
-/// Numbers in all weights.
+/// Returns the number of values in all weights.
 std::int64_t CountParameters(const Graph& graph);
 
-/// Multiplications with weights, each added to something, that the node's definition asks for on a
-/// picture of that size; two of them for each tap of a normalized convolution.
+/// Returns the number of multiplications with weights, each added to a sum, that the node's
+/// definition needs for an image of that size. A tap of a normalized convolution counts as two.
 std::int64_t MultiplyAdds(const Graph& graph, const Node& node, int height, int width);
 
 }  // namespace orb360::nn

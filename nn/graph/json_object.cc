@@ -57,7 +57,7 @@ std::string JsonObject::Name(const char* key) {
 
 int JsonObject::Integer(const char* key, int least, int most) {
   const nlohmann::json& value = Get(key);
-  // Numbers above what std::int64_t holds are read as doubles or unsigned by the parser.
+  // The parser reads numbers beyond std::int64_t as doubles or as unsigned.
   const bool fits = value.is_number_integer() &&
                     !(value.is_number_unsigned() &&
                       value.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<int>::max()});

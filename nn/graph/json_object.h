@@ -9,25 +9,26 @@
 
 namespace orb360::nn {
 
-/// Text from a file as part of a one-line message: quoted, control characters escaped, shortened.
+/// Returns text from a file as part of a one-line message: quoted, with control characters escaped,
+/// shortened.
 std::string Quoted(std::string_view text);
 
-/// Reads an object of JSON that is not trusted. Every failure is a UserError that names the key and
-/// says what should be there. What nobody has asked for is an error too (CheckAllRead).
+/// Reads a JSON object that is not trusted. Every failure throws UserError, which names the key and
+/// says what should be there. Keys that were not read are an error too (CheckAllRead).
 class JsonObject {
  public:
-  /// `value` must outlive this. `name` stands in messages.
+  /// `value` must outlive this object. Messages contain `name`.
   JsonObject(const nlohmann::json& value, std::string name);
 
   bool Has(const char* key) const { return value_.contains(key); }
-  /// Any value; the others read one of the type in their name.
+  /// Returns any value. The other functions return a value of the type in their name.
   const nlohmann::json& Get(const char* key);
-  /// A list of at most `most` things.
+  /// Returns a list of at most `most` elements.
   const nlohmann::json& List(const char* key, std::size_t most);
-  /// A name: 1 to limits::kNameBytes bytes without control characters.
+  /// Returns a name: 1 to limits::kNameBytes bytes without control characters.
   std::string Name(const char* key);
   int Integer(const char* key, int least, int most);
-  /// Finite as a float, too.
+  /// Returns a number that is also finite as a float.
   float Number(const char* key);
 
   void CheckAllRead() const;
@@ -38,7 +39,7 @@ class JsonObject {
   std::set<std::string, std::less<>> read_;
 };
 
-/// A name as JsonObject::Name has it, from any value; `what` stands in the message.
+/// Reads a name as JsonObject::Name does, from any value; the message contains `what`.
 std::string ToName(const nlohmann::json& value, const std::string& what);
 
 }  // namespace orb360::nn

@@ -5,8 +5,8 @@
 
 namespace orb360::nn::limits {
 
-// What a file may ask for (docs/networks.md): far above any network that this library is for, and
-// low enough that no product of them overflows.
+// The limits of a file (docs/formats/network.md). They are far above any network that this library
+// is for, and no product of them overflows.
 constexpr std::size_t kJsonBytes = std::size_t{4} << 20;
 constexpr int kJsonDepth = 32;  // nested objects and arrays; a graph has six
 constexpr std::size_t kNameBytes = 256;
@@ -19,7 +19,7 @@ constexpr int kSizeMultiple = 1 << 12;
 constexpr int kMostHalvings = 12;
 constexpr int kLeastHalvings = -2;
 
-/// Pixels of a picture on each side: the largest that image formats and libraries agree on.
+/// Largest side of an image, pixels: the largest that image formats and libraries agree on.
 constexpr int kPictureSide = 1 << 15;
 
 }  // namespace orb360::nn::limits

@@ -68,7 +68,7 @@ class Lowering {
                                      {}});
   }
 
-  /// The tensor in the format that an input of a node needs; a copy serves several readers.
+  /// Returns the tensor in the format that an input of a node needs. A copy serves several readers.
   int ForInput(int tensor, const PortNeeds& needs, const Format& of_result) {
     const int written = ValueOf(tensor);
     Format format = needs.is_tied ? of_result : FormatOf(value(written));
@@ -108,7 +108,8 @@ class Lowering {
     for (const int tensor : node.inputs) {
       Value& part = value(ValueOf(tensor));
       const int count = part.format.shape.channels;
-      // Its writer then writes into the whole. What is a part of something already is copied.
+      // In this case its writer writes directly into the whole. A tensor that is already a part of
+      // another one is copied.
       if (part.whole < 0 && FormatOf(part) == format &&
           IsViewOfChannels(format, all, first, count)) {
         part.whole = whole;

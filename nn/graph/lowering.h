@@ -11,17 +11,17 @@
 
 namespace orb360::nn {
 
-/// A tensor of the graph in one format, for one size of picture.
+/// A tensor of the graph in one format, for one image size.
 struct Value {
   int tensor = 0;
   TensorFormat format;  // with the halo that its readers need
-  /// The value it is a part of (a member of a concatenation, a slice), and from which channel on;
-  /// -1 for a value with memory of its own.
+  /// Index of the value of which this one is a part (a member of a concatenation, or a slice), and
+  /// the first channel there; -1 for a value with memory of its own.
   int whole = -1;
   int first_channel = 0;
 };
 
-/// One step and the values it works on.
+/// One step and the values that it reads and writes.
 struct Instruction {
   std::string name;  // of the node, or of the tensor that is copied
   Step step;
@@ -30,7 +30,7 @@ struct Instruction {
   std::vector<int> replaceable;  // NodeNeeds::replaceable
 };
 
-/// A graph as what is to be done, before anything has a place.
+/// A graph as a list of instructions, before memory is assigned.
 struct Lowered {
   std::vector<Value> values;
   std::vector<Instruction> instructions;
@@ -39,7 +39,7 @@ struct Lowered {
   std::vector<int> value_of_tensor;  // -1 for a tensor that fusion has left out
 };
 
-/// Chooses formats, and adds copies where a reader needs another format than was written and where
+/// Chooses formats, and adds copies where a reader needs another format than was written, and where
 /// a concatenation or a slice cannot be a view.
 Lowered Lower(const Graph& graph, std::span<const FusedNode> nodes, const Backend& backend,
               int height, int width);

@@ -17,8 +17,8 @@ std::size_t Aligned(std::size_t bytes) {
 
 bool Meet(const Lifetime& a, const Lifetime& b) { return a.first <= b.last && b.first <= a.last; }
 
-/// Places the pieces one after the other, each where it leaves the smallest gap between those that
-/// are needed at the same time, or behind them all.
+/// Places the pieces one after the other, each where it leaves the smallest gap between the pieces
+/// needed at the same time, or behind all of them.
 MemoryPlan PlaceInOrder(std::span<const Lifetime> pieces, std::span<const std::size_t> order) {
   MemoryPlan plan{std::vector<std::size_t>(pieces.size()), 0};
   std::vector<std::size_t> placed;  // by offset
@@ -56,8 +56,8 @@ MemoryPlan PlanMemory(std::span<const Lifetime> pieces) {
     std::ranges::stable_sort(order, std::ranges::greater(), key);
     return PlaceInOrder(pieces, order);
   };
-  // Long-lived pieces fragment the memory unless they lie together, large ones unless they have a
-  // choice of places; which matters more depends on the network.
+  // Long-lived pieces fragment the memory unless they lie together, and large ones need a choice of
+  // places. It depends on the network which matters more, so both orders are tried.
   MemoryPlan large_first = plan_by([&](std::size_t i) { return pieces[i].bytes; });
   MemoryPlan long_first = plan_by([&](std::size_t i) { return pieces[i].last - pieces[i].first; });
   return large_first.bytes < long_first.bytes ? large_first : long_first;

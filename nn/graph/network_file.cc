@@ -22,7 +22,7 @@ namespace {
 
 constexpr SealedKind kKind = {
     "ORB360NN", 1, "network", "weights_tools", "use the weights that belong to it",
-    // All weights that are accepted, as 32-bit floats, and as much again for everything else.
+    // The largest file: all accepted weights as 32-bit floats, and as many bytes for the rest.
     std::uintmax_t{limits::kWeights} * 8};
 
 std::string ReadText(hid_t file, const std::string& name) {
@@ -49,21 +49,22 @@ std::string ReadText(hid_t file, const std::string& name) {
   return text;
 }
 
-/// IEEE 754 binary16, which the HDF5 library has no name for.
+/// Returns the type IEEE 754 binary16, for which the HDF5 library has no constant.
 Hdf5Handle HalfType() {
   Hdf5Handle type(H5Tcopy(H5T_IEEE_F32LE), H5Tclose);
-  // Sign, exponent and mantissa: position and size in bits.
+  // Position and size in bits of sign, exponent and mantissa.
   H5Tset_fields(type.get(), 15, 10, 5, 0, 10);
   H5Tset_size(type.get(), 2);
   H5Tset_ebias(type.get(), 15);
   return type;
 }
 
-/// Exact: every half is a float. Without branches, so that compilers make vectors of it.
+/// Converts a half exactly: every half is a float. The function has no branches, so that compilers
+/// vectorize it.
 float WidenHalf(std::uint16_t half) {
   const std::uint32_t sign = std::uint32_t{half & 0x8000u} << 16;
-  // The bits of a float whose exponent is too small by the difference of both biases, 127 - 15:
-  // the product restores it, for subnormal halves as well.
+  // The exponent of this float is too small by the difference of the biases, 127 - 15. The product
+  // restores it, for subnormal halves too.
   const float value = std::bit_cast<float>(std::uint32_t{half & 0x7fffu} << 13) * 0x1p112f;
   const std::uint32_t special = (half & 0x7c00u) == 0x7c00u ? 0x7f800000u : 0;  // infinity, NaN
   return std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) | special | sign);
@@ -91,7 +92,8 @@ std::vector<int> ReadShape(hid_t set, const std::string& name) {
   return shape;
 }
 
-/// `room`: how many numbers are still accepted. `halves`: memory for one after the other.
+/// Reads a tensor of weights. `room` is the number of values that are still accepted; `halves` is
+/// memory that is reused.
 Weight ReadWeight(hid_t group, const std::string& name, std::int64_t room,
                   std::vector<std::uint16_t>* halves) {
   const Hdf5Handle set = OpenOwnDataset(group, name);
@@ -121,7 +123,7 @@ Weight ReadWeight(hid_t group, const std::string& name, std::int64_t room,
 
 std::vector<Weight> ReadWeights(hid_t file) {
   std::vector<Weight> weights;
-  // A network may have none.
+  // A network may have no weights.
   if (H5Lexists(file, "weights", H5P_DEFAULT) <= 0) return weights;
   const Hdf5Handle group(H5Gopen2(file, "weights", H5P_DEFAULT), H5Gclose);
   if (!group.is_valid()) throw UserError("\"weights\" should be a group");

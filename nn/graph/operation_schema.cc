@@ -14,7 +14,7 @@ namespace {
 template <typename Value>
 using Choice = std::pair<const char*, Value>;
 
-/// The value that stands for the word under `key`.
+/// Returns the value for the word under `key`.
 template <typename Value, std::size_t count>
 Value Choose(JsonObject* attributes, const char* key,
              const std::array<Choice<Value>, count>& choices) {

@@ -8,7 +8,7 @@
 
 namespace orb360::nn {
 
-/// What a node of an operation looks like in a file.
+/// The inputs, outputs, weights and attributes of an operation in a file.
 struct OperationSchema {
   const char* name;
   std::size_t least_inputs;
@@ -18,7 +18,7 @@ struct OperationSchema {
   Operation (*read_attributes)(JsonObject* attributes);
 };
 
-/// Throws UserError for a name that no operation has.
+/// Throws UserError for a name that is not an operation.
 const OperationSchema& SchemaOf(const std::string& operation);
 
 }  // namespace orb360::nn

@@ -95,7 +95,7 @@ class Parser {
     return value.dump(2);
   }
 
-  /// A new tensor; the second writer of a name is refused.
+  /// Adds a tensor. A second writer of a name is refused.
   int AddTensor(Tensor tensor) {
     const auto index = static_cast<int>(graph_.tensors.size());
     if (!tensor_named_.insert({tensor.name, index}).second) {

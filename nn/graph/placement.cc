@@ -9,7 +9,7 @@ namespace {
 
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
-/// A value that is no part of another one, with everything in it.
+/// A value that is not part of another one, with its parts.
 struct Whole {
   int halo = 0;
   Lifetime life{0, std::numeric_limits<int>::max(), -1};
@@ -52,7 +52,7 @@ class Placer {
     }
   }
 
-  /// Steps are counted from 1: inputs are written before (0), outputs are read after the last.
+  /// Steps are counted from 1. Inputs are written at step 0; outputs are read after the last step.
   void FindLifetimes() {
     const auto needed_at = [&](int index, int step) {
       Lifetime& life = WholeOf(index).life;
@@ -101,13 +101,14 @@ class Placer {
     from.halo = to.halo = 0;
     const bool are_alike =
         from.shape == to.shape && from.layout == to.layout && from.type == to.type;
-    // Both whole, one used last and the other first at this step.
+    // Both values must be wholes; the one is last used, and the other first used, at this step.
     if (!are_alike || whole_of_[Index(input)] != input || whole_of_[Index(output)] != output ||
         wholes_[Index(Piece(input))].life.last != step ||
         wholes_[Index(output)].life.first != step || Piece(output) != output) {
       return false;
     }
-    // What else is read must not be overwritten on the way, unless it is read at the same place.
+    // Other inputs must not be overwritten before they are read, unless they are read at the same
+    // position.
     for (std::size_t i = 0; i < instruction.inputs.size(); ++i) {
       const bool is_replaceable = std::ranges::find(instruction.replaceable, static_cast<int>(i)) !=
                                   instruction.replaceable.end();

@@ -8,10 +8,10 @@
 
 namespace orb360::nn {
 
-/// Where the values of a network lie in one block of memory.
+/// Position of the values of a network in one block of memory.
 struct Placement {
-  /// By value: its format with the halo of what it is a part of, where that starts, and the first
-  /// of its channels therein.
+  /// For each value: its format with the halo of the whole of which it is a part, the offset of the
+  /// whole, and the value's first channel in it.
   struct Place {
     TensorFormat whole;
     std::size_t offset = 0;  // bytes
@@ -25,12 +25,12 @@ struct Placement {
   std::size_t separate_bytes = 0;    // if every value and scratch had memory of its own
 };
 
-/// Plans the memory of a lowered graph: parts lie in their wholes, results replace what is read for
-/// the last time where the kernel allows it, the rest is packed by lifetime (memory_plan.h).
-/// `keeps_values`: every value keeps its memory to the end instead.
+/// Plans the memory of a lowered graph. Parts lie in their wholes, results replace inputs that are
+/// read for the last time if the kernel allows it, and the rest is packed by lifetime
+/// (memory_plan.h). With `keeps_values` every value keeps its memory to the end.
 Placement PlaceValues(const Lowered& lowered, bool keeps_values);
 
-/// The value in the block that starts at `memory`.
+/// Returns the value in the block that starts at `memory`.
 TensorView ViewOf(const Placement::Place& place, int channels, std::byte* memory);
 
 }  // namespace orb360::nn

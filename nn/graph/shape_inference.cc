@@ -123,7 +123,7 @@ class Inference {
     return {output, output, Make(1, {.is_single = true})};
   }
   std::vector<Tensor> operator()(const LatitudeSineOp&) const { return {Make(1, input(0).extent)}; }
-  /// Functions of single numbers.
+  /// Element-wise functions of one tensor.
   template <typename Elementwise>
   std::vector<Tensor> operator()(const Elementwise&) const {
     return {Make(input(0).channels, input(0).extent)};
@@ -145,7 +145,8 @@ class Inference {
            ToText(input(i).extent);
   }
 
-  /// True when the tensor's sides are multiples of `divisor` (a power of two) at every size.
+  /// Returns true if the tensor's sides are multiples of `divisor` (a power of two) for every image
+  /// size.
   bool IsMultipleOf(const Extent& extent, int divisor) const {
     if (extent.is_single) return divisor == 1;
     const int halvings = extent.halvings;
@@ -218,7 +219,8 @@ class Inference {
              " and should be " + std::to_string(outputs));
     }
   }
-  /// Negative confidences, or a sum that nothing can be divided by, would give nonsense silently.
+  /// Negative weights of confidences, or a sum by which one cannot divide, would silently give
+  /// meaningless results.
   static void RequireConfidenceWeights(const Weight& weight) {
     const auto per_output = static_cast<std::ptrdiff_t>(weight.values.size()) / weight.shape[0];
     for (auto begin = weight.values.begin(); begin != weight.values.end(); begin += per_output) {

@@ -6,10 +6,10 @@
 
 namespace orb360::nn {
 
-/// Channels and extents of what `node` writes, from what it reads: its inputs in graph.tensors and
-/// its weights in graph.weights, both of the number that the operation takes. Throws UserError with
-/// the reason alone where the operation cannot take them at every size of picture the graph allows,
-/// or where its attributes or the values of its weights make no sense.
+/// Returns channels and extents of the outputs of `node`. Its inputs are in graph.tensors and its
+/// weights in graph.weights, both of the number that the operation takes. Throws UserError with the
+/// reason only, if the operation cannot take them at every image size that the graph allows, or if
+/// its attributes or the values of its weights are invalid.
 std::vector<Tensor> InferOutputs(const Graph& graph, const Node& node);
 
 }  // namespace orb360::nn

@@ -56,7 +56,7 @@ namespace {
 
 constexpr int kBlock = BlockOf(DataType::kFloat);
 
-// The means of one plane, in double precision.
+// Computes the means of one plane in double precision.
 void PlaneMeans(const TensorView& x, int plane, double* mean) {
   const int step = x.layout == Layout::kBlocked ? kBlock : 1;
   for (int v = 0; v < x.shape.height; ++v) {

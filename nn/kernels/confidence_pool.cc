@@ -15,7 +15,7 @@ namespace orb360::nn {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// At most a cache line, so that a vector never reaches over the end of a tensor's row.
+// A vector has at most a cache line, so that it never reaches over the end of a tensor's row.
 using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 

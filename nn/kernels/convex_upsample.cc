@@ -17,11 +17,11 @@ namespace orb360::nn {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// At most a cache line, so that no vector reaches over the end of a row of the inputs.
+// A vector has at most a cache line, so that it never reaches over the end of a row of the inputs.
 using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 
-// The mean of `neighbour` that the nine weights at `weights`, a plane apart, ask for.
+// The mean of `neighbour` with the nine weights at `weights`, which are one plane apart.
 HWY_INLINE V Mix(const float* weights, std::ptrdiff_t plane_stride, const V (&neighbour)[9]) {
   const D d;
   V weight[9];
@@ -38,7 +38,7 @@ HWY_INLINE V Mix(const float* weights, std::ptrdiff_t plane_stride, const V (&ne
   return hn::Div(value, sum);
 }
 
-// Two rows of output from row v of the input.
+// Computes two rows of the output from row v of the input.
 void ConvexRows(const TensorView& x, const TensorView& weights, int v, const TensorView& y) {
   const D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -51,7 +51,7 @@ void ConvexRows(const TensorView& x, const TensorView& weights, int v, const Ten
     for (int i = 0; i < 2; ++i) {
       const V left = Mix(weights.row<float>(18 * i, v) + u, weights.plane_stride, neighbour);
       const V right = Mix(weights.row<float>(18 * i + 9, v) + u, weights.plane_stride, neighbour);
-      // The last two vectors of a row of output may reach over its end.
+      // The last two vectors of a row of the output may reach over its end.
       HWY_ALIGN float both[32];
       hn::StoreInterleaved2(left, right, d, both);
       std::copy_n(both, 2 * std::min(lanes, columns - u), y.row<float>(0, 2 * v + i) + 2 * u);

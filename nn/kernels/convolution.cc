@@ -18,13 +18,14 @@ static_assert(kConvolutionTile == kWinogradTile);
 
 constexpr int kBlock = BlockOf(DataType::kFloat);
 
-// A full block of either: with fewer, most of what is transformed would be what fills it up.
+// Winograd needs a full block of input and of output channels; otherwise mostly padding would be
+// transformed.
 constexpr int kFewestWinogradChannels = kBlock;
 
-// Output rows that are computed in one go, group of channels after group: the input they read
-// stays in half of a second-level cache of 1 MiB meanwhile (the other half is for the weights), and
-// every thread gets several goes, to even out what disturbs them. In bfloat16 fewer: a go reads all
-// weights, which takes as long there as multiplying a row or two.
+// Number of output rows that are computed in one band, group of channels after group. Their input
+// stays in half of a second-level cache of 1 MiB (the other half is for the weights), and every
+// thread gets several bands, which evens out disturbances. In bfloat16 there are fewer bands,
+// because a band reads all weights, which takes as long there as multiplying a row or two.
 int RowsInBand(const ConvolutionSpec& spec, const TensorView& input, int rows, int threads) {
   const std::size_t row_bytes = static_cast<std::size_t>(input.row_stride) * input.planes() *
                                 SizeOf(input.type) * spec.stride;
@@ -58,7 +59,7 @@ AlignedVector<float> PackDirect(const ConvolutionSpec& spec, std::span<const flo
   return packed;
 }
 
-// Gives every thread equally many batches of tiles, or one less.
+// Gives every thread the same number of batches of tiles, or one less.
 void RunByTiles(const WinogradConvolution& run, const DirectConvolution& direct, std::byte* scratch,
                 int threads) {
   const int height = run.output.shape.height;

@@ -11,33 +11,33 @@
 
 namespace orb360::nn {
 
-/// What a convolution is besides its weights.
+/// Parameters of a convolution other than its weights.
 struct ConvolutionSpec {
   int in_channels = 1;
   int out_channels = 1;
   int kernel = 3;  // 1, 3 or 5
   int stride = 1;  // 1 or 2; output (y, x) is centred on input (stride * y, stride * x)
   Padding padding = Padding::kZero;
-  /// Of the activation y = x > 0 ? x : slope * x: 1 for none, 0 for ReLU.
+  /// Slope of the activation y = x > 0 ? x : slope * x: 1 for none, 0 for ReLU.
   float slope = 1;
-  /// kBFloat16 rounds weights and inputs to bfloat16 and adds up floats: for processors that have
+  /// kBFloat16 rounds weights and inputs to bfloat16 and sums in floats. It needs a processor with
   /// a BFloat16Unit.
   DataType type = DataType::kFloat;
   /// Whether 3x3 convolutions of floats with many channels may be computed in tiles of
-  /// kConvolutionTile x kConvolutionTile outputs, by Winograd's method: 2 to 3 times as fast. A
-  /// picture that moves by anything but whole tiles then gives other roundings.
+  /// kConvolutionTile x kConvolutionTile outputs by Winograd's method, which is 2 to 3 times as
+  /// fast. An image that is shifted by a fraction of a tile is then rounded differently.
   bool may_tile = true;
 };
 
 constexpr int kConvolutionTile = 4;
 
-/// The most input channels that may lie in kPlanar: pictures and what a network starts from. The
-/// kernel takes those of one block (16), of which fewer would leave too much empty.
+/// Largest number of input channels in kPlanar layout, for images and other inputs of a network.
+/// With fewer channels than a block (16), too much of a block would be empty.
 constexpr int kMaxPlanarChannels = 12;
 
-/// A dense convolution with its weights packed in the order the kernel reads them, its bias, and
+/// A dense convolution with its weights in the order in which the kernel reads them, its bias, and
 /// what usually follows: y = activation(convolution(x) + bias + residual). NaN and infinity spread
-/// to the outputs whose window holds them, and to no others.
+/// to the outputs whose window contains them, and to no others.
 ///
 /// | type | input | output |
 /// |---|---|---|
@@ -46,31 +46,31 @@ constexpr int kMaxPlanarChannels = 12;
 /// | bfloat16, up to kMaxPlanarChannels | float, planar, and not rounded | bfloat16, blocked |
 class Convolution {
  public:
-  /// `weight` is out_channels x in_channels x kernel x kernel, row by row; `bias` has out_channels
-  /// values or none. `unit` is what a convolution of bfloat16 runs on.
+  /// `weight` is out_channels x in_channels x kernel x kernel, row by row. `bias` has out_channels
+  /// values or none. `unit` is the unit on which a bfloat16 convolution runs.
   Convolution(const ConvolutionSpec& spec, std::span<const float> weight,
               std::span<const float> bias, BFloat16Unit unit = BestBFloat16Unit());
 
   const ConvolutionSpec& spec() const { return spec_; }
   Shape OutputShape(const Shape& input) const;
 
-  /// Bytes of scratch that Run needs.
+  /// Bytes of scratch memory that Run needs.
   std::size_t ScratchBytes(int threads) const;
 
   /// The input's halo must be at least kernel / 2 and is overwritten with the padding. `output`
   /// must not overlap the input. `residual`, if not null, has the output's shape, layout and type
-  /// and may be the output itself; there is none where floats become bfloat16. `scratch`, of
-  /// ScratchBytes(), is aligned to kAlignment. The same bits for any number of threads.
+  /// and may be the output itself; it must be null when floats become bfloat16. `scratch`, of
+  /// ScratchBytes(), is aligned to kAlignment. The bits are the same for any number of threads.
   void Run(const TensorView& input, const TensorView* residual, const TensorView& output,
            std::span<std::byte> scratch, int threads) const;
 
  private:
-  // True where floats in planes become blocks of bfloat16. What a network starts from (positions,
-  // logarithms) has more digits than a bfloat16, so these are multiplied as floats.
+  // True if planar floats become blocks of bfloat16. The inputs of a network (positions,
+  // logarithms) have more digits than a bfloat16, so they are multiplied as floats.
   bool is_bfloat16_stem() const {
     return spec_.type == DataType::kBFloat16 && spec_.in_channels <= kMaxPlanarChannels;
   }
-  // True for what is computed in tiles by Winograd's method.
+  // True if the convolution is computed in tiles by Winograd's method.
   bool is_winograd() const;
   void CheckTensors(const TensorView& input, const TensorView* residual,
                     const TensorView& output) const;

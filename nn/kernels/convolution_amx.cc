@@ -17,11 +17,11 @@
 namespace orb360::nn {
 namespace {
 
-// There are 8 tiles of 16 rows of 64 bytes. 0 to 3 hold sums: 16 pixels x 16 output channels, tile
-// 2 a + b those of inputs 4 + a and weights 6 + b. An input tile is 16 pixels x 32 numbers, a
-// weight tile as many, in pairs, x 16 output channels. A step loads four tiles in 8 cycles each,
-// and multiplies four times in 16 cycles each: 2 x 2 is the smallest shape in which the
-// multiplications hide the loads, and no larger one fits.
+// There are 8 tiles of 16 rows of 64 bytes. Tiles 0 to 3 hold sums: 16 pixels x 16 output channels,
+// where tile 2 a + b has the sums of inputs 4 + a and weights 6 + b. An input tile is 16 pixels x
+// 32 numbers, a weight tile is 32 numbers, in pairs, x 16 output channels. A step loads four tiles
+// in 8 cycles each and multiplies four times in 16 cycles each: 2 x 2 is the smallest shape in
+// which the multiplications hide the loads, and no larger one fits.
 constexpr int kTileRows = 16;
 constexpr int kTilePixels = 2 * kTileRows;
 constexpr int kTileBytes = 1024;
@@ -35,7 +35,7 @@ struct alignas(64) TileConfiguration {
 };
 static_assert(sizeof(TileConfiguration) == 64);
 
-// Shapes all tiles for `pixels` pixels of a row at once, up to kTilePixels.
+// Configures all tiles for `pixels` pixels of a row at once, at most kTilePixels.
 ORB360_AMX void ShapeTiles(int pixels) {
   TileConfiguration tiles;
   for (int tile = 0; tile < 8; ++tile) {
@@ -46,13 +46,13 @@ ORB360_AMX void ShapeTiles(int pixels) {
     const auto rows = static_cast<std::uint8_t>(std::clamp(pixels - a * kTileRows, 1, kTileRows));
     tiles.rows[4 + a] = tiles.rows[2 * a] = tiles.rows[2 * a + 1] = rows;
   }
-  // GCC 12 believes that only the first 8 bytes are read.
+  // GCC 12 assumes that only the first 8 bytes are read.
   asm volatile("" : : "r"(&tiles) : "memory");
   _tile_loadconfig(&tiles);
 }
 
-// The sums of up to 16 (kInputs = 1) or 32 pixels and 16 (kHalves = 1) or 32 output channels. `in`
-// is the first tap of the first pixel.
+// Computes the sums of up to 16 (kInputs = 1) or 32 pixels and 16 (kHalves = 1) or 32 output
+// channels. `in` is the first tap of the first pixel.
 template <int kInputs, int kHalves>
 ORB360_AMX void Multiply(const BFloat16Convolution& run, const std::uint16_t* in,
                          const std::uint16_t* weight, BFloat16Sums* sums) {
@@ -92,7 +92,8 @@ ORB360_AMX void Multiply(const BFloat16Convolution& run, const std::uint16_t* in
   }
 }
 
-// Pixels `from` to `to` - 1 of some rows, `step` at a time, for which the tiles are shaped.
+// Computes pixels `from` to `to` - 1 of some rows, `step` at a time; the tiles are configured for
+// that number.
 ORB360_AMX void RunColumns(const BFloat16Convolution& run, int first, int last, int from, int to,
                            int step) {
   constexpr std::ptrdiff_t kBlock = BlockOf(DataType::kBFloat16);

@@ -27,7 +27,7 @@ ORB360_AVX512_BF16 void Multiply(const BFloat16Convolution& run, int halves,
     for (int v = 0; v < run.kernel; ++v) {
       for (int u = 0; u < run.kernel; ++u) {
         const std::uint16_t* x = in + v * run.input.row_stride + u * kBlock;
-        // A group of one half multiplies by it twice, and the second sums are not used.
+        // A group of one half multiplies by it twice; the second sums are not used.
         const std::uint16_t* second = weight + (halves - 1) * kTile;
         for (int pair = 0; pair < kBlock / 2; ++pair) {
           __m512bh w0, w1;
@@ -58,7 +58,7 @@ ORB360_AVX512_BF16 void Multiply(const BFloat16Convolution& run, int halves,
 using Function = void (*)(const BFloat16Convolution&, int, const std::uint16_t*,
                           const std::uint16_t*, BFloat16Sums*);
 
-// The functions for 1, 2, ... pixels.
+// A table of the functions for 1, 2, ... pixels.
 template <int kStride, int... kIndex>
 const Function* Functions(std::integer_sequence<int, kIndex...>) {
   static constexpr Function kFunctions[] = {&Multiply<kIndex + 1, kStride>...};

@@ -17,9 +17,9 @@ AlignedVector<std::uint16_t> Round(AlignedVector<float>& values) {
   return rounded;
 }
 
-// Pictures are smooth: what a filter adds up to matters more than each of its weights. So each
-// takes over what the rounding of the one before it has left, and errors do not add up where the
-// input is the same all over the window.
+// Images are smooth, so the sum of a filter matters more than each of its weights. Each weight
+// therefore absorbs the rounding remainder of the previous one, and errors do not add up where the
+// input is constant over the window.
 std::vector<float> RoundKeepingSums(std::span<const float> weight, int taps) {
   std::vector<float> rounded(weight.size());
   float left = 0;
@@ -39,8 +39,8 @@ struct Filters {
   int taps;
 };
 
-// Appends the weights of half a group and of `count` input channels, in pairs; zeros for what does
-// not exist.
+// Appends the weights of half a group and of `count` input channels, in pairs, with zeros for
+// channels that do not exist.
 void AppendPairs(const Filters& filters, int first_out, int first_in, int count, int tap,
                  AlignedVector<float>* packed) {
   for (int i = first_in; i < first_in + count; i += 2) {

@@ -8,7 +8,7 @@
 
 namespace orb360::nn {
 
-/// One run of a convolution of bfloat16 numbers, added up as floats.
+/// One run of a convolution of bfloat16 numbers, summed as floats.
 struct BFloat16Convolution {
   int kernel = 1;
   int stride = 1;
@@ -20,25 +20,26 @@ struct BFloat16Convolution {
   TensorView output;                      // kBFloat16 blocks, or kFloat in any layout
 };
 
-/// Output channels that are computed together: a block of bfloat16, or two columns of tiles.
+/// Number of output channels that are computed together: a block of bfloat16, or two columns of
+/// tiles.
 constexpr int kBFloat16Group = BlockOf(DataType::kBFloat16);
 
-/// Half of them: the columns of a tile, the lanes of a vector of floats.
+/// Half of a group: the columns of a tile, the lanes of a vector of floats.
 constexpr int kBFloat16Half = kBFloat16Group / 2;
 
-/// Columns of tiles in group `group`.
+/// Returns the number of columns of tiles in group `group`.
 constexpr int HalvesInGroup(int group, int out_channels) {
   return out_channels - group * kBFloat16Group > kBFloat16Half ? 2 : 1;
 }
 
 /// Rounds the weights, out_channels x in_channels x kernel x kernel, so that every filter keeps the
-/// sum of its weights but for one rounding, and orders them as the units read them: [group][input
+/// sum of its weights up to one rounding, and orders them as the units read them: [group][input
 /// block][kernel row][kernel column][half][pair of input channels] [output channel][channel of the
-/// pair], where the last three are one tile of 1 KiB.
+/// pair], where the last three dimensions are one tile of 1 KiB.
 AlignedVector<std::uint16_t> PackBFloat16(std::span<const float> weight, int out_channels,
                                           int in_channels, int kernel);
 
-/// Compute rows `first` to `last` - 1 of the output with AMX or AVX-512's VDPBF16PS, which the
+/// Computes rows `first` to `last` - 1 of the output with AMX or AVX-512's VDPBF16PS, which the
 /// processor must have.
 void RunAmx(const BFloat16Convolution& run, int first, int last);
 void RunAvx512BFloat16(const BFloat16Convolution& run, int first, int last);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What both bfloat16 units do with their sums. Only for x86-64.
+// The output stage of both bfloat16 units. Only for x86-64.
 
 #include <algorithm>
 #include <cstddef>
@@ -14,10 +14,11 @@
 
 namespace orb360::nn {
 
-/// Sums of up to 32 pixels of a row and a half group: [pixel][output channel].
+/// Sums of up to 32 pixels of a row and half a group: [pixel][output channel].
 using BFloat16Sums = float[2 * 16 * kBFloat16Half];
 
-/// Reads 16 bfloat16 as floats. (Masked, because GCC 12 warns of the other forms' placeholders.)
+/// Reads 16 bfloat16 as floats. (The masked form is used because GCC 12 warns about the
+/// placeholders of the other forms.)
 ORB360_AVX512_BF16 inline __m512 Widen(const std::uint16_t* from) {
   const auto bits = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
   constexpr __mmask16 kAll = 0xffff;
@@ -25,7 +26,8 @@ ORB360_AVX512_BF16 inline __m512 Widen(const std::uint16_t* from) {
       _mm512_maskz_slli_epi32(kAll, _mm512_maskz_cvtepu16_epi32(kAll, bits), 16));
 }
 
-/// Adds bias and residual to the sums of `pixels` pixels from (y, x) on, activates and writes them.
+/// Adds bias and residual to the sums of `pixels` pixels from (y, x) on, applies the activation,
+/// and writes them.
 ORB360_AVX512_BF16 inline void StoreSums(const BFloat16Convolution& run, int group, int y, int x,
                                          int pixels, const BFloat16Sums* sums) {
   const TensorView& out = run.output;
@@ -57,7 +59,7 @@ ORB360_AVX512_BF16 inline void StoreSums(const BFloat16Convolution& run, int gro
       const __m512bh rounded = _mm512_cvtne2ps_pbh(activate(high), activate(low));
       __m512i bits;
       __builtin_memcpy(&bits, &rounded, sizeof(bits));
-      // What fills up the last block is zero, also beside infinity.
+      // Channels that fill up the last block are zero, also if the sums are infinite.
       _mm512_storeu_si512(to, _mm512_maskz_mov_epi16(mask, bits));
     }
     return;
@@ -99,17 +101,17 @@ ORB360_AVX512_BF16 inline void StoreSums(const BFloat16Convolution& run, int gro
   }
 }
 
-/// Stores the sums of every tile one tile late: the vector units then work while the tiles of the
-/// next one multiply, instead of in turn with them.
+/// Stores the sums of every tile one tile later, so that the vector units work while the next tile
+/// multiplies, and not in turn with it.
 class LateStore {
  public:
   explicit LateStore(const BFloat16Convolution& run) : run_(run) {}
   LateStore(const LateStore&) = delete;
   LateStore& operator=(const LateStore&) = delete;
 
-  /// Where the next tile's sums go.
+  /// Memory for the sums of the next tile.
   BFloat16Sums* next() { return sums_[next_]; }
-  /// The sums in next() are those of `pixels` pixels from (y, x) on.
+  /// States that the sums in next() are those of `pixels` pixels from (y, x) on.
   ORB360_AVX512_BF16 void Push(int group, int y, int x, int pixels) {
     Flush();
     waiting_ = {group, y, x, pixels};

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <utility>
 
-// SSSE3 would be SSE4's code again; of the others, see CMakeLists.txt.
+// SSSE3 would compile the code of SSE4 again. CMakeLists.txt explains the other targets.
 #undef HWY_DISABLED_TARGETS
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
@@ -20,7 +20,7 @@ HWY_BEFORE_NAMESPACE();
 namespace orb360::nn {
 namespace HWY_NAMESPACE {
 
-// What the tiles of a row have in common.
+// Data that the tiles of a row have in common.
 struct Row {
   TileSource source;
   float slope;
@@ -32,8 +32,8 @@ struct Row {
   int first_lane;  // of the first channel in its block of the output
 };
 
-// Rounds to bfloat16, to nearest and ties to even; NaN becomes a quiet one, lest rounding carries
-// into its exponent.
+// Rounds to bfloat16, to nearest and ties to even. NaN becomes a quiet NaN, so that rounding does
+// not carry into its exponent.
 HWY_INLINE void StoreRounded(V value, std::uint16_t* to) {
   const hn::RebindToUnsigned<D> du;
   const hn::RebindToSigned<D> di;
@@ -75,7 +75,7 @@ HWY_NOINLINE void StorePlanarTile(const Row& row, const float* sums, int vectors
   int whole_channels = 0;
   int whole_pixels = 0;
 #if HWY_TARGET != HWY_SCALAR
-  // Squares of 4 channels x 4 pixels are turned in registers.
+  // Squares of 4 channels x 4 pixels are transposed in registers.
   const hn::Full128<float> d;
   const hn::Full128<double> d_pair;
   const auto slope = hn::Set(d, row.slope);
@@ -112,8 +112,8 @@ HWY_NOINLINE void StorePlanarTile(const Row& row, const float* sums, int vectors
   }
 }
 
-// Writes a tile to blocks of floats, with what follows the convolution. `residual` is null if there
-// is none.
+// Writes a tile to blocks of floats after bias, residual and activation. `residual` is null if
+// there is none.
 template <int kVectors, int kPixels>
 HWY_INLINE void StoreTile(const Row& row, const V (&sum)[kVectors][kPixels], const float* residual,
                           float* out) {
@@ -123,8 +123,8 @@ HWY_INLINE void StoreTile(const Row& row, const V (&sum)[kVectors][kPixels], con
   for (int v = 0; v < kVectors; ++v) {
     const int channel = v * kLanes;
     const ptrdiff_t lane = channel % kBlock;
-    // What fills up the last block is zero whatever the input is: zero weights would not be
-    // enough beside infinity.
+    // Channels that fill up the last block are zero for any input; zero weights would not be
+    // sufficient for an infinite input.
     const auto exists = hn::FirstN(d, std::max(0, row.out_channels - channel));
     HWY_UNROLL(14)
     for (int p = 0; p < kPixels; ++p) {
@@ -163,7 +163,7 @@ void ComputeTile(const Row& row, const float* in, const float* residual, void* o
 
 using TileFunction = void (*)(const Row&, const float*, const float*, void*);
 
-// The functions for tiles of 1, 2, ... pixels.
+// A table of the functions for tiles of 1, 2, ... pixels.
 template <int kBlocks, int kInStep, int... kIndex>
 const TileFunction* TileFunctions(std::integer_sequence<int, kIndex...>) {
   static constexpr TileFunction kFunctions[] = {&ComputeTile<kBlocks, kIndex + 1, kInStep>...};
@@ -219,8 +219,8 @@ void RunDirectPart(const DirectConvolution& run, const Rectangle& part) {
                   output.layout,
                   output.type,
                   first_channel % out_block};
-    // Tiles of equal width, give or take a pixel: a remainder of few pixels would have too few
-    // sums on their way.
+    // Tiles have equal width up to one pixel. A remainder of few pixels would have too few sums in
+    // flight.
     const int width = part.right - part.left;
     const int max_pixels = MaxPixels(blocks);
     const int tiles = (width + max_pixels - 1) / max_pixels;
@@ -259,7 +259,8 @@ std::vector<int> DirectGroups(int out_channels) {
   int left = (out_channels + BlockOf(DataType::kFloat) - 1) / BlockOf(DataType::kFloat);
   if (HWY_DYNAMIC_DISPATCH(PreferredBlocks)() == 1) return std::vector<int>(left, 1);
   std::vector<int> groups;
-  // Pairs, and one of three if the number is odd: a block alone would read every input for itself.
+  // Groups are pairs, and one of three if the number is odd, because a single block would load
+  // every input for itself.
   for (; left > 0; left -= groups.back()) groups.push_back(left == 3 ? 3 : std::min(left, 2));
   return groups;
 }

@@ -24,14 +24,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr int kBlock = BlockOf(DataType::kFloat);
 
-// A vector holds a block of output channels, or the whole fraction of one that fits a register.
+// A vector holds a block of output channels, or the largest fraction of one that fits a register.
 using D = hn::CappedTag<float, kBlock>;
 using V = hn::Vec<D>;
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
 constexpr int kVectorsPerBlock = kBlock / kLanes;
 
-// The tile that stays in registers: all output channels of a group at a few pixels of a row. A
-// step takes one input channel of one tap: it loads the tile's weights, broadcasts each pixel's
+// The tile that stays in registers covers all output channels of a group at a few pixels of a row.
+// A step handles one input channel of one tap: it loads the tile's weights, broadcasts each pixel's
 // input, and adds their products.
 //
 // - The units finish 2 FMAs a cycle with a latency of 4 cycles (Intel since Skylake, AMD since Zen;
@@ -40,11 +40,11 @@ constexpr int kVectorsPerBlock = kBlock / kLanes;
 //   and keeps up if b + p <= b * p.
 // - All sums, the b weights and one input fit the registers.
 //
-// AVX-512, 32 registers: 2 x 14 takes 31 of them, loads 16 times in 14 cycles and needs 128 bytes
-// of weights in that time, which the second-level cache delivers; 3 x 9 does the same for an odd
-// number of blocks. A single block loads as often as it multiplies, with 14 pixels or with 28.
-// AVX2, 16 registers: 2 x 6 takes 15. SSE4, without FMA, needs one more for the product: 4 x 2
-// takes 8 + 4 + 2. NEON, 32 registers: 4 x 6 takes 29.
+// AVX-512 has 32 registers: 2 x 14 takes 31 of them, loads 16 times in 14 cycles and needs 128
+// bytes of weights in that time, which the second-level cache delivers; 3 x 9 does the same for an
+// odd number of blocks. A single block loads as often as it multiplies, with 14 pixels or with 28.
+// AVX2 has 16 registers: 2 x 6 takes 15. SSE4, without FMA, needs one more for the product: 4 x 2
+// takes 8 + 4 + 2. NEON has 32 registers: 4 x 6 takes 29.
 #if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
 constexpr int kMaxBlocks = 3;
 constexpr int MaxPixels(int blocks) { return blocks == 3 ? 9 : 14; }
@@ -56,7 +56,7 @@ constexpr int kMaxBlocks = 1;
 constexpr int MaxPixels(int /*blocks*/) { return 2; }
 #endif
 
-// What is convolved. In the planes of its input stand blocks of channels (kBlocked) or single ones.
+// The input of a convolution. Its planes contain blocks of channels (kBlocked) or single ones.
 struct TileSource {
   int kernel;
   int in_channels;
@@ -83,12 +83,13 @@ HWY_INLINE void MultiplyAdd(const float* HWY_RESTRICT x, const float* HWY_RESTRI
   }
 }
 
-// The sums of kPixels pixels; `in` is the first tap of the first of them. `kInStep` is the distance
-// of two pixels' inputs: the stride, in blocks if the input is blocked.
+// Computes the sums of kPixels pixels; `in` is the first tap of the first one. `kInStep` is the
+// distance between the inputs of two pixels: the stride, in blocks if the input is blocked.
 template <int kVectors, int kPixels, int kInStep>
 HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVectors][kPixels]) {
   constexpr bool kIsPlanar = kInStep < kBlock;
-  // Input channels a turn: counting and branching take the FMAs' ports as well. Planes are few.
+  // Input channels per iteration; counting and branching use the FMAs' ports too. Planar inputs
+  // have few channels.
   constexpr int kTurn = kIsPlanar ? 1 : 4;
   const D d;
   HWY_UNROLL(16)
@@ -105,7 +106,7 @@ HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVec
       for (int u = 0; u < source.kernel; ++u) {
         const float* HWY_RESTRICT x = in + v * source.in_row + u * (kIsPlanar ? 1 : kBlock);
         if (!kIsPlanar && source.is_far && u == source.kernel - 1) {
-          // The last column of taps is the first to meet new pixels: those of the next tile.
+          // The last column of taps is the first to use new pixels, those of the next tile.
           HWY_UNROLL(14)
           for (int p = 0; p < kPixels; ++p) hwy::Prefetch(x + (kPixels + p) * kInStep);
         }
@@ -114,7 +115,7 @@ HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVec
           HWY_UNROLL(4)
           for (int i = 0; i < kTurn; ++i) {
             MultiplyAdd<kInStep>(x + i * channel_step, weight + i * kVectors * kLanes, sum);
-            // Keeps the compiler from loading ahead: there is no register to spare.
+            // This keeps the compiler from loading ahead, because no register is free.
             std::atomic_signal_fence(std::memory_order_acq_rel);
           }
           x += kTurn * channel_step;

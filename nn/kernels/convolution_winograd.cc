@@ -25,14 +25,14 @@ constexpr int kIn = kOut + 3 - 1;  // inputs of a tile in a row
 constexpr int kProducts = kIn * kIn;
 constexpr int kMaxGroup = 3;  // blocks of output channels
 
-// Polynomials of degree 5 are evaluated at 0, a, -a, b, -b and infinity, where a = 1/sqrt(2) and
-// b = sqrt(2): a b = 1 keeps the numbers small, and the error is several times smaller than with
+// Polynomials of degree 5 are evaluated at 0, a, -a, b, -b and infinity, where a = 1/sqrt(2) and b
+// = sqrt(2). Since a b = 1 the numbers stay small, and the error is several times smaller than with
 // the usual 1 and 2.
 constexpr double kA = 0.70710678118654752440;
 constexpr double kB = 2 * kA;
 
-// Elements from one product's numbers to the next: one block more than there are, because powers of
-// two would all fall on the same few lines of the cache.
+// Elements between the numbers of one product and the next: one block more than there are, because
+// powers of two would all map to the same few lines of the cache.
 constexpr std::ptrdiff_t ProductStride(int blocks, int tiles) {
   return (std::ptrdiff_t{blocks} * tiles + 1) * BlockOf(DataType::kFloat);
 }
@@ -45,8 +45,8 @@ HWY_BEFORE_NAMESPACE();
 namespace orb360::nn {
 namespace HWY_NAMESPACE {
 
-// Six inputs, `step` apart: every coefficient is that of the product of (x - q) over the other
-// points q.
+// Transforms six inputs, `step` apart. Every coefficient is that of the product of (x - q) over the
+// other points q.
 template <int kStep>
 HWY_INLINE void TransformInput(const V* in, V* out) {
   const D d;
@@ -69,7 +69,7 @@ HWY_INLINE void TransformInput(const V* in, V* out) {
   out[5 * kStep] = hn::NegMulAdd(five_halves, x3, hn::Add(x1, x5));
 }
 
-// Six sums of products, `step` apart, to four outputs: output i adds up point^i.
+// Transforms six sums of products, `step` apart, to four outputs: output i sums point^i.
 template <int kInStep, int kOutStep>
 HWY_INLINE void TransformOutput(const V* in, V* out) {
   const D d;
@@ -92,14 +92,14 @@ struct Tile {
   int x;
 };
 
-// Transforms the inputs of one tile to `out`, where the 36 results of a block lie `stride` apart.
-// False if the inputs, or the results, are not all finite.
+// Transforms the inputs of one tile to `out`, where the 36 results of a block are `stride` apart.
+// Returns false if the inputs, or the results, are not all finite.
 bool TransformTile(const TensorView& input, Tile tile, float* out, ptrdiff_t block_stride,
                    ptrdiff_t stride) {
   const D d;
   const int top = tile.y * kOut - 1;
   const int left = tile.x * kOut - 1;
-  // Inputs that exist, counting one pixel of padding.
+  // Number of inputs that exist, including one pixel of padding.
   const int rows = std::min(kIn, input.shape.height + 1 - top);
   const int columns = std::min(kIn, input.shape.width + 1 - left);
   HWY_ALIGN float edge[kProducts * kBlock];
@@ -108,7 +108,7 @@ bool TransformTile(const TensorView& input, Tile tile, float* out, ptrdiff_t blo
     const float* in = input.row<float>(block, top) + ptrdiff_t{left} * kBlock;
     ptrdiff_t row_stride = input.row_stride;
     if (rows < kIn || columns < kIn) {
-      // What lies beyond matters only to outputs that do not exist; zeros keep it from being NaN.
+      // Inputs beyond affect only outputs that do not exist; zeros keep them from being NaN.
       std::fill(std::begin(edge), std::end(edge), 0.0f);
       for (int v = 0; v < rows; ++v) {
         std::copy_n(in + v * row_stride, columns * kBlock, edge + v * kIn * kBlock);
@@ -136,7 +136,8 @@ bool TransformTile(const TensorView& input, Tile tile, float* out, ptrdiff_t blo
         TransformInput<1>(x + v * kIn, row);
         HWY_UNROLL(6)
         for (int u = 0; u < kIn; ++u) hn::Store(row[u], d, out + (v * kIn + u) * stride + lane);
-        // The results at 0 and infinity hold every input: the even ones and the odd ones.
+        // The results at 0 and at infinity depend on every input: on the even ones and on the odd
+        // ones.
         if (v == 0 || v == kIn - 1) {
           zero_if_finite = hn::MulAdd(hn::Add(row[0], row[kIn - 1]), hn::Zero(d), zero_if_finite);
         }
@@ -146,7 +147,7 @@ bool TransformTile(const TensorView& input, Tile tile, float* out, ptrdiff_t blo
   return hn::AllTrue(d, hn::Eq(zero_if_finite, hn::Zero(d)));
 }
 
-// The sums over input channels of one product of kCount tiles.
+// Computes the sums over input channels of one product for kCount tiles.
 template <int kBlocks, int kCount>
 void Multiply(const TileSource& source, const float* in, float* out, ptrdiff_t out_plane) {
   constexpr int kVectors = kBlocks * kVectorsPerBlock;
@@ -163,7 +164,7 @@ void Multiply(const TileSource& source, const float* in, float* out, ptrdiff_t o
 
 using MultiplyFunction = void (*)(const TileSource&, const float*, float*, ptrdiff_t);
 
-// The functions for 1, 2, ... tiles.
+// A table of the functions for 1, 2, ... tiles.
 template <int kBlocks, int... kIndex>
 const MultiplyFunction* MultiplyFunctions(std::integer_sequence<int, kIndex...>) {
   static constexpr MultiplyFunction kFunctions[] = {&Multiply<kBlocks, kIndex + 1>...};
@@ -223,7 +224,7 @@ void StoreBlock(const WinogradConvolution& run, Tile tile, int block, const floa
           if (run.residual.data != nullptr) {
             value = hn::Add(value, hn::LoadU(d, run.residual.row<float>(block, y + v) + at));
           }
-          // What fills up the last block is zero, also beside infinity.
+          // Channels that fill up the last block are zero, also if the sums are infinite.
           hn::StoreU(hn::IfThenElseZero(exists, Activate(value, slope)), d,
                      output.row<float>(block, y + v) + at);
           continue;
@@ -300,7 +301,7 @@ HWY_EXPORT(RunWinogradTiles);
 AlignedVector<float> PackWinograd(std::span<const float> weight, int out_channels, int in_channels,
                                   const std::vector<int>& groups) {
   constexpr int kBlock = BlockOf(DataType::kFloat);
-  // Points to the powers 0, 1, 2, over the product of their differences from the other points.
+  // Powers 0, 1, 2 of the points, over the product of their differences from the other points.
   const double transform[kIn][3] = {{1, 0, 0},
                                     {-1 / 1.5, -kA / 1.5, -0.5 / 1.5},
                                     {-1 / 1.5, kA / 1.5, -0.5 / 1.5},
@@ -314,7 +315,8 @@ AlignedVector<float> PackWinograd(std::span<const float> weight, int out_channel
   float* group = packed.data();
   for (const int blocks : groups) {
     const int width = blocks * kBlock;
-    // Of one input channel: gathered first, since rows of the whole lie too far apart for a cache.
+    // The products of one input channel. They are gathered first, because rows of the whole array
+    // are too far apart for a cache.
     std::vector<float> products(static_cast<std::size_t>(kProducts) * width);
     for (int i = 0; i < in_channels; ++i) {
       for (int o = 0; o < width && blocks_before * kBlock + o < out_channels; ++o) {

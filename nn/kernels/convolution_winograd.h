@@ -10,10 +10,10 @@
 
 namespace orb360::nn {
 
-/// One run of a 3x3 convolution of stride 1 by Winograd's minimal filtering F(4x4, 3x3): every tile
-/// of 4x4 outputs takes 36 products for each pair of channels instead of 144. Input tiles of 6x6,
-/// filters and outputs are transformed there and back (Lavin and Gray, "Fast Algorithms for
-/// Convolutional Neural Networks", 2016).
+/// One run of a 3x3 convolution of stride 1 by Winograd's minimal filtering F(4x4, 3x3). Every tile
+/// of 4x4 outputs takes 36 products for each pair of channels in place of 144. Input tiles of 6x6,
+/// filters and outputs are transformed (Lavin and Gray, "Fast Algorithms for Convolutional Neural
+/// Networks", 2016).
 struct WinogradConvolution {
   float slope = 1;
   const std::vector<int>* groups = nullptr;  // as for the direct kernel
@@ -24,26 +24,27 @@ struct WinogradConvolution {
   TensorView output;                         // floats
 };
 
-/// Transforms the filters, out_channels x in_channels x 3 x 3:
-/// [group][product of 36][input channel][output channel].
+/// Transforms the filters, out_channels x in_channels x 3 x 3, to [group][product of 36][input
+/// channel][output channel].
 AlignedVector<float> PackWinograd(std::span<const float> weight, int out_channels, int in_channels,
                                   const std::vector<int>& groups);
 
-/// Outputs of a tile in a row.
+/// Number of outputs of a tile in a row.
 constexpr int kWinogradTile = 4;
 
-/// Tiles that cover the output; they are counted row by row.
+/// Returns the number of tiles that cover the output; they are counted row by row.
 int CountWinogradTiles(const Shape& output);
 
-/// The most tiles that RunWinograd takes at once: two register tiles of 14, and at most 32.
+/// Largest number of tiles that RunWinograd takes at once: two register tiles of 14; it may be at
+/// most 32.
 constexpr int kMaxWinogradTiles = 28;
 
-/// Bytes that RunWinograd needs for its work.
+/// Bytes of scratch memory that RunWinograd needs.
 std::size_t WinogradScratchBytes(int in_channels);
 
-/// Computes tiles `first` to `last` - 1. `scratch` is aligned to kAlignment. Leaves out the tiles
-/// whose input has NaN or infinity, which would spread over all of the tile: bit i of the result
-/// is set if tile first + i is one of those.
+/// Computes tiles `first` to `last` - 1. `scratch` is aligned to kAlignment. Tiles whose input
+/// contains NaN or infinity, which would spread over the whole tile, are not computed: bit i of the
+/// result is set if tile first + i is one of them.
 std::uint32_t RunWinograd(const WinogradConvolution& run, int first, int last, std::byte* scratch);
 
 }  // namespace orb360::nn

@@ -12,12 +12,12 @@ namespace {
 float Converted(float value, const float*) { return value; }
 BFloat16 Converted(float value, const BFloat16*) { return ToBFloat16(value); }
 
-// Channels of a pixel that lie next to each other.
+// Returns the number of channels of a pixel that are adjacent.
 int StepOf(const TensorView& tensor) {
   return tensor.layout == Layout::kBlocked ? BlockOf(tensor.type) : 1;
 }
 
-// What the copied channels of one row have in common.
+// Data that the copied channels of one row have in common.
 struct Row {
   int y;
   int from_first;
@@ -25,7 +25,7 @@ struct Row {
   int count;
 };
 
-// One by one: any layouts, any types.
+// Copies channel by channel, for any layouts and types.
 template <typename From, typename To>
 void CopySingly(const TensorView& from, const TensorView& to, const Row& row) {
   const int from_step = StepOf(from);
@@ -46,8 +46,8 @@ void CopySingly(const TensorView& from, const TensorView& to, const Row& row) {
   }
 }
 
-// Whole blocks of the other type: a block of bfloat16 holds the channels of two blocks of floats,
-// of which the second may not exist.
+// Copies whole blocks between types. A block of bfloat16 holds the channels of two blocks of
+// floats, of which the second may not exist.
 void RoundBlocks(const TensorView& from, const TensorView& to, const Row& row) {
   constexpr int kFloats = BlockOf(DataType::kFloat);
   constexpr int kHalves = BlockOf(DataType::kBFloat16);
@@ -81,7 +81,7 @@ void WidenBlocks(const TensorView& from, const TensorView& to, const Row& row) {
   }
 }
 
-// Whole planes of the same kind.
+// Copies whole planes of the same layout and type.
 void CopyPlanes(const TensorView& from, const TensorView& to, const Row& row) {
   const int step = StepOf(to);
   const std::size_t pixel = static_cast<std::size_t>(step) * SizeOf(to.type);
@@ -98,13 +98,13 @@ void CopyPlanes(const TensorView& from, const TensorView& to, const Row& row) {
 
 using CopyRow = void (*)(const TensorView&, const TensorView&, const Row&);
 
-/// The fastest way for these channels.
+/// Returns the fastest function for these channels.
 CopyRow Choose(const TensorView& from, int from_first, const TensorView& to, int to_first,
                int count) {
   const bool from_float = from.type == DataType::kFloat;
   const bool to_float = to.type == DataType::kFloat;
   const int step = std::max(StepOf(from), StepOf(to));
-  // A last block that is not full has zeros behind, which `to` needs there, too.
+  // A last block that is not full ends with zeros, which `to` needs there too.
   const bool ends_whole = count % step == 0 || (from_first + count == from.shape.channels &&
                                                 to_first + count == to.shape.channels);
   const bool are_whole =

@@ -46,7 +46,8 @@ void Dense::Run(const TensorView& x, const TensorView& y) const {
       const float value = *Element(x, i);
       for (int o = 0; o < kBlock; ++o) sum[o] += w[o] * value;
     }
-    // In a blocked tensor the whole block is written, so that what fills it up is zero.
+    // In a blocked tensor the whole block is written, so that the channels that fill it up are
+    // zero.
     const int count =
         y.layout == Layout::kBlocked || first + kBlock <= outputs_ ? kBlock : outputs_ - first;
     for (int o = 0; o < count; ++o) *Element(y, first + o) = sum[o];

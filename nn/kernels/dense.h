@@ -13,7 +13,7 @@ class Dense {
   /// `weight` is [output][input].
   Dense(std::span<const float> weight, std::span<const float> bias, int outputs, int inputs);
 
-  /// Floats; x and y may have different layouts. Too small a matter for several threads.
+  /// Floats; x and y may have different layouts. The layer is too small for several threads.
   void Run(const TensorView& x, const TensorView& y) const;
 
  private:

@@ -18,7 +18,7 @@ namespace orb360::nn {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// At most a block of channels, or what a planar row is aligned to.
+// A vector has at most a block of channels, to which a planar row is aligned too.
 using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 
@@ -27,7 +27,7 @@ void ForEach(const TensorView& a, const TensorView& b, const TensorView& y, int 
              const Function& function) {
   constexpr int kBlock = BlockOf(DataType::kFloat);
   const bool is_blocked = y.layout == Layout::kBlocked;
-  // In whole blocks: pixels of a blocked row, cache lines of a planar one.
+  // The loop runs over whole blocks: pixels of a blocked row, cache lines of a planar one.
   const int blocks = is_blocked ? y.shape.width : (y.shape.width + kBlock - 1) / kBlock;
   const int rows = y.shape.height;
   const int planes = y.planes();
@@ -90,7 +90,7 @@ void Clamp(const TensorView& x, float minimum, float maximum, const TensorView& 
   ForEach(x, y, threads, [&](V value) HWY_ATTR {
     const V low = hn::Set(D(), minimum);
     const V high = hn::Set(D(), maximum);
-    // Not Min and Max, which lose NaN on some instruction sets.
+    // Min and Max are not used because they lose NaN on some instruction sets.
     value = hn::IfThenElse(hn::Lt(value, low), low, value);
     return hn::IfThenElse(hn::Gt(value, high), high, value);
   });

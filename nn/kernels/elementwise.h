@@ -4,10 +4,10 @@
 
 namespace orb360::nn {
 
-// Functions of one element, or of two at the same place. Floats; inputs and output have the same
-// shape and layout, planar or blocked, and may be the same tensor. What stands behind a row of the
-// output up to the next multiple of kAlignment is overwritten, so halos are filled afterwards; the
-// channels that fill up the last block stay zero. NaN stays NaN in every one of them.
+// Functions of one element, or of two elements at the same position. Floats; inputs and output have
+// the same shape and layout, planar or blocked, and may be the same tensor. Memory behind a row of
+// the output is overwritten up to the next multiple of kAlignment, so halos must be filled
+// afterwards. The channels that fill up the last block stay zero. NaN stays NaN in all of them.
 
 /// x, or 0 where x < 0.
 void Relu(const TensorView& x, const TensorView& y, int threads);
@@ -19,9 +19,9 @@ void Sigmoid(const TensorView& x, const TensorView& y, int threads);
 /// ln(1 + e^x).
 void Softplus(const TensorView& x, const TensorView& y, int threads);
 void Exp(const TensorView& x, const TensorView& y, int threads);
-/// Natural; -infinity at 0, NaN below.
+/// ln x: -infinity at 0, NaN below.
 void Log(const TensorView& x, const TensorView& y, int threads);
-/// minimum <= maximum.
+/// x limited to [minimum, maximum]; requires minimum <= maximum.
 void Clamp(const TensorView& x, float minimum, float maximum, const TensorView& y, int threads);
 /// scale * x + offset.
 void Affine(const TensorView& x, float scale, float offset, const TensorView& y, int threads);

@@ -1,4 +1,4 @@
-// Per-target include guard: foreach_target includes this once for each instruction set.
+// Per-target include guard: foreach_target includes this file once for each instruction set.
 #if defined(ORB360_NN_KERNELS_EVEN_ODD_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORB360_NN_KERNELS_EVEN_ODD_INL_H_
 #undef ORB360_NN_KERNELS_EVEN_ODD_INL_H_
@@ -13,8 +13,8 @@ namespace orb360::nn {
 namespace HWY_NAMESPACE {
 
 /// Loads columns 2u, 2u + 2, … and 2u + 1, 2u + 3, … of a planar row of `columns` floats, where u
-/// is a multiple of the lanes, of which there are at most a cache line. What lies behind the row's
-/// last cache line is not touched; lanes for columns behind the last one are undefined.
+/// is a multiple of the number of lanes, which is at most a cache line. Memory behind the row's
+/// last cache line is not read; lanes for columns behind the last one are undefined.
 template <class D, class V>
 HWY_INLINE void LoadEvenOdd(D d, const float* row, int u, int columns, V& even, V& odd) {
   namespace hn = hwy::HWY_NAMESPACE;

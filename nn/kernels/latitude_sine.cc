@@ -12,7 +12,7 @@ void LatitudeSine(const TensorView& y) {
   ORB360_CHECK(y.type == DataType::kFloat && y.shape.channels == 1);
   const int step = y.layout == Layout::kBlocked ? BlockOf(y.type) : 1;
   for (int v = 0; v < y.shape.height; ++v) {
-    // The cosine of the angle from the north pole.
+    // This is the cosine of the angle from the north pole.
     const auto sine = static_cast<float>(std::cos(std::numbers::pi * (v + 0.5) / y.shape.height));
     float* row = y.row<float>(0, v);
     if (step == 1) {

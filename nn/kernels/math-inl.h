@@ -1,4 +1,4 @@
-// Per-target include guard: foreach_target includes this once for each instruction set.
+// Per-target include guard: foreach_target includes this file once for each instruction set.
 #if defined(ORB360_NN_KERNELS_MATH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORB360_NN_KERNELS_MATH_INL_H_
 #undef ORB360_NN_KERNELS_MATH_INL_H_
@@ -10,9 +10,9 @@
 
 #include <hwy/contrib/math/math-inl.h>
 
-// Highway's functions of vectors of floats, made total: NaN stays NaN, and what lies beyond the
-// range they are documented for goes to its limit. Errors are in units in the last place of results
-// that are normal numbers, half a unit of rounding left out.
+// Highway's functions of vectors of floats, extended to all inputs: NaN stays NaN, and inputs
+// beyond the documented range give the limit. Errors are in units in the last place of normal
+// results, without the half unit of rounding.
 HWY_BEFORE_NAMESPACE();
 namespace orb360::nn {
 namespace HWY_NAMESPACE {
@@ -27,7 +27,7 @@ HWY_INLINE V UnlessNan(V x, F y) {
 template <class D, class V>
 HWY_INLINE V TotalExp(D d, V x) {
   namespace hn = hwy::HWY_NAMESPACE;
-  // Highway's is right up to 104, which is infinity already.
+  // Highway's function is correct up to 104, where the result is already infinite.
   return UnlessNan(x, hn::Exp(d, hn::Min(x, hn::Set(d, 104.0f))));
 }
 

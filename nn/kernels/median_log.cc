@@ -20,11 +20,11 @@ namespace orb360::nn {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// At most a cache line, so that a vector never reaches over the end of a tensor's row.
+// A vector has at most a cache line, so that it never reaches over the end of a tensor's row.
 using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 
-// Depth and confidence of points, 0 elsewhere.
+// Copies depth and confidence of points, and writes 0 elsewhere.
 void SelectPoints(const float* depth, const float* confidence, int columns, float* x, float* c) {
   const D d;
   const V zero = hn::Zero(d);
@@ -33,7 +33,7 @@ void SelectPoints(const float* depth, const float* confidence, int columns, floa
   for (int u = 0; u < columns; u += static_cast<int>(hn::Lanes(d))) {
     const V v_depth = hn::LoadU(d, depth + u);
     const V v_confidence = hn::LoadU(d, confidence + u);
-    // Comparisons with NaN do not hold.
+    // Comparisons with NaN are false.
     const auto is_point = hn::And(hn::And(hn::Gt(v_depth, zero), hn::Le(v_depth, largest)),
                                   hn::Gt(v_confidence, zero));
     hn::StoreU(hn::IfThenElseZero(is_point, v_depth), d, x + u);
@@ -55,18 +55,19 @@ HWY_INLINE void ForEachPoint(const float* x, int columns, const Visit& visit) {
   }
 }
 
-// Counts the points of a row whose bits above `shift + bits` are `prefix` by the `bits` below.
+// Counts the points of a row whose bits above `shift + bits` are `prefix`, by the value of the
+// `bits` below.
 void CountDigits(const float* x, int columns, std::uint32_t prefix, int shift, int bits,
                  std::int64_t* count) {
   const std::uint32_t mask = (1u << bits) - 1;
   ForEachPoint(x, columns, [&](int u) {
     const auto value = std::bit_cast<std::uint32_t>(x[u]);
-    // In 64 bits, as there is nothing above the first digit.
+    // The shift is in 64 bits, because the first digit has no bits above it.
     if (std::uint64_t{value} >> (shift + bits) == prefix) ++count[(value >> shift) & mask];
   });
 }
 
-// In double precision, where no ratio of floats overflows.
+// Takes the logarithm in double precision, where no ratio of floats overflows.
 void TakeLog(float* x, int columns, float median) {
   ForEachPoint(x, columns, [&](int u) {
     x[u] = static_cast<float>(std::log(static_cast<double>(x[u]) / median));
@@ -86,9 +87,9 @@ HWY_EXPORT(TakeLog);
 
 namespace {
 
-// The lower median of what is positive in `values`, or 1 if nothing is. Positive floats are ordered
-// as their bits are, so three counting passes, over 11, 11 and 10 bits from the top, find it
-// exactly without copying the points.
+// Returns the lower median of the positive numbers in `values`, or 1 if there are none. Positive
+// floats are ordered as their bits are, so three counting passes, over 11, 11 and 10 bits from the
+// top, find it exactly without copying the points.
 float LowerMedian(const TensorView& values) {
   std::uint32_t prefix = 0;  // what is known of the median's bits
   std::int64_t rank = 0;     // of the median among the values with this prefix

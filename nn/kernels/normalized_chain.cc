@@ -16,8 +16,8 @@ constexpr int kBand = 16;  // rows that are worth a thread
 
 int RoundUp(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
 
-// The rows that one layer reads, as products and confidences with their padding: the latest few of
-// the picture, and all rows beyond its top and bottom edge.
+// The rows that one layer reads, as products and confidences with their padding: the latest few
+// rows of the image, and all rows beyond its top and bottom edge.
 class RowWindow {
  public:
   RowWindow(const NormalizedConvolution& layer, int height, int width, float* memory)
@@ -32,17 +32,17 @@ class RowWindow {
     return (Rows(layer) + 2 * layer.reach()) * SlotFloats(layer, width);
   }
 
-  /// Where row y of the picture is to be written.
+  /// Memory to which row y of the image must be written.
   NormalizedRow Writable(int y) const { return Slot(y % rows()); }
 
-  /// To be called when row y has been written: adds its padding, and the rows beyond the poles that
-  /// continue it.
+  /// Must be called when row y has been written. Adds its padding, and the rows beyond the poles
+  /// that continue it.
   void Finish(int y) const {
     const NormalizedRow row = Writable(y);
     Wrap(row);
     if (layer_.padding() != Padding::kWrapCrossPole) return;
     for (int i = 0; i < layer_.reach(); ++i) {
-      // A picture lower than the padding is left at the other pole again.
+      // In an image lower than the padding, rows continue beyond the other pole.
       const int beyond = i % (2 * height_);
       const int from_pole = beyond < height_ ? beyond : 2 * height_ - 1 - beyond;
       const int shift = beyond < height_ ? width_ / 2 : 0;
@@ -51,7 +51,7 @@ class RowWindow {
     }
   }
 
-  /// Row y, which may lie up to reach() rows beyond the edge.
+  /// Returns row y, which may lie up to reach() rows beyond the edge.
   NormalizedRow Readable(int y) const {
     if (y >= 0 && y < height_) return Writable(y);
     if (layer_.padding() == Padding::kWrapReplicate) return Writable(y < 0 ? 0 : height_ - 1);
@@ -59,8 +59,8 @@ class RowWindow {
   }
 
  private:
-  // What the windows of the rows computed at once cover; and as the rows that were written at once
-  // need not end where the windows end, some more may be there already.
+  // Number of rows that the windows of the rows computed at once cover. As rows that are written at
+  // once need not end where the windows end, some further rows may exist already.
   static int Rows(const NormalizedConvolution& layer) {
     return layer.size() + 2 * (kNormalizedRows - 1);
   }
@@ -81,7 +81,7 @@ class RowWindow {
     return Slot(y < 0 ? rows() - 1 - y : rows() + layer_.reach() + y - height_);
   }
 
-  // Calls edit(row) for every channel of products and of confidences.
+  // Calls edit(row) for every channel of the products and of the confidences.
   template <typename Edit>
   void ForEachChannel(const NormalizedRow& row, const Edit& edit) const {
     for (int i = 0; i < layer_.inputs(); ++i) {
@@ -93,14 +93,14 @@ class RowWindow {
     ForEachChannel(row, [&](float* values) {
       const bool is_zero = layer_.padding() == Padding::kZero;
       for (int i = 0; i < layer_.reach(); ++i) {
-        // A picture narrower than the padding goes around more than once.
+        // An image narrower than the padding is repeated.
         values[-1 - i] = is_zero ? 0 : values[width_ - 1 - i % width_];
         values[width_ + i] = is_zero ? 0 : values[i % width_];
       }
     });
   }
   void CopyTurned(const NormalizedRow& from, int shift, const NormalizedRow& to) const {
-    // Products and confidences lie alike in every slot.
+    // Products and confidences have the same layout in every slot.
     ForEachChannel(from, [&](const float* values) {
       float* turned = to.x + (values - from.x);
       std::copy(values + shift, values + width_, turned);
@@ -115,8 +115,8 @@ class RowWindow {
   float* memory_;
 };
 
-// Rows first <= y < last of a chain's output, computed on one thread: every row of every layer when
-// the layer after it needs it.
+// Computes rows first <= y < last of a chain's output on one thread: each row of each layer is
+// computed when the next layer needs it.
 class Band {
  public:
   Band(std::span<const NormalizedConvolution> layers, std::span<const NormalizedInput> inputs,
@@ -144,7 +144,7 @@ class Band {
       }
       Compute(layers_.size() - 1, y, rows, out);
       if (pooled_ == nullptr) continue;
-      // The pairs of rows that these complete.
+      // The pairs of rows that are complete now.
       for (int v = y / 2; 2 * v + 1 < y + rows; ++v) {
         ConfidencePoolRow(output_.x, output_.c, pooled_->tensor.x, pooled_->tensor.c, pooled_->rule,
                           v);
@@ -153,7 +153,7 @@ class Band {
   }
 
  private:
-  // Rows y to y + rows - 1 that layer s gives.
+  // Computes rows y to y + rows - 1 of layer s.
   void Compute(std::size_t s, int y, int rows, const NormalizedRow* out) {
     const NormalizedConvolution& layer = layers_[s];
     const auto [channels, height, width] = output_.x.shape;
@@ -166,7 +166,7 @@ class Band {
     NormalizedRows(layer, in, rows, width, out, s + 1 < layers_.size());
   }
 
-  // The next row that layer s reads, or the next few.
+  // Computes the next row, or the next few rows, that layer s reads.
   void Append(std::size_t s) {
     const RowWindow& window = *windows_[s];
     const int y = next_[s];
@@ -261,7 +261,7 @@ void NormalizedChain::Run(std::span<const NormalizedInput> inputs, const Confide
   const int bands = std::clamp(height / kBand, 1, threads);
 #pragma omp parallel for num_threads(bands) schedule(static)
   for (int i = 0; i < bands; ++i) {
-    // At even rows, so that a pair that is pooled is written by one thread.
+    // Bands begin at even rows, so that a pair of rows that is pooled is written by one thread.
     const int first = height / 2 * i / bands * 2;
     const int last = i + 1 < bands ? height / 2 * (i + 1) / bands * 2 : height;
     Band(layers_, inputs, output, pooled, first, last, memory + i * band_floats).Run(first, last);

@@ -16,36 +16,36 @@ struct ConfidentTensor {
   TensorView c;
 };
 
-/// What a chain reads. `doubled`: every pixel stands for 2 x 2, as after UpsampleNearest.
+/// An input of a chain. With `doubled` every pixel stands for 2 x 2, as after UpsampleNearest.
 struct NormalizedInput {
   ConfidentTensor tensor;
   bool doubled = false;
 };
 
-/// What ConfidencePool makes of a chain's output, wanted beside it.
+/// The result of ConfidencePool on a chain's output, which is written too.
 struct PooledOutput {
   ConfidentTensor tensor;
   ConfidenceRule rule;
 };
 
-/// Normalized convolutions one after the other, each reading what the one before it gives. Only the
-/// last result is written: the rows in between stay in the cache, which is what makes a chain
-/// faster than its links. The values are those of the single convolutions bit for bit.
+/// A sequence of normalized convolutions, each of which reads the result of the previous one. Only
+/// the last result is written; rows in between stay in the cache, which makes a chain faster than
+/// its links. The values are those of the single convolutions bit for bit.
 class NormalizedChain {
  public:
   static constexpr std::size_t kMaxLayers = 8;
 
-  /// A chain of one is a convolution by itself.
+  /// A chain of one layer is a single convolution.
   explicit NormalizedChain(std::vector<NormalizedConvolution> layers);
 
-  /// Bytes of scratch for pictures of this width.
+  /// Bytes of scratch memory for images of this width.
   std::size_t ScratchBytes(int width, int threads) const;
 
-  /// Runs on the concatenation of `inputs`, in their order. The output has the height and width of
-  /// the inputs, or twice those of inputs that are doubled, and must not be one of them. No halo is
-  /// read, and rows of the output may be overwritten up to the next multiple of kAlignment.
-  /// `scratch`, of ScratchBytes(), is aligned to kAlignment. The same bits for any number of
-  /// threads. `pooled`, if not null, is written as well, from rows that are still in the cache.
+  /// Runs on the concatenation of `inputs` in their order. The output has the height and width of
+  /// the inputs, or twice those of doubled inputs, and must not be one of them. No halo is read,
+  /// and rows of the output may be overwritten up to the next multiple of kAlignment. `scratch`, of
+  /// ScratchBytes(), is aligned to kAlignment. The bits are the same for any number of threads.
+  /// `pooled`, if not null, is written too, from rows that are still in the cache.
   void Run(std::span<const NormalizedInput> inputs, const ConfidentTensor& output,
            std::span<std::byte> scratch, int threads, const PooledOutput* pooled = nullptr) const;
 

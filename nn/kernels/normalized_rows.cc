@@ -15,11 +15,11 @@ namespace orb360::nn {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// At most a cache line, so that a vector never reaches over the end of a tensor's row.
+// A vector has at most a cache line, so that it never reaches over the end of a tensor's row.
 using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 
-// y or y * c', and c', of one vector of columns.
+// Computes y or y * c', and c', for one vector of columns.
 HWY_INLINE void Finish(const NormalizedConvolution& layer, int o, V n, V d_sum, int u,
                        const NormalizedRow& out, bool as_products) {
   const D d;
@@ -29,7 +29,7 @@ HWY_INLINE void Finish(const NormalizedConvolution& layer, int o, V n, V d_sum, 
   hn::StoreU(c, d, out.c + o * out.c_stride + u);
 }
 
-// Vectors of a tile; SSE and AVX2 have 16 registers, the others 32.
+// Vectors in a tile. SSE and AVX2 have 16 registers, the others 32.
 constexpr int kVectors =
     HWY_TARGET == HWY_SSSE3 || HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_AVX2 ? 1 : 2;
 
@@ -45,10 +45,10 @@ HWY_INLINE void ForEach(const Function& function) {
 // A register tile of kRows rows of kVectors vectors and all outputs. A tap of one input costs two
 // loads for each vector, most of them across two cache lines, and a broadcast weight for each row
 // and output. On AVX-512, with three rows, two vectors and two outputs, these are 4 + 6 loads for
-// 24 multiply-adds: 7 cycles at two loads a cycle (twice that for those across lines), hidden
-// behind 12 of arithmetic; 24 sums, 4 values and a weight fit 32 registers and cover the latency of
-// 4 cycles at two multiply-adds in each. With one row the loads would take as long as the
-// arithmetic.
+// 24 multiply-adds: 7 cycles at two loads per cycle (twice that for those across lines), hidden
+// behind 12 cycles of arithmetic. 24 sums, 4 values and a weight fit 32 registers and cover the
+// latency of 4 cycles at two multiply-adds per cycle. With one row the loads would take as long as
+// the arithmetic.
 template <int kSize, int kInputs, int kOutputs, int kRows>
 HWY_INLINE void Tile(const NormalizedConvolution& layer, const NormalizedRow* in, int u,
                      int vectors, const NormalizedRow* out, bool as_products) {
@@ -74,8 +74,8 @@ HWY_INLINE void Tile(const NormalizedConvolution& layer, const NormalizedRow* in
           p[v] = hn::LoadU(d, products + tap + v * lanes);
           c[v] = hn::LoadU(d, confidences + tap + v * lanes);
         }
-        // Else GCC folds every load into each of the multiply-adds that use it, which then wait for
-        // loads across cache lines.
+        // Otherwise GCC folds every load into each of the multiply-adds that use it, which then
+        // wait for loads across cache lines.
         std::atomic_signal_fence(std::memory_order_acq_rel);
         for (int y = first; y <= last; ++y) {
           for (int o = 0; o < kOutputs; ++o) {
@@ -121,7 +121,7 @@ void FixedRows(const NormalizedConvolution& layer, const NormalizedRow* in, int 
   }
 }
 
-// Any number of channels and any size; the sums are added up in the order of Tile.
+// Computes rows for any number of channels and any size; sums have the order of Tile.
 void AnyRows(const NormalizedConvolution& layer, const NormalizedRow* in, int rows, int width,
              const NormalizedRow* out, bool as_products) {
   const D d;
@@ -150,8 +150,8 @@ void AnyRows(const NormalizedConvolution& layer, const NormalizedRow* in, int ro
   }
 }
 
-// The layers of the published unguided network and of the one with seven levels have sizes known to
-// the compiler.
+// The sizes of the layers of the published unguided network and of the one with seven levels are
+// known at compile time.
 void NormalizedRows(const NormalizedConvolution& layer, const NormalizedRow* in, int rows,
                     int width, const NormalizedRow* out, bool as_products) {
   const auto is = [&](int size, int inputs, int outputs) {

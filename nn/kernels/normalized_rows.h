@@ -8,7 +8,8 @@ namespace orb360::nn {
 
 // The arithmetic of NormalizedChain on single rows.
 
-/// Floats that rows of NormalizedRow hold in front of column 0 and at least behind the last one.
+/// Number of floats in rows of NormalizedRow before column 0, and at least as many behind the last
+/// one.
 constexpr int kNormalizedRowMargin = 16;
 
 /// NormalizedRows reads whole tiles of this many columns.
@@ -23,20 +24,20 @@ struct NormalizedRow {
   std::ptrdiff_t c_stride = 0;
 };
 
-/// Rows of output that are computed at once.
+/// Number of output rows that are computed at once.
 constexpr int kNormalizedRows = 3;
 
-/// Computes `rows` rows of output, up to kNormalizedRows. `in` are the size() + rows - 1 rows that
-/// their windows cover, from the top. There x is the product of value and
-/// confidence, both with reach() columns of padding at either side.
+/// Computes `rows` rows of output, at most kNormalizedRows. `in` contains the size() + rows - 1
+/// rows that their windows cover, from the top. There x is the product of value and confidence;
+/// both have reach() columns of padding on either side.
 ///
-/// If `as_products`, x of the output is the product as well. Rows of output may be overwritten up
+/// With `as_products`, x of the output is the product too. Rows of the output may be overwritten up
 /// to the next multiple of kAlignment.
 void NormalizedRows(const NormalizedConvolution& layer, const NormalizedRow* in, int rows,
                     int width, const NormalizedRow* out, bool as_products);
 
 /// Forms a row of one channel as NormalizedRows reads it, without its padding, from `width` values
-/// and confidences, or if `doubled` from half as many, each standing for two columns.
+/// and confidences, or, if `doubled`, from half as many, each of which stands for two columns.
 void MultiplyRow(const float* x, const float* c, int width, bool doubled, float* product,
                  float* confidence);
 

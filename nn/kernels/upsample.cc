@@ -18,8 +18,8 @@ using BlockedD = hn::CappedTag<float, kBlock>;
 // Half a cache line becomes a whole one, so that no vector reaches over the end of a tensor's row.
 using PlanarD = hn::CappedTag<float, kBlock / 2>;
 
-// Writes the two pixels that each of `count` pixels becomes: left(u) and right(u) give them, as
-// vectors of columns in a planar row, as parts of the channels of one pixel in a blocked one.
+// Writes the two pixels for each of `count` pixels. left(u) and right(u) return them: as vectors of
+// columns in a planar row, or as parts of the channels of one pixel in a blocked one.
 template <class Left, class Right>
 HWY_INLINE void DoublePlanar(int count, float* to, const Left& left, const Right& right) {
   const PlanarD d;
@@ -54,7 +54,8 @@ void NearestRow(const float* from, bool is_blocked, int count, float* to) {
   DoubleRow(is_blocked, count, to, same, same);
 }
 
-// `near` is the row that the result lies in, `far` the one it is a quarter of a pixel off towards.
+// `near` is the input row that contains the result's row; `far` is the row from which it is a
+// quarter of a pixel away.
 void BilinearRow(const float* near, const float* far, bool is_blocked, int count, float* to) {
   const int step = is_blocked ? kBlock : 1;
   const auto mix = [](auto d, auto a, auto b) HWY_ATTR {
@@ -113,7 +114,7 @@ void UpsampleBilinear(const TensorView& x, const TensorView& y, Padding padding,
   for (int line = 0; line < planes * rows; ++line) {
     const int plane = line / rows;
     const int v = line % rows;
-    // An even row lies a quarter of a pixel before its input row, an odd one behind it.
+    // An even row lies a quarter of a pixel before its input row, an odd one a quarter behind it.
     const float* far = x.row<float>(plane, v % 2 == 0 ? v / 2 - 1 : v / 2 + 1);
     bilinear_row(x.row<float>(plane, v / 2), far, is_blocked, x.shape.width,
                  y.row<float>(plane, v));

@@ -4,17 +4,17 @@
 
 namespace orb360::nn {
 
-/// Twice the size: every pixel becomes a 2 x 2 square. Floats, both of the same layout, planar or
-/// blocked; no halo is read, and rows of a planar output may be overwritten up to the next multiple
+/// Doubles the size: every pixel becomes a 2 x 2 square. Floats, both of the same layout, planar or
+/// blocked. No halo is read, and rows of a planar output may be overwritten up to the next multiple
 /// of kAlignment.
 void UpsampleNearest(const TensorView& x, const TensorView& y, int threads);
 
-/// Pixels of halo that the input of UpsampleBilinear needs; what stands there is overwritten.
+/// Pixels of halo that the input of UpsampleBilinear needs; its content is overwritten.
 constexpr int kUpsampleBilinearHalo = 1;
 
-/// Twice the size: output pixel u samples the input, linearly in both directions, at
-/// (u + 0.5) / 2 - 0.5, with `padding` beyond the edge. Floats, both of the same layout, planar or
-/// blocked; rows of a planar output may be overwritten as above.
+/// Doubles the size: output pixel u samples the input, linearly in both directions, at (u + 0.5) /
+/// 2 - 0.5, with `padding` beyond the edge. Floats, both of the same layout, planar or blocked;
+/// rows of a planar output may be overwritten as above.
 void UpsampleBilinear(const TensorView& x, const TensorView& y, Padding padding, int threads);
 
 }  // namespace orb360::nn

@@ -16,7 +16,7 @@ std::size_t PixelsOf(PictureSize size) {
   return static_cast<std::size_t>(size.height) * static_cast<std::size_t>(size.width);
 }
 
-/// The nearest size that the network takes, of at least one multiple.
+/// Returns the nearest size that the network takes, at least one multiple in each direction.
 PictureSize NearestMultiple(PictureSize size, int multiple) {
   const auto nearest = [multiple](int side) {
     return std::max((side + multiple / 2) / multiple, 1) * multiple;
@@ -30,7 +30,8 @@ PictureSize NearestMultiple(PictureSize size, int multiple) {
                   "\" of its normalisation should be " + expected);
 }
 
-/// Of the pictures that the network expects: `width` of its normalisation, which may be absent.
+/// Returns the width of the images that the network expects: `width` of its normalisation, which
+/// may be absent.
 std::optional<int> ExpectedWidth(const Graph& graph) {
   const nlohmann::json normalisation = nlohmann::json::parse(graph.normalisation);
   if (!normalisation.contains("width")) return {};
@@ -42,8 +43,8 @@ std::optional<int> ExpectedWidth(const Graph& graph) {
   return width.get<int>();
 }
 
-/// The confidence of a network whose own tells no error: from `log_error` of its normalisation,
-/// which may be absent.
+/// Returns the confidence for a network whose own confidence states no error: from `log_error` of
+/// its normalisation, which may be absent.
 std::optional<float> ConstantConfidence(const Graph& graph) {
   const nlohmann::json normalisation = nlohmann::json::parse(graph.normalisation);
   if (!normalisation.contains("log_error")) return {};
@@ -54,7 +55,7 @@ std::optional<float> ConstantConfidence(const Graph& graph) {
   return 1 / (1 + error.get<float>());
 }
 
-/// What the network is to see of pictures of that size.
+/// Returns the size at which the network runs for images of that size.
 PictureSize NetworkSize(const Graph& graph, PictureSize size) {
   ORB360_CHECK(size.height > 0 && size.width > 0, size.height, size.width);
   if (const std::optional<int> width = ExpectedWidth(graph)) {
@@ -64,7 +65,7 @@ PictureSize NetworkSize(const Graph& graph, PictureSize size) {
   return NearestMultiple(size, graph.size_multiple);
 }
 
-/// Finds inputs and outputs by name, and refuses what they should not be.
+/// Finds inputs and outputs by name and refuses those of a wrong kind.
 struct PortFinder {
   const Graph& graph;
 

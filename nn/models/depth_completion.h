@@ -11,35 +11,34 @@
 
 namespace orb360::nn {
 
-/// A panorama and what is known of its depth. All of the size that the DepthCompletion is for, row
-/// by row.
+/// A panorama with sparse depth. All arrays have the size of the DepthCompletion, row by row.
 struct SparsePicture {
   std::span<const std::uint8_t> rgb;  // three bytes a pixel
   /// Range along each pixel's ray in any unit, and its confidence in (0, 1]. Pixels whose range is
-  /// not finite and positive, or whose confidence is not positive, are no points.
+  /// not finite and positive, or whose confidence is not positive, are not points.
   std::span<const float> depth;
   std::span<const float> confidence;
 };
 
 struct DensePicture {
   std::vector<float> depth;  // in the unit of the points; 0 where the network gives none
-  /// 1 / confidence - 1 is the relative error to be expected of the depth.
+  /// 1 / confidence - 1 is the expected relative error of the depth.
   std::vector<float> confidence;
-  /// Probability of each pixel that it shows the plane of the road under the camera, where the
-  /// network tells it; otherwise empty.
+  /// Probability of each pixel that it shows the plane of the road under the camera; empty if the
+  /// network does not give it.
   std::vector<float> ground;
-  /// ln of (`scale` in metres / height of the camera in metres), where the network tells it.
+  /// ln(`scale` in metres / height of the camera in metres), if the network gives it.
   std::optional<float> log_metric_scale;
-  /// What that refers to: a range in the unit of the points.
+  /// The range to which log_metric_scale refers, in the unit of the points.
   float scale = 1;
 };
 
-/// Depth completion by a network with the inputs and outputs that docs/networks.md lists, for
-/// panoramas of one size. Never changes: several threads may use it at once, each with a workspace
-/// of its own.
+/// Depth completion by a network with the inputs and outputs of docs/formats/network.md, for
+/// panoramas of one size. It never changes, so several threads may use it at once, each with a
+/// workspace of its own.
 class DepthCompletion {
  public:
-  /// The memory of one completion at a time.
+  /// Memory of one completion. A workspace serves one completion at a time.
   class Workspace {
    public:
     explicit Workspace(const DepthCompletion& model);
@@ -51,12 +50,12 @@ class DepthCompletion {
     std::vector<std::vector<float>> outputs_;
   };
 
-  /// Throws UserError for a network that is for something else. Pictures are resampled to the width
-  /// that the network's normalisation asks for, if it does, and to the nearest size that it takes.
+  /// Throws UserError for a network that is not for depth completion. Images are resampled to the
+  /// width that the network's normalisation states, if any, and to the nearest size that it takes.
   DepthCompletion(const Graph& graph, PictureSize size, const ExecutorOptions& options = {});
 
   PictureSize size() const { return size_; }
-  /// What the network sees.
+  /// Size of the images at which the network runs.
   PictureSize network_size() const { return network_size_; }
 
   DensePicture Complete(const SparsePicture& picture, Workspace* workspace) const;

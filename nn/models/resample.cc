@@ -14,7 +14,8 @@ std::size_t PixelsOf(PictureSize size) {
   return static_cast<std::size_t>(size.height) * static_cast<std::size_t>(size.width);
 }
 
-/// Between which two samples of `count` a position lies, and how far from the first.
+/// The two samples, among `count`, between which a position lies, and its distance from the first
+/// one.
 struct Between {
   int first;
   int second;
@@ -88,7 +89,7 @@ void ResamplePoints(std::span<const float> depth, std::span<const float> confide
                to_depth.size(), to_confidence.size());
   std::ranges::fill(to_depth, 0.0f);
   std::ranges::fill(to_confidence, 0.0f);
-  // The pixel that holds the centre of pixel i: floor((i + 1/2) * to / from), in whole numbers.
+  // The pixel that contains the centre of pixel i: floor((i + 1/2) * to / from), in integers.
   const auto moved = [](int i, int from_count, int to_count) {
     return static_cast<std::size_t>((2 * std::int64_t{i} + 1) * to_count / (2 * from_count));
   };

@@ -13,18 +13,18 @@
 namespace orb360 {
 namespace {
 
-/// Distances at which keyframes are compared, as shares of the median range: from pixels that see
-/// nearly the same to where half of what one sees is hidden from the other.
+/// Distances at which keyframes are compared, as fractions of the median range: from views that see
+/// nearly the same pixels to views from which half of the scene is hidden.
 constexpr double kDistances[] = {0.125, 0.25, 0.5, 1.0, 2.0};
 
-/// A view with what is needed of its picture.
+/// A view with the data that a comparison needs.
 struct LoadedView {
   DepthView depth;
   double median_range;  // world units
   cv::Mat color;        // CV_8UC3
 };
 
-/// Views that were used last.
+/// The views that were used most recently.
 class ViewCache {
  public:
   ViewCache(std::span<const DenseView> views, const DepthLoader& load,
@@ -66,7 +66,7 @@ class ViewCache {
   std::int64_t now_ = 0;
 };
 
-/// A view and those that it is compared with.
+/// A view and its source views.
 struct Comparison {
   std::shared_ptr<const LoadedView> view;
   std::vector<std::shared_ptr<const LoadedView>> others;
@@ -91,7 +91,7 @@ double ChooseVoxelSize(std::span<const DenseView> views, const DepthLoader& load
 
 double MedianRange(const cv::Mat& range) {
   ORB360_CHECK(range.type() == CV_32FC1, range.type());
-  // Of each row as many pixels as its solid angle is worth.
+  // The number of pixels taken from a row is proportional to its solid angle.
   std::vector<float> ranges;
   for (int row = 0; row < range.rows; ++row) {
     const double latitude = std::numbers::pi * (0.5 - (row + 0.5) / range.rows);
@@ -124,7 +124,7 @@ std::vector<size_t> ChooseNeighbours(std::span<const DenseView> views, size_t vi
     }
   }
   std::vector<size_t> chosen;
-  // The middle first: where fewer are wanted, it is the best.
+  // The middle one comes first, because it is the best where fewer are wanted.
   for (const int at : {2, 3, 1, 4, 0}) {
     for (std::vector<Candidate>& side : sides) {
       if (side.empty() || static_cast<int>(chosen.size()) >= max_neighbours) continue;
@@ -173,9 +173,9 @@ DenseCloudStatistics FuseCloud(std::span<const DenseView> views, const DepthLoad
     grid.Add(samples, static_cast<int>(index));
     if (grid.num_voxels() > options.max_voxels) sink(grid.TakeOldest());
   };
-  // Files are read for the next view, and the points of the last one collected, beside the
-  // comparison of this one: each of the three goes through the views in their order.
-  // Declared last: where one of the functions throws, they wait for threads that use all of the
+  // While one view is compared, the files of the next one are read and the points of the previous
+  // one are collected. Each of the three steps handles the views in their order. These variables
+  // are declared last, so that if a function throws they wait for threads that use all of the
   // above.
   std::future<Comparison> next;
   std::future<void> collecting;

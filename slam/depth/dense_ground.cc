@@ -12,13 +12,13 @@ namespace orb360 {
 namespace {
 
 constexpr int kMaxPoints = 2000;  // of the plane; more only take time
-// Roads bend up and down: within two heights of the camera the ground is one plane, rad.
+// Roads bend up and down. Within two heights of the camera the ground is treated as one plane; rad.
 constexpr GroundPlaneOptions kNear{.min_below = 0.5};
 
-// Of the pixels below the horizon, about equally many for each solid angle.
+// Returns points of pixels below the horizon, about equally many per solid angle.
 std::vector<Eigen::Vector3d> GroundPoints(const DenseDepth& depth, double min_probability) {
   const EquirectangularCamera camera(depth.range.cols, depth.range.rows);
-  // Pixels of a step from row to row and, on the equator, from column to column.
+  // Step in pixels from row to row and, on the equator, from column to column.
   const double lower_half = 0.5 * depth.range.rows * depth.range.cols;
   const int step = std::max(1, static_cast<int>(std::sqrt(lower_half / kMaxPoints)));
   std::vector<Eigen::Vector3d> points;
@@ -35,7 +35,7 @@ std::vector<Eigen::Vector3d> GroundPoints(const DenseDepth& depth, double min_pr
   return points;
 }
 
-// The value that half of the weight lies below.
+// Returns the weighted median.
 template <typename Value>
 double WeightedMedian(std::span<const DenseGround> grounds, const Value& value) {
   std::vector<DenseGround> sorted(grounds.begin(), grounds.end());
@@ -69,7 +69,7 @@ std::optional<DenseGround> FindGround(const DenseDepth& depth, const Eigen::Vect
     const double distance = plane->normal.dot(points[static_cast<size_t>(i)]) / plane->height + 1;
     square += distance * distance;
   }
-  // Neighbouring pixels are wrong together: their spread does not shrink with their number.
+  // Errors of neighbouring pixels are correlated, so the spread does not shrink with their number.
   const double spread = square / static_cast<double>(plane->points.size());
   return DenseGround{plane->normal, log_height,
                      std::sqrt(options.height_sigma * options.height_sigma + spread)};
@@ -86,8 +86,8 @@ std::optional<DenseGround> FuseGrounds(std::span<const DenseGround> grounds) {
     certainty += 1 / (ground.sigma * ground.sigma);
     up += ground.up;
   }
-  // Of a normal distribution, from the median deviation to the standard deviation, and from there
-  // to that of the median of so many.
+  // Factors, for a normal distribution, from the median deviation to the standard deviation, and
+  // from that to the standard deviation of the median of so many values.
   constexpr double kDeviationToSigma = 1.4826;
   constexpr double kMeanToMedian = 1.2533;
   const double of_spread = kDeviationToSigma * kMeanToMedian * deviation /

@@ -12,24 +12,27 @@
 namespace orb360 {
 
 struct DepthCompleterOptions {
-  /// Of the pictures that are completed; each shows a full sphere.
+  /// Size of the images that are completed; each shows a full sphere.
   cv::Size size{1024, 512};
   int threads = 1;
-  /// Convolutions in bfloat16: faster, less exact. UserError where the processor cannot.
+  /// Computes convolutions in bfloat16, which is faster and less exact. Throws UserError if the
+  /// processor does not support it.
   bool bfloat16 = false;
 };
 
-/// Depth completion of keyframes by a network (paper III-C). One thread at a time.
+/// Depth completion of keyframes by a network (paper III-C). Not thread-safe.
 class DepthCompleter {
  public:
-  /// `weights`: a network file. Throws UserError where it cannot be read or is for something else.
+  /// `weights` is a network file. Throws UserError if it cannot be read or is not a network for
+  /// depth completion.
   DepthCompleter(const std::filesystem::path& weights, const DepthCompleterOptions& options);
   ~DepthCompleter();
 
-  /// Of the pictures that are completed: what ProjectLandmarks and Complete work with.
+  /// The camera of the images that are completed; ProjectLandmarks and Complete use it.
   const EquirectangularCamera& camera() const { return camera_; }
 
-  /// `color`: CV_8UC3, BGR, of the camera's size, like `sparse`; the result is in its unit.
+  /// Completes a keyframe. `color` is CV_8UC3, BGR, of the camera's size, as are the images of
+  /// `sparse`. The result is in the unit of `sparse`.
   DenseDepth Complete(const cv::Mat& color, const SparseDepth& sparse);
 
  private:

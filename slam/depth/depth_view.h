@@ -12,13 +12,13 @@
 
 namespace orb360 {
 
-/// Dense depth of a keyframe in the world, ready for comparison with others. A pixel without a
+/// Dense depth of a keyframe in the world, prepared for comparison with others. A pixel without a
 /// range or without confidence is unknown.
 class DepthView {
  public:
-  /// `scale`: world units in one unit of the ranges. `min_error`: the least error of ln(range) to
-  /// be expected of a pixel, however confident the network is; positive. Contract: images of an
-  /// even width, 8 x 4 or more.
+  /// `scale` is the number of world units per unit of the ranges. `min_error` (positive) is the
+  /// least expected error of ln(range) of a pixel, however confident the network is. Contract:
+  /// images have an even width and at least 8 x 4 pixels.
   DepthView(const DenseDepth& depth, const Rigid3& world_from_camera, double scale,
             double min_error);
 
@@ -27,12 +27,12 @@ class DepthView {
   const Rigid3& world_from_camera() const { return world_from_camera_; }
   float min_error() const { return min_error_; }
 
-  /// World units; 0 where unknown.
+  /// Range in world units; 0 where unknown.
   float range(int row, int column) const {
     const float inverse = inverse_ranges_[IndexOf(row, column)];
     return inverse > 0 ? 1.0f / inverse : 0.0f;
   }
-  /// Of ln(range), to be expected.
+  /// Expected error of ln(range).
   float error(int row, int column) const {
     const size_t index = IndexOf(row, column);
     return errors_[levels_[index / 4] >> (8 * (index % 4)) & 255];
@@ -45,9 +45,9 @@ class DepthView {
     return {-latitude.x() * longitude.x(), latitude.x() * longitude.y(), latitude.y()};
   }
 
-  /// Row by row: 1 / range, nearly linear between pixels that see one plane; 0 where unknown.
+  /// 1 / range, row by row, which is nearly linear between pixels of one plane; 0 where unknown.
   std::span<const float> inverse_ranges() const { return inverse_ranges_; }
-  /// Row by row: confidence times 255, four pixels a word, the first in its lowest byte.
+  /// Confidence times 255, row by row, four pixels per word, the first one in the lowest byte.
   std::span<const std::uint32_t> confidence_levels() const { return levels_; }
 
  private:
@@ -66,7 +66,7 @@ class DepthView {
   std::vector<Eigen::Vector2f> latitudes_;   // of each row's latitude
 };
 
-/// Columns between neighbours in a row that are as far apart as rows are at the equator.
+/// Number of columns between neighbours in a row that are as far apart as rows are at the equator.
 int ColumnStep(double cosine_of_latitude);
 
 }  // namespace orb360

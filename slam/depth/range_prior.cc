@@ -10,12 +10,13 @@
 namespace orb360 {
 namespace {
 
-// Largest ratio of the ranges of a pixel and those around it on one surface: in pictures 1024 wide
-// a road reaches it 18 heights of the camera away.
+// Largest ratio between the range of a pixel and those around it on one surface. In images 1024
+// pixels wide a road reaches it at a distance of 18 heights of the camera.
 constexpr float kEdgeRatio = 1.25F;
-// Of ln(range): what knows no more than that narrows nothing down.
+// Largest useful error of ln(range). A less certain range does not restrict the search.
 constexpr double kLargestError = 0.5;
-// Pictures of one place err alike, which the confidence of one does not tell.
+// Least standard deviation. The errors of images of one place are correlated, which the confidence
+// of a single one does not state.
 constexpr double kLeastSigma = 0.05;
 
 RangePrior PriorAt(const DenseDepth& depth, int row, int column) {
@@ -31,7 +32,7 @@ RangePrior PriorAt(const DenseDepth& depth, int row, int column) {
   const double confidence = depth.confidence.at<float>(row, column);
   const double error = 1 / std::max(confidence, 1e-6) - 1;
   if (!(nearest > 0) || farthest > kEdgeRatio * nearest || error > kLargestError) return {};
-  // Of Laplace's distribution, whose mean absolute error the confidence stands for.
+  // The confidence states the mean absolute error; the factor is that of Laplace's distribution.
   const double sigma = std::max(std::numbers::sqrt2 * error, kLeastSigma);
   return {depth.range.at<float>(row, column), static_cast<float>(sigma)};
 }

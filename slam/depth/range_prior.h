@@ -9,10 +9,10 @@
 
 namespace orb360 {
 
-/// What the completed depth of a keyframe says of those of its features that have no landmark, by
-/// feature; of the others it only repeats what their landmarks told it. Nothing is known at edges,
-/// where a pixel more or less decides, nor where the network expects an error of a half or more, as
-/// in the sky.
+/// Samples the completed depth of a keyframe at those of its features that have no landmark, one
+/// entry per feature. At features with a landmark the depth would only repeat the landmark's range.
+/// Nothing is known at edges, where the range changes from pixel to pixel, and where the network
+/// expects an error of a half or more, as in the sky.
 std::vector<RangePrior> SampleRangePriors(const DenseDepth& depth, const Features& features,
                                           std::span<const LandmarkId> landmarks);
 

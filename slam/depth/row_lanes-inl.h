@@ -1,4 +1,4 @@
-// Per-target include guard: foreach_target includes this once for each instruction set.
+// Per-target include guard: foreach_target includes this file once for each instruction set.
 #if defined(ORB360_SLAM_DEPTH_ROW_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORB360_SLAM_DEPTH_ROW_LANES_INL_H_
 #undef ORB360_SLAM_DEPTH_ROW_LANES_INL_H_
@@ -24,7 +24,7 @@ using VI = hn::Vec<DI>;
 
 HWY_INLINE V Constant(float x) { return hn::Set(D(), x); }
 
-/// Adds `width` where a column is negative, subtracts it where it is past the end.
+/// Adds `width` to negative columns and subtracts it from columns past the end.
 HWY_INLINE VI Wrap(VI column, VI width) {
   const VI lifted = hn::Add(column, hn::IfThenElseZero(hn::Lt(column, hn::Zero(DI())), width));
   return hn::Sub(lifted, hn::IfThenZeroElse(hn::Lt(lifted, width), width));

@@ -32,7 +32,7 @@ std::vector<LandmarkId> LandmarksAround(const Map& map, const Keyframe& keyframe
   return ids;
 }
 
-// Whether something clearly nearer lies in (almost) the same direction.
+// Returns for each projection whether a clearly nearer one lies in almost the same direction.
 std::vector<bool> FindHidden(const std::vector<Projection>& projections,
                              const SparseDepthOptions& options) {
   std::vector<Eigen::Vector3d> bearings;
@@ -68,8 +68,8 @@ double RangeError(const Map& map, const Landmark& landmark) {
     }
     return best.second;
   };
-  // From the observation farthest from the first to that farthest from there: within a factor of
-  // two of the widest angle, in linear time.
+  // The angle between the observation farthest from the first one and the observation farthest from
+  // that. It is within a factor of two of the widest angle and takes linear time.
   const Eigen::Vector3d end = farthest_from(toward_camera(landmark.observations.front()));
   const double parallax = AngleBetween(end, farthest_from(end));
   if (!(parallax > 0)) return std::numeric_limits<double>::infinity();
@@ -85,7 +85,7 @@ double RangeError(const Map& map, const Landmark& landmark) {
     squared_residuals += (observed + toward_camera(o)).squaredNorm();  // of the chord
   }
   const double count = static_cast<double>(landmark.observations.size());
-  // Two components of noise make up a residual.
+  // A residual has two components of noise.
   const double squared = std::max(squared_noise, 0.5 * squared_residuals) / count;
   return std::sqrt(2.0 * squared / count) / std::sin(std::min(parallax, 1.5));
 }

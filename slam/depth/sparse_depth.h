@@ -10,24 +10,23 @@
 namespace orb360 {
 
 struct SparseDepthOptions {
-  /// Keyframes around this one whose landmarks are projected as well.
+  /// Number of neighbouring keyframes whose landmarks are projected too.
   int num_neighbours = 20;
-  /// A landmark that the keyframe has not seen itself is taken to be hidden when, within this
-  /// angle (radians), another one is nearer ...
+  /// A landmark that the keyframe has not observed is treated as hidden if, within this angle
+  /// (radians), another landmark lies nearer than occlusion_ratio times its range.
   double occlusion_angle = 0.03;
-  /// ... than this share of its range.
+  /// See occlusion_angle.
   double occlusion_ratio = 0.8;
-  /// Landmarks found in less than this share of the frames that should show them are moving,
-  /// hidden from here, or wrong.
+  /// Landmarks found in less than this fraction of the frames that should show them move, are
+  /// hidden from here, or are wrong.
   double min_found_share = 0.8;
-  /// Confidence is 1/2 where the standard deviation of the range is this share of the range.
+  /// The confidence is 1/2 where the standard deviation of the range is this fraction of the range.
   double half_confidence_error = 0.1;
-  /// Less confidence than this is mostly that of wrong landmarks, which the network trusts too
-  /// much.
+  /// Points with less confidence are mostly wrong landmarks, which the network trusts too much.
   double min_confidence = 0.5;
 };
 
-/// A landmark seen from a keyframe.
+/// A landmark projected into a keyframe.
 struct SparsePoint {
   LandmarkId landmark;
   Eigen::Vector2d pixel;  // of the camera asked for
@@ -35,20 +34,21 @@ struct SparsePoint {
   double confidence;      // from min_confidence to 1, see RangeError
 };
 
-/// Standard deviation of a landmark's range from a keyframe as a share of the range: the angular
-/// noise of its observations over the angle at which they see it from different places, less with
-/// more of them, more where their residuals are larger than the noise explains.
-/// Infinity where all observations come from one place.
+/// Returns the standard deviation of a landmark's range from a keyframe as a fraction of the range:
+/// the angular noise of its observations over the angle between them, smaller with more
+/// observations, and larger where their residuals exceed the noise. Infinite if all observations
+/// come from one place.
 double RangeError(const Map& map, const Landmark& landmark);
 
-/// Sparse depth generation (paper III-B): the landmarks of a keyframe and of its neighbours,
-/// projected into it; of several at one pixel the nearest, without hidden ones, without those that
-/// move. Ordered by landmark.
+/// Generates sparse depth (paper III-B): projects the landmarks of a keyframe and of its neighbours
+/// into it. The nearest landmark of a pixel is kept; hidden and moving landmarks are left out.
+/// Ordered by landmark.
 std::vector<SparsePoint> ProjectLandmarks(const Map& map, KeyframeId keyframe,
                                           const EquirectangularCamera& camera,
                                           const SparseDepthOptions& options);
 
-/// As images of the camera's size, CV_32F: range and confidence, 0 where there is no point.
+/// Sparse depth as images of the camera's size, CV_32F: range and confidence, 0 where there is no
+/// point.
 struct SparseDepth {
   cv::Mat range;
   cv::Mat confidence;

@@ -12,7 +12,7 @@
 namespace orb360 {
 namespace {
 
-/// The pixels of a row that are tried.
+/// Selects the pixels of a row that are tested.
 void ChoosePixels(const DepthView& view, int row, const SamplingOptions& sampling,
                   float max_own_error, TestedRow* points) {
   const float pixel_angle = std::numbers::pi_v<float> / static_cast<float>(view.height());
@@ -34,8 +34,8 @@ void ChoosePixels(const DepthView& view, int row, const SamplingOptions& samplin
   points->Close();
 }
 
-/// What each point's own keyframe knows of it. Those without a normal, or less certain than
-/// `max_own_error`, keep no variance.
+/// Computes what each point's own keyframe knows of it. Points without a normal, or with an error
+/// larger than `max_own_error`, get no variance.
 void Weigh(const DepthView& view, float max_own_error, TestedRow* points) {
   for (size_t i = 0; i < points->size; ++i) {
     const auto& [bx, by, bz] = points->bearing;
@@ -63,8 +63,9 @@ std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
     witnesses.push_back({other, other->world_from_camera().Inverse() * world_from_view,
                          options.tolerance_errors, options.tolerance_share});
   }
-  // A point keeps at least this share of its own error: others may be better than it by the one
-  // factor (in variance), and all together better than the best by the other.
+  // A point keeps at least this fraction of its own error. A single source view may be more certain
+  // by the first factor (in variance), and all views together may be more certain than the best one
+  // by the second factor.
   const double redundant_ratio = std::max(options.redundant_ratio, 1.0);
   const auto least_gain =
       static_cast<float>(1 / std::sqrt(redundant_ratio * std::max(options.max_independent, 1.0)));

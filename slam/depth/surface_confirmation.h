@@ -10,24 +10,27 @@
 namespace orb360 {
 
 struct ConfirmationOptions {
-  /// Other keyframes that must see a point where it is.
+  /// Number of source views that must see the point where it is.
   int min_support = 2;
-  /// A point is refused when more than this share of the keyframes with an opinion see through it.
+  /// A point is rejected if more than this fraction of the source views with a verdict contradict
+  /// it.
   double max_conflict_share = 0.34;
-  /// Two ranges agree up to so many expected errors ...
+  /// Two ranges agree if they differ by at most this many expected errors plus tolerance_share of
+  /// the range.
   double tolerance_errors = 2.5;
-  /// ... and this share of the range more: for poses, sampling, and what confidence does not know.
+  /// Additional tolerance as a fraction of the range, for the errors of poses and sampling and for
+  /// errors that the confidence does not state.
   double tolerance_share = 0.01;
-  /// The least expected error of ln(range), however confident the network is.
+  /// Least expected error of ln(range), however confident the network is.
   double min_error = 0.01;
-  /// A point is left to a keyframe that sees it too and has so many times less variance.
+  /// A point is left to another keyframe that sees it and has a variance smaller by this factor.
   double redundant_ratio = 4.0;
-  /// Keyframes of the same place err alike: together they are at most so many times as certain as
-  /// the best of them (in variance).
+  /// Errors of keyframes at the same place are correlated. All keyframes together are at most this
+  /// many times as certain as the best of them (in variance).
   double max_independent = 4.0;
 };
 
-/// A point of a keyframe that others have confirmed.
+/// A point of a keyframe that is geometrically consistent with others.
 struct ConfirmedPoint {
   Eigen::Vector3d position;  // world
   Eigen::Vector3f normal;    // world, unit, towards the camera
@@ -36,25 +39,25 @@ struct ConfirmedPoint {
   int column;
 };
 
-/// Which pixels of a keyframe are tried.
+/// Selection of the pixels of a keyframe that are tested.
 struct SamplingOptions {
-  /// World units: where pixels are closer to each other than half of this, every other one, every
-  /// fourth one ... is taken; and towards the poles, fewer of each row, so that every direction has
-  /// as many.
+  /// Spacing of points, world units. Where pixels are closer to each other than half of it, every
+  /// second, fourth, ... pixel is taken. Fewer pixels of a row are taken near the poles, so that
+  /// every direction has the same density.
   double spacing = 0.05;
-  /// World units; what is farther away is left out.
+  /// Points farther away are left out, world units.
   double max_range = 30.0;
-  /// World units; as are points whose expected error is larger.
+  /// Points with a larger expected error are left out, world units.
   double max_error = 0.2;
 };
 
-/// The points of a keyframe that the others agree with. A point is compared with what each of them
-/// sees in its direction: the same surface supports it, something nearer hides it, and something
-/// farther away, here and in the pixels around, contradicts it: the keyframe looks through it. What
-/// moves and what the network invents meets contradiction, or no support. Where keyframes agree,
-/// the point moves along its normal to the mean of all, weighted by certainty.
+/// Returns the points of a keyframe that are geometrically consistent with the others. A point is
+/// compared with what each source view sees in its direction. The same surface supports it, a
+/// nearer one hides it, and a farther one (also in the pixels around) contradicts it. Moving
+/// objects and depth invented by the network are contradicted or lack support. Where keyframes
+/// agree, the point moves along its normal to the mean of all, weighted by certainty.
 ///
-/// Ordered by row, then column: the same for any number of OpenMP threads.
+/// The points are ordered by row, then column, and are the same for any number of OpenMP threads.
 std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
                                            std::span<const DepthView* const> others,
                                            const ConfirmationOptions& options,

@@ -17,12 +17,12 @@
 #define ORB360_SLAM_DEPTH_SURFACE_NORMALS_CC_
 namespace orb360 {
 
-/// One of the pixels that a plane is fitted to.
+/// One of the pixels to which a plane is fitted.
 struct PlaneTap {
   std::int32_t first;   // pixel of its row, by place in the image
   std::int32_t offset;  // of its column from the point's, 0 to width - 1: beyond the seam it wraps
-  // Its bearing, seen from the point: along the point's bearing, and to the east and north of it in
-  // pixels. The same for all points of a row.
+  // Its bearing relative to the point: along the point's bearing, and to the east and north of it
+  // in pixels. It is the same for all points of a row.
   float forward;
   float east;
   float north;
@@ -40,10 +40,10 @@ void FitNormalsKernel(const float* inverse_ranges, int width, const PlaneTap* ta
                       TestedRow* points) {
   const D d;
   const DI di;
-  // The difference in ln(range) from the point's at which a pixel counts half.
+  // A pixel has half of its weight when its ln(range) differs from the point's by this much.
   constexpr float kPlaneScale = 0.15f;
-  // Where all neighbours but those in one line are given up, the slope across it is taken to be
-  // zero. So little, in neighbours at one pixel's distance, changes no other slope.
+  // If the remaining neighbours lie on one line, the slope across it is set to zero by this small
+  // weight. For neighbours at a distance of one pixel it changes no other slope.
   constexpr float kRidge = 2e-3f;
   const VI last = hn::Set(di, width);
   const VI start = hn::Set(di, row * width);
@@ -51,8 +51,8 @@ void FitNormalsKernel(const float* inverse_ranges, int width, const PlaneTap* ta
     const VI column = hn::LoadU(di, points->column.data() + i);
     const V centre = hn::GatherIndex(d, inverse_ranges, hn::Add(start, column));
     const V scale = hn::Div(Constant(1), centre);
-    // Of the plane 1 / range = forward * f + east * e + north * n, in units of the point's own:
-    // normal equations.
+    // Normal equations of the plane 1 / range = forward * f + east * e + north * n, in units of the
+    // point's own.
     V ff = hn::Zero(d), fe = ff, fn = ff, ee = ff, en = ff, nn = ff, fq = ff, eq = ff, nq = ff;
     V total = ff;
     for (size_t t = 0; t < num_taps; ++t) {
@@ -79,7 +79,7 @@ void FitNormalsKernel(const float* inverse_ranges, int width, const PlaneTap* ta
     }
     ee = hn::MulAdd(Constant(kRidge), total, ee);
     nn = hn::MulAdd(Constant(kRidge), total, nn);
-    // Elimination of f, then of e.
+    // Eliminates f, then e.
     const V f_pivot = hn::Div(Constant(1), ff);
     const V fe_share = hn::Mul(fe, f_pivot);
     const V fn_share = hn::Mul(fn, f_pivot);
@@ -127,7 +127,7 @@ namespace orb360 {
 HWY_EXPORT(FitNormalsKernel);
 
 void FitNormals(const DepthView& view, TestedRow* points) {
-  // Pixels to either side.
+  // Number of pixels on either side.
   constexpr int kReach = 2;
   const int width = view.width();
   const double pixel_angle = std::numbers::pi / view.height();

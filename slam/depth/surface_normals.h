@@ -5,8 +5,8 @@
 
 namespace orb360 {
 
-/// The surface around each point as a plane: fitted to the ranges of 5 x 5 pixels around it, those
-/// that differ much from its own counting less. On a plane 1 / range is linear in the bearing.
+/// Fits a plane to the surface around each point: to the ranges of 5 x 5 pixels, with less weight
+/// for those that differ much from the point's own. On a plane 1 / range is linear in the bearing.
 void FitNormals(const DepthView& view, TestedRow* points);
 
 }  // namespace orb360

@@ -19,7 +19,7 @@ void TestedRow::Add(int new_column, const Eigen::Vector3f& new_bearing, float ne
 }
 
 void TestedRow::Close() {
-  // Past the end: column 0, where any image has a pixel.
+  // Entries past the end refer to column 0, which every image has.
   const size_t length = (size + kMostLanes - 1) / kMostLanes * kMostLanes;
   column.resize(length);
   range.resize(length);

@@ -9,14 +9,14 @@
 
 namespace orb360 {
 
-/// A surface seen at less than this sine of the angle is treated as if seen at that: its normal is
-/// not known better.
+/// Least sine of the angle at which a surface is assumed to be seen, because the normal is not
+/// known better.
 inline constexpr float kMinIncidence = 0.15f;
 
-/// Points that vector instructions may take at once.
+/// Largest number of points that vector instructions handle at once.
 inline constexpr size_t kMostLanes = 16;
 
-/// Pixels of one row of a keyframe that are tested together, one in each place of the arrays.
+/// Pixels of one row of a keyframe that are tested together, one in each element of the arrays.
 struct TestedRow {
   using Array = std::vector<float>;
 
@@ -27,7 +27,7 @@ struct TestedRow {
   Array range;                   // world units
   std::array<Array, 3> normal;   // camera frame, unit, towards the camera; zero where there is none
   Array variance;  // of the point along its normal, to be expected; 0: it is not to be confirmed
-  // What others have said of the points, and their own keyframe:
+  // What source views and the point's own keyframe say of the points:
   Array support;      // how many see the same surface there
   Array conflict;     // how many look through it
   Array information;  // sum of 1 / variance, its own and of those that support
@@ -36,8 +36,8 @@ struct TestedRow {
 
   void Clear(int new_row);
   void Add(int new_column, const Eigen::Vector3f& new_bearing, float new_range);
-  /// Ends the row: fills the arrays up to a multiple of kMostLanes, and sets everything but where
-  /// the points are to zero.
+  /// Completes the row: fills the arrays up to a multiple of kMostLanes and sets everything except
+  /// the positions of the points to zero.
   void Close();
 };
 

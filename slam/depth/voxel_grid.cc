@@ -12,7 +12,7 @@
 namespace orb360 {
 namespace {
 
-// A key holds three indices of 21 bits, each shifted to be positive; the highest bit is set, so
+// A key contains three indices of 21 bits, each shifted to be positive. The highest bit is set, so
 // that no key is 0.
 constexpr int kIndexBits = 21;
 constexpr std::int64_t kIndexOffset = std::int64_t{1} << (kIndexBits - 1);
@@ -38,7 +38,7 @@ Eigen::Vector3d CentreOf(std::uint64_t key) {
   return centre;
 }
 
-/// Neighbouring keys land far apart (the finalizer of SplitMix64).
+/// A hash by which neighbouring keys lie far apart (the finalizer of SplitMix64).
 std::uint64_t Hash(std::uint64_t key) {
   key = (key ^ (key >> 30)) * 0xbf58476d1ce4e5b9u;
   key = (key ^ (key >> 27)) * 0x94d049bb133111ebu;
@@ -52,7 +52,7 @@ Eigen::Map<const Eigen::Vector3f> Sum(const std::array<float, 3>& sum) {
   return Eigen::Map<const Eigen::Vector3f>(sum.data());
 }
 
-/// What a sample adds to its voxel; without a key where it is too far away.
+/// Returns the contribution of a sample to its voxel, without a key if the sample is too far away.
 Voxel PartOf(const VoxelSample& sample, double voxel_size, int view) {
   ORB360_CHECK(sample.error > 0, sample.error);
   const Eigen::Vector3d in_voxels = sample.position / voxel_size;
@@ -98,7 +98,7 @@ void VoxelGrid::Rebuild(std::span<const Voxel> voxels, size_t capacity) {
 }
 
 void VoxelGrid::Reserve(size_t more) {
-  // At most three quarters full, so that searches stay short.
+  // The table is at most three quarters full, so that searches stay short.
   if (4 * (count_ + more) <= 3 * slots_.size()) return;
   std::vector<Voxel> voxels;
   voxels.reserve(count_);
@@ -108,7 +108,8 @@ void VoxelGrid::Reserve(size_t more) {
 }
 
 void VoxelGrid::Add(std::span<const VoxelSample> samples, int view) {
-  // A few at a time: their places are fetched from memory while the rest of them is prepared.
+  // Size of the batches. The table entries of a batch are prefetched while the rest of it is
+  // prepared.
   constexpr size_t kBatch = 32;
   std::array<Voxel, kBatch> parts;
   for (size_t first = 0; first < samples.size(); first += kBatch) {
@@ -147,7 +148,7 @@ std::vector<Voxel> VoxelGrid::TakeOldest() {
 
 std::vector<Voxel> VoxelGrid::TakeAll() { return Take(std::numeric_limits<std::int32_t>::max()); }
 
-/// Those whose last view is no newer.
+/// Takes the voxels whose last view is not newer than `last_view`.
 std::vector<Voxel> VoxelGrid::Take(int last_view) {
   std::vector<Voxel> taken;
   std::vector<Voxel> kept;

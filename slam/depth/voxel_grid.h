@@ -11,8 +11,8 @@
 
 namespace orb360 {
 
-/// What fell into one cube of a grid: sums from which its point is made, so that parts of the same
-/// voxel can be added later.
+/// Sums over the points in one cube of a grid. The cube's point is computed from them, so parts of
+/// the same voxel can be added later.
 struct Voxel {
   std::uint64_t key = 0;          // VoxelKey; 0 is none
   float information = 0;          // sum of 1 / variance, in voxels; the weight of everything below
@@ -25,7 +25,7 @@ struct Voxel {
   Voxel& operator+=(const Voxel& other);
 };
 
-/// A point that falls into a grid.
+/// A point that is added to a grid.
 struct VoxelSample {
   Eigen::Vector3d position;  // world
   Eigen::Vector3f normal;
@@ -33,26 +33,26 @@ struct VoxelSample {
   float error;  // to be expected, world units
 };
 
-/// Cubes of one size in the world, filled with points one keyframe after the other.
+/// Cubes of one size in the world, filled with the points of one keyframe after the other.
 class VoxelGrid {
  public:
   explicit VoxelGrid(double size) : size_(size) {}
 
-  /// Adds what a keyframe sees. Points more than 2^20 voxels from the origin are left out.
+  /// Adds the points of a keyframe. Points more than 2^20 voxels from the origin are left out.
   void Add(std::span<const VoxelSample> samples, int view);
 
   size_t num_voxels() const { return count_; }
 
-  /// Takes out the half that has gone without a new point the longest, or everything; ordered by
-  /// key.
+  /// Removes and returns the half that has not received a point for the longest time, or
+  /// everything; ordered by key.
   std::vector<Voxel> TakeOldest();
   std::vector<Voxel> TakeAll();
 
  private:
   std::vector<Voxel> Take(int last_view);
-  /// The place of a key's voxel, or where it would be put.
+  /// Returns the entry of a key's voxel, or the free entry for it.
   Voxel& Find(std::uint64_t key);
-  /// Makes room for so many new voxels.
+  /// Makes room for `more` new voxels.
   void Reserve(size_t more);
   void Rebuild(std::span<const Voxel> voxels, size_t capacity);
 
@@ -61,14 +61,14 @@ class VoxelGrid {
   size_t count_ = 0;
 };
 
-/// Side of the cubes of voxels that VoxelTile tells apart, in voxels.
+/// Side, in voxels, of the cubes that VoxelTile numbers.
 inline constexpr int kTileVoxels = 256;
 
-/// A number for each cube of kTileVoxels cubed voxels.
+/// Returns the number of the cube of kTileVoxels cubed voxels that contains the voxel.
 std::uint64_t VoxelTile(std::uint64_t key);
 
-/// The point of a voxel: the mean of what fell into it, weighted by certainty. `max_independent`
-/// bounds the certainty that comes of adding points up, see ConfirmationOptions.
+/// Returns the point of a voxel: the mean of its samples, weighted by certainty. `max_independent`
+/// bounds the certainty that is gained by adding points up, see ConfirmationOptions.
 SurfacePoint MakeSurfacePoint(const Voxel& voxel, double voxel_size, double max_independent);
 
 }  // namespace orb360

@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace orb360 {
 namespace HWY_NAMESPACE {
 
-/// The angle of (x, y) from the x axis, -pi to pi; 0 for the origin.
+/// The angle of (x, y) from the x axis, in -pi..pi; 0 for the origin.
 HWY_INLINE V Angle(V y, V x) {
   const D d;
   const V run = hn::Abs(x);
@@ -28,7 +28,7 @@ HWY_INLINE V Angle(V y, V x) {
   return hn::CopySign(upper, y);
 }
 
-/// Of every point: what a keyframe sees in a direction.
+/// What a keyframe sees in the direction of each point.
 struct Sighting {
   V inverse_range;  // 0 where unknown
   V error;          // of ln(range), to be expected
@@ -36,7 +36,7 @@ struct Sighting {
   VI column;
 };
 
-/// Directions are unit vectors in the camera's frame.
+/// Samples a view in the given directions, which are unit vectors in the camera frame.
 HWY_INLINE Sighting LookAlong(const DepthView& view, V x, V y, V z) {
   const D d;
   const DI di;
@@ -49,7 +49,7 @@ HWY_INLINE Sighting LookAlong(const DepthView& view, V x, V y, V z) {
   const VI bottom_row = hn::Set(di, view.height() - 1);
   const V longitude = Angle(y, hn::Neg(x));
   const V latitude = Angle(z, hn::Sqrt(hn::MulAdd(x, x, hn::Mul(y, y))));
-  // In pixels whose centres are at integers.
+  // Coordinates in pixels whose centres are at integers.
   const V u = hn::MulAdd(longitude, Constant(static_cast<float>(view.width()) / (2 * kPi)),
                          Constant(0.5f * static_cast<float>(view.width() - 1)));
   const V v = hn::MulAdd(latitude, Constant(static_cast<float>(-view.height()) / kPi),
@@ -58,10 +58,10 @@ HWY_INLINE Sighting LookAlong(const DepthView& view, V x, V y, V z) {
   const V whole_v = hn::Floor(v);
   const V right_share = hn::Sub(u, whole_u);
   const V bottom_share = hn::Sub(v, whole_v);
-  // Numbers that are none become some pixel.
+  // NaN becomes an arbitrary pixel inside the image.
   const VI left = hn::Max(hn::Min(hn::ConvertTo(di, whole_u), width), hn::Set(di, -1));
   const VI top = hn::Max(hn::Min(hn::ConvertTo(di, whole_v), bottom_row), hn::Set(di, -1));
-  // Beyond a pole the first or last row goes on at the opposite longitude.
+  // Beyond a pole the first or last row continues at the opposite longitude.
   const VI upper_turn = hn::IfThenElseZero(hn::Lt(top, zero), half);
   const VI lower_turn = hn::IfThenElseZero(hn::Eq(top, bottom_row), half);
   const VI upper = hn::Mul(hn::Max(top, zero), width);
@@ -86,7 +86,7 @@ HWY_INLINE Sighting LookAlong(const DepthView& view, V x, V y, V z) {
                                    hn::IfThenElse(is_left, lower_left, lower_right));
   const V least = hn::Min(hn::Min(upper_left, upper_right), hn::Min(lower_left, lower_right));
   const V most = hn::Max(hn::Max(upper_left, upper_right), hn::Max(lower_left, lower_right));
-  // Ranges that differ by this factor belong to different surfaces. 0 is unknown.
+  // Ranges that differ by this factor belong to different surfaces; 0 is unknown.
   constexpr float kEdgeRatio = 1.15f;
   const auto is_one_surface = hn::Lt(most, hn::Mul(Constant(kEdgeRatio), least));
   const V above = hn::MulAdd(right_share, hn::Sub(upper_right, upper_left), upper_left);
@@ -104,7 +104,7 @@ HWY_INLINE Sighting LookAlong(const DepthView& view, V x, V y, V z) {
   return {inverse_range, error, row, column};
 }
 
-/// The largest of 1 / range of a pixel and the eight around it; infinite where one is unknown.
+/// The largest 1 / range of a pixel and the eight around it; infinite where one is unknown.
 HWY_INLINE V NearestAround(const DepthView& view, VI row, VI column) {
   const D d;
   const DI di;
@@ -180,7 +180,7 @@ void HearWitnessKernel(const Witness& witness, TestedRow* points) {
     const V farther = hn::Sub(there, range);
     const V deviation = hn::Mul(farther, incidence);
     const auto agrees = hn::And(is_known, hn::Le(hn::Abs(deviation), tolerance));
-    // A surface turned away from the witness is another one that happens to be there.
+    // A surface that faces away from the source view is another surface at the same place.
     const auto supports = hn::And(agrees, hn::Le(slant, Constant(kMinIncidence)));
     const V information = hn::IfThenElseZero(supports, hn::Div(one, hn::Mul(error, error)));
     const auto add = [&](TestedRow::Array* sum, V more) HWY_ATTR {
@@ -193,7 +193,7 @@ void HearWitnessKernel(const Witness& witness, TestedRow* points) {
     hn::StoreU(hn::Max(hn::LoadU(d, best), information), d, best);
     const auto is_through = hn::And(is_known, hn::Gt(deviation, tolerance));
     if (hn::AllFalse(d, is_through)) continue;
-    // As far away as the nearest of the pixels around: still behind the point?
+    // The nearest of the pixels around decides whether the surface is still behind the point.
     const V nearest = hn::Div(one, NearestAround(*witness.view, sighting.row, sighting.column));
     const auto conflicts =
         hn::And(is_through, hn::Gt(hn::Mul(hn::Sub(nearest, range), incidence), tolerance));

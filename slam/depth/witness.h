@@ -6,8 +6,8 @@
 
 namespace orb360 {
 
-/// How another keyframe takes part in a comparison: `witness_from_view` brings the points to it.
-/// Two ranges agree up to `tolerance_errors` expected errors and `tolerance_share` of the range.
+/// A source view of a comparison; `witness_from_view` transforms the points into it. Two ranges
+/// agree up to `tolerance_errors` expected errors plus `tolerance_share` of the range.
 struct Witness {
   const DepthView* view;
   Rigid3 witness_from_view;
@@ -15,10 +15,10 @@ struct Witness {
   double tolerance_share;
 };
 
-/// Adds what a witness sees in the direction of each point: the same surface supports it, something
-/// nearer hides it, and something farther away, here and in the eight pixels around, conflicts with
-/// it. Ranges between pixels are linear in 1 / range, nearly exact on planes, where the four
-/// around see one surface; otherwise that of the nearest pixel counts.
+/// Adds what a source view sees in the direction of each point. The same surface supports the
+/// point, a nearer one hides it, and a farther one, also in the eight pixels around, contradicts
+/// it. Between pixels 1 / range is interpolated linearly, which is nearly exact on planes, where
+/// the four pixels around see one surface. Otherwise the nearest pixel is used.
 void HearWitness(const Witness& witness, TestedRow* points);
 
 }  // namespace orb360

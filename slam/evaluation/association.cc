@@ -8,7 +8,7 @@
 namespace orb360 {
 namespace {
 
-/// Indices of `times` in the order of time.
+/// Returns the indices of `times` in the order of time.
 std::vector<size_t> SortedByTime(std::span<const double> times) {
   std::vector<size_t> order(times.size());
   std::iota(order.begin(), order.end(), size_t{0});

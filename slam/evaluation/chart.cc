@@ -12,7 +12,7 @@ constexpr size_t kMostPoints = 4000;
 
 std::string Pixel(double value) { return Decimal(value, 1); }
 
-/// 1, 2 or 5 times a power of ten, so that about `count` steps make up `extent`.
+/// Returns 1, 2 or 5 times a power of ten, so that about `count` steps cover `extent`.
 double TickStep(double extent, int count) {
   const double raw = extent / count;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));

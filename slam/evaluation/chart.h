@@ -9,7 +9,7 @@
 
 namespace orb360 {
 
-/// A rectangle of a picture that shows a rectangle of data.
+/// A rectangle of an image that shows a rectangle of data.
 struct Axes {
   Eigen::AlignedBox2d data;
   Eigen::Vector2d origin;  ///< Pixel of the data's lower left corner.
@@ -21,27 +21,28 @@ struct Axes {
   }
 };
 
-/// The data's box with a margin of 5 %, extended to the shape of `size`, so that a metre is the
-/// same to the right and upward.
+/// Returns the data's box with a margin of 5 %, extended to the shape of `size`, so that the scales
+/// of both axes are equal.
 Eigen::AlignedBox2d EqualAspect(const Eigen::AlignedBox2d& box, const Eigen::Vector2d& size);
 
-/// Points closer than can be told apart are left out: every n-th is drawn.
+/// Returns n such that every n-th point is drawn, because the points between could not be
+/// distinguished.
 size_t ThinningStep(size_t points);
 
-/// Elements of SVG. Positions are in pixels, y downward; `attributes` as in `stroke="#000"`.
-/// Numbers are written the same way in every locale.
+/// Elements of SVG. Positions are in pixels, y downward; `attributes` are written as in
+/// `stroke="#000"`. Numbers are written in the same way in every locale.
 std::string Decimal(double value, int decimals);
 std::string DrawLine(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                      const std::string& attributes);
 std::string DrawCircle(const Eigen::Vector2d& centre, double radius, const std::string& attributes);
-/// Points of the data, thinned.
+/// Draws points of the data, thinned.
 std::string DrawPolyline(const std::vector<Eigen::Vector2d>& points, const Axes& axes,
                          const std::string& attributes);
-/// Frame, grid and labels of both axes.
+/// Draws frame, grid and labels of both axes.
 std::string DrawAxes(const Axes& axes, const std::string& title, const std::string& x_label,
                      const std::string& y_label);
 
-/// A whole file: elements on white ground.
+/// Returns a whole file: elements on a white background.
 std::string MakeSvg(const Eigen::Vector2d& size, const std::string& elements);
 
 }  // namespace orb360

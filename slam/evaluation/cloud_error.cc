@@ -15,10 +15,10 @@ namespace {
 
 constexpr double kSurfelSpacing = 0.05;  // metres
 constexpr double kMaxTrueRange = 80.0;   // metres
-/// Discs of far and slanted surfaces would stick out at edges.
+/// Larger discs of far and slanted surfaces would extend beyond edges.
 constexpr float kMaxSurfelRadius = 0.15f;  // metres
-/// Beyond this, every n-th element is looked at: shares of a million are known to a tenth of a
-/// percent.
+/// Beyond this number every n-th element is compared: fractions of a million are known to a tenth
+/// of a percent.
 constexpr size_t kMostCompared = 1'000'000;
 
 std::array<int, 3> CellOf(const Eigen::Vector3f& position, float size) {
@@ -27,7 +27,7 @@ std::array<int, 3> CellOf(const Eigen::Vector3f& position, float size) {
           static_cast<int>(std::floor(position.z() / size))};
 }
 
-/// Positions by cubes of one size, to find those around a place.
+/// Positions sorted by cubes of one size, to find those around a place.
 class CellIndex {
  public:
   template <typename Position>
@@ -37,13 +37,13 @@ class CellIndex {
     std::ranges::sort(order_);
   }
 
-  /// Calls visit(index) for what is in the cube of `place` and the 26 around it.
+  /// Calls visit(index) for the elements in the cube of `place` and in the 26 around it.
   template <typename Visit>
   void VisitAround(const Eigen::Vector3f& place, const Visit& visit) const {
     const std::array<int, 3> centre = CellOf(place, size_);
     for (int x = centre[0] - 1; x <= centre[0] + 1; ++x) {
       for (int y = centre[1] - 1; y <= centre[1] + 1; ++y) {
-        // The three cubes above each other are neighbours in the order.
+        // Three cubes above each other are neighbours in the order.
         const Entry first{{x, y, centre[2] - 1}, 0};
         const Entry last{{x, y, centre[2] + 2}, 0};
         for (auto it = std::ranges::lower_bound(order_, first); it != order_.end() && *it < last;
@@ -60,7 +60,7 @@ class CellIndex {
   std::vector<Entry> order_;
 };
 
-/// Distance of a point from a disc.
+/// Returns the distance of a point from a disc.
 float DistanceFrom(const Surfel& surfel, const Eigen::Vector3f& point) {
   const Eigen::Vector3f offset = point - surfel.position;
   const float height = surfel.normal.dot(offset);
@@ -70,7 +70,7 @@ float DistanceFrom(const Surfel& surfel, const Eigen::Vector3f& point) {
 
 size_t StepFor(size_t count) { return count / kMostCompared + 1; }
 
-/// Share of the distances no larger than each of kDistances.
+/// Returns the fraction of the distances that are not larger, for each of kDistances.
 std::array<double, 2> Shares(std::span<const float> distances) {
   std::array<double, 2> shares{};
   for (size_t i = 0; i < shares.size(); ++i) {
@@ -102,7 +102,7 @@ void TrueSurface::Add(const cv::Mat& range, const cv::Mat& excluded,
     const Eigen::Vector3f ray = (world_from_camera.rotation.toRotationMatrix() *
                                  view.BearingOf(point.row, point.column).cast<double>())
                                     .cast<float>();
-    // Half the diagonal of the pixel where it lies on the surface.
+    // Half of the diagonal of the pixel on the surface.
     const float reach = distance * pixel_angle / std::max(-ray.dot(point.normal), 0.1f);
     const float radius =
         std::clamp(0.7f * reach, static_cast<float>(kSurfelSpacing), kMaxSurfelRadius);
@@ -110,7 +110,7 @@ void TrueSurface::Add(const cv::Mat& range, const cv::Mat& excluded,
     entries_.push_back({CellOf(position, static_cast<float>(kSurfelSpacing)),
                         {position, point.normal, radius, distance}});
   }
-  // Twice as many as there were: thinning costs no more than a sort of everything in the end.
+  // Thinning when the number has doubled costs no more than one sort at the end.
   if (entries_.size() > 2 * thinned_ + 1'000'000) Thin();
 }
 
@@ -138,7 +138,7 @@ CloudErrors CompareCloud(std::span<const Eigen::Vector3f> cloud, std::span<const
   constexpr auto kFarthest = static_cast<float>(CloudErrors::kDistances.back());
   CloudErrors errors;
 
-  // Wide enough that every disc that could be near enough is in a neighbouring cube.
+  // The cubes are so wide that every disc that can be near enough is in a neighbouring cube.
   const CellIndex surface(truth.size(), kFarthest + kMaxSurfelRadius,
                           [&](size_t i) { return truth[i].position; });
   const size_t step = StepFor(cloud.size());
@@ -188,7 +188,7 @@ void AlignLocally(std::span<const PosePair> pairs, std::span<Eigen::Vector3f> po
   for (const PosePair& pair : pairs) {
     truth_from_estimate.push_back(pair.truth_from_camera * pair.estimate_from_camera.Inverse());
   }
-  // One pose for each cube of this size, metres: the drift within it is of no account.
+  // One pose is used for each cube of this size, metres; the drift within it is negligible.
   constexpr float kCell = 1.0f;
   std::map<std::array<int, 3>, size_t> nearest_of_cell;
   for (Eigen::Vector3f& point : points) {

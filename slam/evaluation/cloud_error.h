@@ -13,7 +13,7 @@
 
 namespace orb360 {
 
-/// A piece of the true surface: a disc.
+/// A disc of the true surface.
 struct Surfel {
   Eigen::Vector3f position;  // world of the ground truth, metres
   Eigen::Vector3f normal;    // unit
@@ -21,16 +21,16 @@ struct Surfel {
   float range;               // from the camera that saw it
 };
 
-/// The true surface, as true depth images see it, thinned to one disc in each cube of 5 cm: that
-/// which was seen from nearest.
+/// The true surface as seen by true depth images, thinned to one disc in each cube of 5 cm: the one
+/// that was seen from nearest.
 class TrueSurface {
  public:
-  /// Adds what one image sees up to 80 m away. `range`: CV_32FC1, metres, 0 for none; `excluded`,
-  /// CV_8UC1 of the same size or empty, is not 0 where it shows what does not count, such as what
-  /// moves.
+  /// Adds the surface that one image sees up to 80 m away. `range` is CV_32FC1, metres, 0 for none.
+  /// `excluded`, CV_8UC1 of the same size or empty, is not 0 at pixels that are ignored, such as
+  /// moving objects.
   void Add(const cv::Mat& range, const cv::Mat& excluded, const Rigid3& world_from_camera);
 
-  /// In a fixed order.
+  /// Returns the discs in a fixed order.
   std::vector<Surfel> TakeSurfels();
 
  private:
@@ -44,32 +44,33 @@ class TrueSurface {
   size_t thinned_ = 0;  // entries at the beginning that are in different cubes, in their order
 };
 
-/// How far a cloud is from the true surface, and the surface from the cloud.
+/// Distances of a cloud from the true surface and of the surface from the cloud.
 struct CloudErrors {
-  /// Distances at which both are told, metres.
+  /// Distances for which both fractions are computed, metres.
   static constexpr std::array<double, 2> kDistances = {0.10, 0.25};
-  /// True surfaces up to this far from a camera should be in the cloud, metres.
+  /// True surfaces up to this distance from a camera should be in the cloud, metres.
   static constexpr double kCompleteRange = 15.0;
 
   size_t points = 0;   // of the cloud that were compared
   size_t surfels = 0;  // of the truth, up to kCompleteRange
-  /// Share of the points no farther from the surface.
+  /// Fraction of the points that are not farther from the surface.
   std::array<double, 2> accuracy{};
-  /// Share of the surface that has a point no farther away.
+  /// Fraction of the surface that has a point not farther away.
   std::array<double, 2> completeness{};
   /// Median distance of points from the surface, metres; at most the largest of kDistances.
   double median_distance = 0.0;
 };
 
 /// Compares a cloud (metres, world of the truth) with the true surface. Of very large clouds every
-/// n-th point is looked at. NaN where there is nothing to compare. Runs on `num_threads` OpenMP
-/// threads; the result does not depend on how many.
+/// n-th point is compared. Values are NaN where there is nothing to compare. Runs on `num_threads`
+/// OpenMP threads; the result does not depend on how many.
 CloudErrors CompareCloud(std::span<const Eigen::Vector3f> cloud, std::span<const Surfel> truth,
                          int num_threads = 1);
 
-/// Moves points of an estimate into the world of the truth, each by what moves the estimate's
-/// nearest pose to the true one: so that the cloud is judged by what is around the camera, not by
-/// the drift of the path, which the errors of the trajectory tell. Contract: there is a pair.
+/// Transforms points of an estimate into the world of the truth, each by the error of the
+/// estimate's nearest pose. The cloud is then judged by the surroundings of the camera, not by the
+/// drift of the path, which the errors of the trajectory state. Contract: there is at least one
+/// pair.
 void AlignLocally(std::span<const PosePair> pairs, std::span<Eigen::Vector3f> points);
 
 }  // namespace orb360

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kMovingName = "moving";
 
-/// What moves, CV_8UC1; empty where there is no such picture.
+/// Reads the mask of moving objects, CV_8UC1; empty if there is none.
 cv::Mat ReadMoving(const std::filesystem::path& path, cv::Size size) {
   if (!std::filesystem::is_regular_file(path)) return {};
   const cv::Mat moving = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);

@@ -14,21 +14,24 @@
 namespace orb360 {
 namespace {
 
-/// Around the path, as a share of its larger extent, and at least: a room, in metres.
+/// Margin around the path, as a fraction of its larger extent, and its least size in metres, that
+/// of a room.
 constexpr double kMargin = 0.12;
 constexpr double kMinMargin = 8.0;
-/// Cells of ground, as a share of the picture's larger extent, that share a camera height.
+/// Size of the cells of ground that have a common camera height, as a fraction of the image's
+/// larger extent.
 constexpr double kHeightCell = 1.0 / 256.0;
 const cv::Scalar kGround(26, 22, 20);
 const cv::Scalar kPath(60, 140, 255);
 
-/// Where points are farther apart than the picture's pixels, gaps of up to twice this are closed
-/// ...
+/// Number of passes that fill gaps where points are farther apart than pixels. Gaps of up to twice
+/// this number of pixels are closed.
 constexpr int kFillPasses = 2;
-/// ... from so many known pixels of the eight around: single points stay points.
+/// Least number of known pixels among the eight around a pixel that is filled, so that single
+/// points stay points.
 constexpr int kMinKnownAround = 3;
 
-/// Gives unknown pixels among known ones their mean.
+/// Sets unknown pixels among known ones to their mean.
 void FillGaps(cv::Mat* image, cv::Mat* is_known) {
   const cv::Mat before = image->clone();
   const cv::Mat known = is_known->clone();
@@ -51,7 +54,7 @@ void FillGaps(cv::Mat* image, cv::Mat* is_known) {
   }
 }
 
-/// 1, 2 or 5 times a power of ten, no longer than `length`.
+/// Returns 1, 2 or 5 times a power of ten that is not longer than `length`.
 double RoundLength(double length) {
   const double power = std::pow(10.0, std::floor(std::log10(length)));
   const double digit = length / power;

@@ -13,18 +13,19 @@
 
 namespace orb360 {
 
-/// A cloud from above, without perspective: x to the right, y up. What is higher than the camera
-/// was nearby is left out, so that ceilings and trees do not hide the ground; of the rest the
-/// highest is seen. Points are shown in pieces of any size, in any order.
+/// Draws a cloud from above without perspective: x to the right, y up. Points higher than the
+/// camera was nearby are left out, so that ceilings and trees do not hide the ground; the highest
+/// of the remaining points is shown. Points are added in pieces of any size, in any order.
 class CloudPicture {
  public:
-  /// `path`: where the camera was, z up; the picture shows that and its surroundings. `side`: of
-  /// the picture's longer side, pixels. Contract: there is a position.
+  /// `path` contains the positions of the camera, z up; the image shows them and their
+  /// surroundings. `side` is the length of the image's longer side, pixels. Contract: there is at
+  /// least one position.
   CloudPicture(std::span<const Eigen::Vector3d> path, int side);
 
   void Add(std::span<const SurfacePoint> points);
 
-  /// CV_8UC3, BGR: the points, small gaps between them closed, the path over them, and a scale of
+  /// Returns CV_8UC3, BGR: the points with small gaps closed, the path over them, and a scale of
   /// length.
   cv::Mat Draw() const;
 
@@ -34,7 +35,7 @@ class CloudPicture {
     cv::Vec3b bgr;
   };
   Eigen::Vector2d ToPixel(const Eigen::Vector2d& position) const;
-  /// Of the camera where it was nearest.
+  /// Height of the camera at its nearest position.
   double CameraHeight(const Eigen::Vector2f& position);
 
   std::vector<Eigen::Vector3d> path_;

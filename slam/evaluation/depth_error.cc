@@ -48,7 +48,7 @@ DepthErrors CompareDepth(const cv::Mat& truth, const cv::Mat& estimate) {
   ORB360_CHECK(truth.size() == estimate.size(), truth.size(), estimate.size());
   DepthErrors errors;
   for (int row = 0; row < truth.rows; ++row) {
-    // The zone between two latitudes covers 2 pi (sin a - sin b), shared by the row's pixels.
+    // The zone between two latitudes covers 2 pi (sin a - sin b), divided among the row's pixels.
     const double top = std::numbers::pi * (0.5 - static_cast<double>(row) / truth.rows);
     const double bottom = std::numbers::pi * (0.5 - (row + 1.0) / truth.rows);
     const double solid_angle =

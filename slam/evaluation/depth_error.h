@@ -6,25 +6,25 @@
 
 namespace orb360 {
 
-/// Errors of estimated ranges, each pixel weighted by the solid angle it covers, so that the
-/// stretched rows near the poles count for what they are.
+/// Errors of estimated ranges. Each pixel is weighted by its solid angle, because rows near the
+/// poles are stretched.
 struct DepthErrorBin {
-  /// Root of the mean squared error, metres.
+  /// Root mean square error, metres.
   double Rmse() const;
   /// Mean absolute error, metres.
   double Mae() const;
   /// Mean of |error| / truth.
   double AbsRel() const;
-  /// Share where max(estimate / truth, truth / estimate) < 1.25.
+  /// Fraction with max(estimate / truth, truth / estimate) < 1.25.
   double Delta125() const;
-  /// Share of the pixels with a true range that have an estimate.
+  /// Fraction of the pixels with a true range that have an estimate.
   double Coverage() const;
 
   void Add(double truth, double estimate, double solid_angle);
   DepthErrorBin& operator+=(const DepthErrorBin& other);
 
-  /// Sums over pixels, times their solid angle in steradians; the errors above are NaN where there
-  /// is none.
+  /// Sums over pixels, weighted by solid angle in steradians. The errors above are NaN without
+  /// pixels.
   double truth_weight = 0.0;
   double weight = 0.0;
   double squared = 0.0;
@@ -33,11 +33,11 @@ struct DepthErrorBin {
   double within_125 = 0.0;
 };
 
-/// Depth errors of one image or, summed, of many.
+/// Depth errors of one image, or the sum over many.
 struct DepthErrors {
-  /// Upper ends of the bins of true range, metres. Beyond the last nothing is counted.
+  /// Upper ends of the bins of true range, metres. Farther pixels are ignored.
   static constexpr std::array<double, 5> kRangeEnds = {5.0, 10.0, 20.0, 40.0, 80.0};
-  /// Bands of latitude of equal height, the lowest first.
+  /// Number of bands of latitude of equal height, the lowest first.
   static constexpr int kLatitudeBands = 6;
 
   DepthErrorBin total;

@@ -11,8 +11,8 @@ struct DepthFolderErrors {
   DepthErrors errors;
 };
 
-/// Compares the depth images (ReadDepthImage) of two folders that have a name in common. Throws
-/// UserError, naming the file, where one cannot be read or the sizes differ.
+/// Compares the depth images (ReadDepthImage) of two folders that have the same names. Throws
+/// UserError that names the file if one cannot be read or the sizes differ.
 DepthFolderErrors CompareDepthFolders(const std::filesystem::path& truth,
                                       const std::filesystem::path& estimate);
 

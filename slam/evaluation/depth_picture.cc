@@ -13,7 +13,7 @@ namespace orb360 {
 cv::Mat DrawDepth(const DenseDepth& depth, double near, double far, int width) {
   ORB360_CHECK(0 < near && near < far && width >= 2, near, far, width);
   const cv::Size size(width, width * depth.range.rows / depth.range.cols);
-  // Nearest pixels: a mean of two ranges is at neither.
+  // Nearest pixels are used, because the mean of two ranges lies on neither surface.
   cv::Mat range;
   cv::resize(depth.range, range, size, 0, 0, cv::INTER_NEAREST);
   cv::Mat shades(size, CV_8UC1);

@@ -6,10 +6,9 @@
 
 namespace orb360 {
 
-/// A keyframe's picture, its range and its confidence, below each other: CV_8UC3, BGR, each
-/// `width` pixels wide. Ranges in the colours of the rainbow by their logarithm, from red for
-/// `near` to blue for `far`, black where there is none; confidence from black for 0.5 to white
-/// for 1.
+/// Draws a keyframe's image, its range and its confidence below each other: CV_8UC3, BGR, each
+/// `width` pixels wide. Ranges are coloured by their logarithm, from red for `near` to blue for
+/// `far`, and are black where there is none. Confidence goes from black for 0.5 to white for 1.
 cv::Mat DrawDepth(const DenseDepth& depth, double near, double far, int width);
 
 }  // namespace orb360

@@ -60,7 +60,7 @@ std::string Escape(std::string_view text) {
   return escaped;
 }
 
-/// <tag>text</tag>; `tag` may have attributes.
+/// Returns <tag>text</tag>; `tag` may have attributes.
 std::string Element(const std::string& tag, const std::string& text) {
   std::string html = "<";
   html += tag;

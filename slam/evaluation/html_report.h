@@ -7,8 +7,8 @@
 
 namespace orb360 {
 
-/// A page that tells what a run did: figures in large, pictures, bars, and a table. Texts are
-/// plain: what HTML would read as markup is escaped.
+/// A page on a run: large figures, images, bars, and a table. Texts are plain; characters that are
+/// markup in HTML are escaped.
 struct HtmlReport {
   struct Tile {
     std::string value;
@@ -43,13 +43,13 @@ struct HtmlReport {
   std::vector<Row> table;
 };
 
-/// One file that needs no other: pictures are inside.
+/// Returns one self-contained file that includes the images.
 std::string MakeHtml(const HtmlReport& report);
 
-/// A picture (CV_8UC3, BGR) as the bytes of a PNG file.
+/// Encodes an image (CV_8UC3, BGR) as PNG.
 std::string EncodePng(const cv::Mat& image);
 
-/// RFC 4648.
+/// Encodes bytes as base64 (RFC 4648).
 std::string EncodeBase64(const std::string& data);
 
 }  // namespace orb360

@@ -12,7 +12,7 @@ namespace {
 constexpr size_t kMostLandmarks = 20000;
 constexpr int kShades = 5;  // of links
 
-/// A command of an SVG path.
+/// Returns a command of an SVG path.
 std::string To(char command, const Eigen::Vector2d& pixel) {
   std::string text(1, command);
   text += Decimal(pixel.x(), 1);
@@ -21,7 +21,7 @@ std::string To(char command, const Eigen::Vector2d& pixel) {
   return text;
 }
 
-/// The range that holds all but the outermost twentieth at either end.
+/// Returns the interval that contains all values except the outermost twentieth at either end.
 Eigen::AlignedBox1d Bulk(std::span<const Eigen::Vector2d> points, int axis) {
   if (points.empty()) return {};
   std::vector<double> values;
@@ -36,7 +36,8 @@ Eigen::AlignedBox1d Bulk(std::span<const Eigen::Vector2d> points, int axis) {
                              Eigen::Matrix<double, 1, 1>(*high));
 }
 
-/// The keyframes and, up to the extent of the path around it, the bulk of the landmarks.
+/// Returns the box of the keyframes and of most landmarks, extended by at most the extent of the
+/// path.
 Eigen::AlignedBox2d Extent(std::span<const Eigen::Vector2d> keyframes,
                            std::span<const Eigen::Vector2d> landmarks) {
   Eigen::AlignedBox2d path;
@@ -60,7 +61,7 @@ std::string PlotMap(std::span<const Eigen::Vector2d> keyframes, std::span<const 
   const Eigen::Vector2d size(880, 880);
   const Axes axes{EqualAspect(Extent(keyframes, landmarks), size), {90, 930}, size};
   std::string svg = DrawAxes(axes, "from above", "x", "y");
-  // A stroke as short as its width for each landmark: a tenth of the size of as many circles.
+  // Each landmark is a stroke as short as its width, which takes a tenth of the size of a circle.
   std::string marks;
   const size_t step = landmarks.size() / kMostLandmarks + 1;
   for (size_t i = 0; i < landmarks.size(); i += step) {

@@ -14,10 +14,10 @@ struct MapLink {
   double weight;  ///< In (0, 1]; 1 is drawn darkest.
 };
 
-/// A map seen from above as self-contained SVG: landmarks (grey), the links of the covisibility
-/// graph (green), and the keyframes in their order (blue). Positions: x to the right, y up, in
-/// the unit of the map. Landmarks far outside of where the keyframes are do not shrink the picture;
-/// they are left out.
+/// Draws a map from above as self-contained SVG: landmarks (gray), the links of the covisibility
+/// graph (green), and the keyframes in their order (blue). Positions have x to the right and y up,
+/// in the unit of the map. Landmarks far from all keyframes are left out, so that they do not
+/// shrink the drawing.
 std::string PlotMap(std::span<const Eigen::Vector2d> keyframes, std::span<const MapLink> links,
                     std::span<const Eigen::Vector2d> landmarks);
 

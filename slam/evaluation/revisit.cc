@@ -26,8 +26,8 @@ std::vector<double> Travelled(std::span<const StampedPose> truth) {
   return travelled;
 }
 
-/// The earlier pose that is nearest to pose i, of those that so much travel lies between; i where
-/// none is at the same place.
+/// Returns the earlier pose nearest to pose i among those with enough travel between, or i if none
+/// is at the same place.
 size_t PlaceOf(std::span<const StampedPose> truth, std::span<const double> travelled, size_t i) {
   double nearest = kSamePlace;
   size_t place = i;

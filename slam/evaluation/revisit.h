@@ -7,8 +7,8 @@
 
 namespace orb360 {
 
-/// A stretch of a drive on which the camera is again where it was earlier: within 5 m, after more
-/// than 50 m of travel.
+/// A stretch of a drive on which the camera is where it was before: within 5 m, after more than 50
+/// m of travel.
 struct TrueRevisit {
   enum class Direction { kSame, kOpposite, kAcross };
   double begin = 0;  // s
@@ -17,10 +17,10 @@ struct TrueRevisit {
   Direction direction = Direction::kSame;  // of the camera, in the middle of the stretch
 };
 
-/// In the order of time.
+/// Returns the revisits in the order of time.
 std::vector<TrueRevisit> FindRevisits(std::span<const StampedPose> truth);
 
-/// A loop that a run has closed: when, and when the camera was at that place before, s.
+/// Times of a loop that a run closed: of the revisit, and of the earlier visit, s.
 struct LoopTimes {
   double now = 0;
   double before = 0;
@@ -32,8 +32,9 @@ struct LoopErrors {
   int wrong = 0;   // loops whose two ends are more than 10 m apart
 };
 
-/// A revisit is closed by a loop that is right and comes on the stretch or within a second of it:
-/// it takes a few keyframes to be sure, and a place may be recognised from farther away.
+/// Compares loops with revisits. A revisit is closed by a correct loop on the stretch or within a
+/// second of it: a few keyframes are needed for certainty, and a place may be recognised from
+/// farther away.
 LoopErrors CompareLoops(std::span<const StampedPose> truth, std::span<const LoopTimes> loops);
 
 }  // namespace orb360

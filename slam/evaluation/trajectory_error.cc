@@ -26,8 +26,8 @@ std::vector<double> Times(std::span<const StampedPose> poses) {
   return times;
 }
 
-/// What is left of the true motion from `a` to `b` after undoing the estimated one, whose
-/// translations are multiplied by `scale`.
+/// Returns the error of the motion from `a` to `b`: the inverse of the estimated motion, with
+/// translations multiplied by `scale`, times the true one.
 Rigid3 MotionError(const PosePair& a, const PosePair& b, double scale) {
   const Rigid3 truth = a.truth_from_camera.Inverse() * b.truth_from_camera;
   Rigid3 estimate = a.estimate_from_camera.Inverse() * b.estimate_from_camera;
@@ -37,7 +37,7 @@ Rigid3 MotionError(const PosePair& a, const PosePair& b, double scale) {
 
 double AngleOf(const Rigid3& motion) { return LogSo3(motion.rotation).norm(); }
 
-/// Distance along the true path from the first pair to each.
+/// Returns the distance along the true path from the first pair to each pair.
 std::vector<double> PathLengths(std::span<const PosePair> pairs) {
   std::vector<double> lengths = {0.0};
   for (size_t i = 1; i < pairs.size(); ++i) {

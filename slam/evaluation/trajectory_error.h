@@ -12,9 +12,9 @@
 
 namespace orb360 {
 
-/// A pose of the ground truth and the estimate for the same moment, each in its own world.
+/// Poses of the ground truth and of the estimate at the same time, each in its own world.
 struct PosePair {
-  /// Seconds, of the ground truth.
+  /// Time of the ground truth, seconds.
   double timestamp = 0.0;
   Rigid3 truth_from_camera;
   Rigid3 estimate_from_camera;
@@ -24,7 +24,7 @@ struct PosePair {
 std::vector<PosePair> PairPoses(std::span<const StampedPose> truth,
                                 std::span<const StampedPose> estimate, double max_difference);
 
-/// Of a set of errors in metres.
+/// Statistics of a set of errors, metres.
 struct ErrorStatistics {
   double rmse = 0.0;
   double mean = 0.0;
@@ -35,13 +35,13 @@ struct ErrorStatistics {
 /// Throws ContractError for an empty set.
 ErrorStatistics Summarize(std::span<const double> errors);
 
-/// Relative pose error over pieces of the path, as the KITTI odometry benchmark defines it: for a
-/// piece from pose i to pose j, the motion that is left of truth_i^-1 truth_j after undoing
-/// estimate_i^-1 estimate_j, its length and angle divided by the piece's length. Means over all
-/// pieces; the first pose of a piece is every tenth one (more often when there are fewer than
-/// 1,000), its last the first one that is `piece_length` of the true path farther on.
+/// Relative pose error over pieces of the path, as defined by the KITTI odometry benchmark. For a
+/// piece from pose i to pose j it is the motion (estimate_i^-1 estimate_j)^-1 truth_i^-1 truth_j;
+/// its length and angle are divided by the piece's length and averaged over all pieces. A piece
+/// begins at every tenth pose (at more when there are fewer than 1,000) and ends at the first pose
+/// that is `piece_length` of the true path farther on.
 struct RelativeError {
-  /// Metres: 100, or half of the true path where that is less than 200 m long.
+  /// Metres: 100, or half of the true path if that is shorter than 200 m.
   double piece_length = 0.0;
   size_t pieces = 0;
   /// Percent of the piece's length.
@@ -49,29 +49,29 @@ struct RelativeError {
   double rotation_deg_per_m = 0.0;
 };
 
-/// Errors between one pair and the next, root mean square.
+/// Root mean square error of the motion from one pair to the next.
 struct FrameError {
   double translation = 0.0;  ///< Metres.
   double rotation_deg = 0.0;
 };
 
 struct TrajectoryErrors {
-  /// Absolute trajectory error in metres: the distances that remain between the positions after
-  /// the rigid motion, and the similarity, that minimize their squares.
+  /// Absolute trajectory error, metres: the distances between the positions after the rigid motion,
+  /// and after the similarity, that minimize their squares.
   ErrorStatistics ate_se3;
   ErrorStatistics ate_sim3;
-  /// That similarity. Its scale is the scale factor: 1 is perfect.
+  /// The similarity of ate_sim3. Its scale is the scale factor; 1 is perfect.
   Similarity3 truth_from_estimate;
-  /// With the estimate scaled by that factor, and as it is. (Relative motion is seen from the
-  /// camera, so the rest of the alignment does not matter to it.)
+  /// Relative errors of the estimate scaled by that factor, and of the unscaled estimate. (Relative
+  /// motion is seen from the camera, so the rest of the alignment does not affect it.)
   RelativeError rpe;
   RelativeError rpe_raw;
   FrameError rpe_frame;
-  /// The distances behind ate_sim3, one for each pair.
+  /// The distances of ate_sim3, one for each pair.
   std::vector<double> position_errors;
 };
 
-/// nullopt where no alignment is determined: fewer than three pairs, or all positions equal.
+/// Returns nullopt if no alignment is determined: fewer than three pairs, or all positions equal.
 std::optional<TrajectoryErrors> EvaluateTrajectory(std::span<const PosePair> pairs);
 
 }  // namespace orb360

@@ -9,7 +9,7 @@
 namespace orb360 {
 namespace {
 
-/// From no error (blue) over green and yellow to the largest (red).
+/// Returns a colour from blue (no error) over green and yellow to red (the largest error).
 std::string ErrorColor(double share) {
   const double hue = 220.0 * (1.0 - std::clamp(share, 0.0, 1.0));
   return "hsl(" + Decimal(hue, 0) + ",85%,45%)";

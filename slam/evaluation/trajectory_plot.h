@@ -8,10 +8,10 @@
 
 namespace orb360 {
 
-/// A picture as self-contained SVG: left, the estimate, aligned by the similarity of `errors`, over
-/// the ground truth, seen from above (x to the right, y up, metres), its colour the position
-/// error; right, that error over time. `truth` is the whole ground truth, `pairs` and `errors`
-/// what EvaluateTrajectory was given and gave.
+/// Draws a trajectory as self-contained SVG. The left side shows the estimate, aligned by the
+/// similarity of `errors`, over the ground truth from above (x to the right, y up, metres),
+/// coloured by the position error. The right side shows that error over time. `truth` is the whole
+/// ground truth; `pairs` and `errors` are the input and result of EvaluateTrajectory.
 std::string PlotTrajectory(std::span<const StampedPose> truth, std::span<const PosePair> pairs,
                            const TrajectoryErrors& errors);
 

@@ -13,7 +13,7 @@ namespace orb360 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// exp(-x^2 / 8) for x = 0..3, scaled so that all seven add up to 256.
+// exp(-x^2 / 8) for x = 0..3, scaled so that the sum of all seven weights is 256.
 constexpr int kReach = 3;
 constexpr uint16_t kWeights[kReach + 1] = {54, 49, 34, 18};
 
@@ -27,7 +27,7 @@ void BlurAlong(const uint8_t* in, ptrdiff_t step, int count, uint8_t* out) {
   for (; x + lanes <= count; x += lanes) {
     const auto load = [&](int i)
                           HWY_ATTR { return hn::PromoteTo(d, hn::LoadU(d8, in + x + i * step)); };
-    // At most 255 * 256 + 128: fits without a sign.
+    // The sum is at most 255 * 256 + 128, which fits into an unsigned 16-bit number.
     auto sum = hn::Add(hn::Mul(load(0), hn::Set(d, kWeights[0])), hn::Set(d, 128));
     for (int i = 1; i <= kReach; ++i) {
       sum = hn::Add(sum, hn::Mul(hn::Add(load(i), load(-i)), hn::Set(d, kWeights[i])));

@@ -11,33 +11,34 @@
 namespace orb360 {
 namespace {
 
-// Zones of latitude, as bands [begin, end), within which corners compete by strength alone: about
-// 45 degrees wide at the poles, 22.5 elsewhere. In narrower ones the choice would hang on where
-// their borders happen to lie.
+// Zones of latitude, as bands [begin, end), within which corners compete by strength alone. They
+// are about 45 degrees wide at the poles and 22.5 degrees elsewhere. In narrower zones the choice
+// would depend on the position of their borders.
 struct Zone {
   int begin;
   int end;
 };
 constexpr std::array<Zone, 6> kZones = {{{0, 4}, {4, 6}, {6, 8}, {8, 10}, {10, 12}, {12, 16}}};
 
-// Even shares that a band or a cell may contribute before weaker corners elsewhere come first. With
-// one, corners would be spread most evenly, but the choice would hang on where the cells happen to
-// lie: pitching a textured sphere by 45 degrees, 63 % of the features are found again with one, 72
-// % with three, 74 % with four, and no more than 75 % without a limit.
+// Multiple of its even share that a band or a cell may contribute before weaker corners elsewhere
+// are preferred. With 1 the corners would be distributed most evenly, but the choice would depend
+// on the position of the cells. When a textured sphere is pitched by 45 degrees, 63 % of the
+// features are found again with 1, 72 % with 3, 74 % with 4, and at most 75 % without a limit.
 constexpr double kMaxShares = 4.0;
 
-// Strongest first; among equals the order within the cell, which no roll by whole cells changes.
+// Orders by strength, then by the position within the cell, which a roll by whole cells does not
+// change.
 bool IsStronger(const Maximum& a, const Maximum& b) {
   if (a.score != b.score) return a.score > b.score;
   return a.y != b.y ? a.y < b.y : a.x < b.x;
 }
 
-// All local maxima of a band, in its order.
+// Returns all local maxima of a band, ordered by row and column.
 std::vector<Maximum> Scan(const PyramidLevel& level, const SphereBand& band, uint8_t min_score,
                           const cv::Mat& mask) {
   const int width = band.width;
-  // Three rows of scores with one column beyond either side, for the 3x3 maximum, turned as the
-  // window moves down.
+  // Three rows of scores for the 3x3 maximum, with one further column on either side. They are used
+  // cyclically as the window moves down.
   constexpr int kPad = 1;
   cv::Mat scores = cv::Mat::zeros(3, width + 2 * kPad, CV_8U);
   const auto score_row = [&](int y) { return scores.ptr((y + 3) % 3) + kPad; };
@@ -71,7 +72,7 @@ std::vector<Maximum> Scan(const PyramidLevel& level, const SphereBand& band, uin
   return maxima;
 }
 
-// The strongest `max_per_cell` of each cell, the first `share` of them marked.
+// Returns the strongest `max_per_cell` maxima of each cell; the first `share` of them are marked.
 std::vector<Maximum> LimitCells(const std::vector<Maximum>& maxima, size_t max_per_cell,
                                 size_t share) {
   std::array<size_t, kSphereColumns + 1> begin = {};
@@ -93,7 +94,7 @@ std::vector<Maximum> LimitCells(const std::vector<Maximum>& maxima, size_t max_p
   return kept;
 }
 
-// Takes the mark from all that are weaker than the `share` strongest with it.
+// Unmarks all maxima that are weaker than the `share` strongest marked ones.
 void LimitBand(int share, std::vector<Maximum>* maxima) {
   std::array<int, 256> histogram = {};
   for (const Maximum& m : *maxima) histogram[m.score] += m.within_share;
@@ -102,8 +103,8 @@ void LimitBand(int share, std::vector<Maximum>* maxima) {
   for (Maximum& m : *maxima) m.within_share &= m.score >= weakest;
 }
 
-// Half the difference of the sines of the latitudes at two rows: the share of the sphere's solid
-// angle between them.
+// Fraction of the sphere's solid angle between two rows: half the difference of the sines of their
+// latitudes.
 double ShareOfSphere(int height, int y_begin, int y_end) {
   const auto sine = [&](int y) { return std::cos(std::numbers::pi * y / height); };
   return 0.5 * (sine(y_begin) - sine(y_end));
@@ -114,8 +115,8 @@ struct Candidate {
   Maximum maximum;
 };
 
-// Moves about the strongest `count`, those within their share first, from `candidates` to `taken`;
-// equals at the cut are all taken. The order of both stays.
+// Moves about the strongest `count` corners from `candidates` to `taken`, marked ones first. All
+// corners of equal strength at the cut are taken. The order of both lists is kept.
 void TakeStrongest(int count, std::vector<Candidate>* candidates, std::vector<Candidate>* taken) {
   if (count <= 0) return;
   const auto preference = [](const Candidate& c) {
@@ -132,14 +133,15 @@ void TakeStrongest(int count, std::vector<Candidate>* candidates, std::vector<Ca
   });
 }
 
-// Offset in [-0.5, 0.5] of the maximum of the parabola through three scores, middle the largest.
+// Returns the offset in [-0.5, 0.5] of the maximum of the parabola through three scores, of which
+// the middle one is the largest.
 double ParabolaPeak(int before, int middle, int after) {
   const int curvature = 2 * middle - before - after;
   return curvature == 0 ? 0.0 : std::clamp(0.5 * (after - before) / curvature, -0.5, 0.5);
 }
 
-// Sub-pixel position on the level. Counted from the edge of the cell, a dyadic number, so that
-// rounding is the same in all cells.
+// Sub-pixel position on the level. It is counted from the edge of the cell, a dyadic number, so
+// that rounding is the same in all cells.
 Corner PlaceOnLevel(const Maximum& m, int band, int band_width, int level_width) {
   const double scale = static_cast<double>(level_width) / band_width;
   const double from_edge = m.x + 0.5 - static_cast<double>(m.cell) * band_width / kSphereColumns;
@@ -159,7 +161,7 @@ BandMaxima FindMaxima(const PyramidLevel& level, const SphereBand& band, int cou
   const double share = ShareOfSphere(level.camera.height(), band.y_begin, band.y_end);
   const int per_band = static_cast<int>(std::ceil(kMaxShares * share * count));
   const int per_cell = (per_band + kSphereColumns - 1) / kSphereColumns;
-  // More than a few times its share no cell will ever be asked for.
+  // No cell is asked for more than a few times its share.
   std::vector<Maximum> maxima =
       LimitCells(Scan(level, band, min_score, mask), 2 * (per_cell + 1), per_cell);
   LimitBand(per_band, &maxima);

@@ -11,7 +11,7 @@
 
 namespace orb360 {
 
-/// A local maximum of the FAST score in one band of one level, with its neighbours' scores.
+/// A local maximum of the FAST score in one band of one level, with the scores of its neighbours.
 struct Maximum {
   int x;  // pixel indices: column of the band, row of the level
   int y;
@@ -27,12 +27,12 @@ struct BandMaxima {
   std::vector<Maximum> maxima;
 };
 
-/// Finds the maxima of one band. `count` is how many corners the whole level is to have. Those with
-/// mask 0 are left out (`mask` CV_8U of any size that covers the sphere, or empty).
+/// Finds the maxima of one band. `count` is the number of corners that the whole level should have.
+/// Maxima with mask 0 are left out (`mask` is CV_8U, of any size that covers the sphere, or empty).
 BandMaxima FindMaxima(const PyramidLevel& level, const SphereBand& band, int count,
                       uint8_t min_score, const cv::Mat& mask);
 
-/// A corner chosen.
+/// A selected corner.
 struct Corner {
   int band;
   int x;  // pixel indices: column of the band, row of the level
@@ -42,13 +42,14 @@ struct Corner {
   double v;
 };
 
-/// About `count` corners of a level, from all its bands. Zones of latitude get their share of the
-/// solid angle. Within one the strongest win, but no band and no cell (a 32nd of a band) gets more
-/// than four times its own share as long as others have corners; and what a zone lacks, others
-/// take over. Ordered by row, then column.
+/// Selects about `count` corners of a level from all its bands. Each zone of latitude gets a number
+/// in proportion to its solid angle. Within a zone the strongest corners are selected, but no band
+/// and no cell (a 32nd of a band) gets more than four times its even share while others have
+/// corners left. Corners that a zone lacks are taken from other zones. The result is ordered by
+/// row, then column.
 ///
-/// Equal scores at the cut are all kept, so that the choice does not depend on the longitude and
-/// the number may exceed the count slightly.
+/// All corners of equal score at the cut are kept, so that the choice does not depend on the
+/// longitude. Their number may therefore exceed the count slightly.
 std::vector<Corner> SelectCorners(std::span<const BandMaxima> bands, int level_width, int count);
 
 }  // namespace orb360

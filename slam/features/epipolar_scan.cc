@@ -31,7 +31,7 @@ HWY_INLINE V Dot(const Eigen::Vector3f& a, const V3& b) {
                     hn::MulAdd(hn::Set(d, a.y()), b.y, hn::Mul(hn::Set(d, a.z()), b.z)));
 }
 
-/// The lanes that are set.
+/// Returns the set lanes as bits.
 HWY_INLINE unsigned Bits(hn::Mask<D> mask) {
   uint8_t bytes[8] = {};
   hn::StoreMaskBits(D(), mask, bytes);
@@ -41,7 +41,7 @@ HWY_INLINE unsigned Bits(hn::Mask<D> mask) {
 }  // namespace
 
 void FindOnArc(const BearingColumns& bearings, const EpipolarArc& arc, std::vector<int>* indices) {
-  // Component of the epipole across the direction of infinity: the way along the arc.
+  // Component of the epipole perpendicular to the direction at infinity, along the arc.
   const Eigen::Vector3f along =
       (arc.epipole - arc.epipole.dot(arc.infinity) * arc.infinity).normalized().cast<float>();
   const Eigen::Vector3f normal = arc.normal.cast<float>();
@@ -54,8 +54,8 @@ void FindOnArc(const BearingColumns& bearings, const EpipolarArc& arc, std::vect
 
   const D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  // A cell may hold such bearings if its circle reaches to the plane, and to within max_parallax of
-  // infinity.
+  // A cell can contain such bearings if its circle reaches the plane and reaches a point within
+  // max_parallax of infinity.
   const float margin = std::min(
       1.0F, static_cast<float>(arc.max_sigmas) * std::sqrt(variance + bearings.max_variance()));
   const auto plane_sine = hn::Set(d, margin);
@@ -77,7 +77,8 @@ void FindOnArc(const BearingColumns& bearings, const EpipolarArc& arc, std::vect
     const auto cosine = hn::LoadU(d, cells.cosine.data() + c);
     const auto is_near =
         hn::Ge(Dot(infinity, center), hn::NegMulAdd(near_sine, sine, hn::Mul(near_cosine, cosine)));
-    // All of them where the plane's surroundings and the circle make a quarter of the sphere.
+    // Accept all cells if the plane's surroundings and the circle together cover a quarter of the
+    // sphere.
     const auto is_on_plane =
         hn::Or(hn::Le(hn::Abs(Dot(normal, center)),
                       hn::MulAdd(plane_cosine, sine, hn::Mul(plane_sine, cosine))),
@@ -95,7 +96,7 @@ void FindOnArc(const BearingColumns& bearings, const EpipolarArc& arc, std::vect
             hn::Le(hn::Mul(off_plane, off_plane), hn::Mul(hn::Set(d, squared_sigmas), both));
         const auto in_band = hn::And(hn::And(near, near_plane), of_cell);
         if (hn::AllFalse(d, in_band)) continue;
-        // One standard deviation beyond infinity is noise.
+        // Noise can move a bearing by one standard deviation beyond infinity.
         const auto forward = hn::Ge(Dot(along, bearing), hn::Neg(hn::Sqrt(both)));
         const auto off_epipole = hn::Lt(hn::Abs(Dot(epipole, bearing)), hn::Set(d, max_epipole));
         const auto is_found = hn::And(in_band, hn::And(forward, off_epipole));
@@ -118,7 +119,8 @@ HWY_EXPORT(FindOnArc);
 
 namespace {
 
-// Cells on the faces of a cube around the sphere, about 20 degrees wide, numbered along each face.
+// Cells lie on the faces of a cube around the sphere; they are about 20 degrees wide and numbered
+// along each face.
 constexpr int kCellsPerEdge = 4;
 constexpr int kCells = 6 * kCellsPerEdge * kCellsPerEdge;
 static_assert(kCells % BearingColumns::kMostLanes == 0);  // vectors of cells hold nothing else

@@ -7,9 +7,9 @@
 
 namespace orb360 {
 
-/// Bearings as columns, for scans over all of them. Neighbours on the sphere stand together in
-/// cells, most of which are far from a given arc and are passed over. Columns are a vector longer
-/// than what they hold.
+/// Bearings as columns, for scans over all of them. Bearings that are close on the sphere are
+/// stored together in cells, and cells far from a given arc are skipped. Columns have one vector of
+/// padding at their end.
 class BearingColumns {
  public:
   static constexpr int kMostLanes = 16;  // of the longest vector
@@ -23,7 +23,7 @@ class BearingColumns {
   const float* variance() const { return variance_.data(); }  // of the angle, rad^2
   float max_variance() const { return max_variance_; }
 
-  /// Circles on the sphere, each around the bearings of a cell.
+  /// Circles on the sphere, one around the bearings of each cell.
   struct Cells {
     std::vector<float> x, y, z;       // centre
     std::vector<float> sine, cosine;  // of the radius
@@ -40,8 +40,8 @@ class BearingColumns {
   Cells cells_;
 };
 
-/// Where the match of a bearing of camera 1 may lie in camera 2: near its epipolar plane, and on
-/// the arc from where it would be at infinity towards the epipole, where the range is zero.
+/// The arc in camera 2 on which the match of a bearing of camera 1 lies: near its epipolar plane,
+/// from the direction of a point at infinity towards the epipole, where the range is zero.
 struct EpipolarArc {
   Eigen::Vector3d normal;    // unit, of the epipolar plane
   Eigen::Vector3d infinity;  // unit: the bearing of camera 1, turned into camera 2
@@ -52,7 +52,7 @@ struct EpipolarArc {
   double max_epipole_cosine = 1;  // matches nearer to the epipole or its antipode are left out
 };
 
-/// Replaces `indices` by those of the bearings on the arc, in the order of the columns.
+/// Replaces `indices` by the indices of the bearings on the arc, in the order of the columns.
 void FindOnArc(const BearingColumns& bearings, const EpipolarArc& arc, std::vector<int>* indices);
 
 }  // namespace orb360

@@ -11,15 +11,16 @@ namespace orb360 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// a >= b: Highway 1.0.3 compares 8-bit lanes only for equality and order of signed ones.
+// a >= b. Highway 1.0.3 compares 8-bit lanes only for equality, and orders only signed ones.
 template <class V>
 HWY_INLINE auto NotLess(V a, V b) {
   return hn::Eq(hn::Max(a, b), a);
 }
 
-// Over all arcs of 9 neighbours on the circle, the largest of their smallest values. The arcs from
-// k and k + 1 share 8 neighbours: the better of both is min(shared, max(first, last)), for every
-// second k, and the minima of 2, 4 and 8 neighbours come by doubling. 47 instructions.
+// The maximum, over all arcs of 9 neighbours on the circle, of the minimum within the arc. The arcs
+// from k and k + 1 have 8 neighbours in common, so the better of both is min(common, max(first,
+// last)) for every second k. The minima of 2, 4 and 8 neighbours are computed by doubling. This
+// takes 47 instructions.
 template <class V, class Smaller, class Larger>
 HWY_INLINE V BestArc(const V (&c)[16], Smaller smaller, Larger larger) {
   V two[8];
@@ -44,7 +45,8 @@ HWY_INLINE void ScoreBlock(D d, const uint8_t* center, const ptrdiff_t (&circle)
   const V p = hn::LoadU(d, center);
   const V threshold = hn::Set(d, min_score);
   V c[16];
-  // Every arc of 9 covers two neighbours of the four compass points: many blocks end here.
+  // Every arc of 9 contains two neighbours among the four compass points. Many blocks are rejected
+  // here.
   for (int i = 0; i < 16; i += 4) c[i] = hn::LoadU(d, center + circle[i]);
   const V brighter = hn::Min(hn::Max(c[0], c[8]), hn::Max(c[4], c[12]));
   const V darker = hn::Max(hn::Min(c[0], c[8]), hn::Min(c[4], c[12]));
@@ -63,7 +65,7 @@ HWY_INLINE void ScoreBlock(D d, const uint8_t* center, const ptrdiff_t (&circle)
 
 void FastScoreRow(const uint8_t* center, ptrdiff_t stride, int width, uint8_t min_score,
                   uint8_t* score) {
-  // The circle of radius 3, clockwise from the top.
+  // Offsets of the circle of radius 3, clockwise from the top.
   const ptrdiff_t circle[16] = {-3 * stride, -3 * stride + 1, -2 * stride + 2, -stride + 3,
                                 3,           stride + 3,      2 * stride + 2,  3 * stride + 1,
                                 3 * stride,  3 * stride - 1,  2 * stride - 2,  stride - 3,

@@ -8,7 +8,7 @@
 namespace orb360 {
 namespace {
 
-// The nearest feature on the next finer level, `feature` itself if there is none.
+// Returns the nearest feature on the next finer level, or `feature` itself if there is none.
 int FinerCopy(const Features& features, int feature, std::vector<int>* nearby) {
   constexpr double kMaxSigmas = 2.0;
   const Keypoint& keypoint = features.keypoints[feature];

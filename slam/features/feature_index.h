@@ -4,11 +4,12 @@
 
 namespace orb360 {
 
-/// Makes what is found from keypoints and bearings: `grid` and `corners`.
+/// Computes `grid` and `corners` from keypoints and bearings.
 ///
 /// Most corners are found on several neighbouring levels of the pyramid. A feature shows the corner
-/// of the nearest one on the next finer level if that lies within two standard deviations of its
-/// own position. What is no corner stands for itself, and is not found.
+/// of the nearest feature on the next finer level if that lies within two standard deviations of
+/// its own position. A feature that is not a corner is a corner of its own and is not found through
+/// `grid`.
 void IndexFeatures(Features* features);
 
 }  // namespace orb360

@@ -31,7 +31,7 @@ struct Features {
   std::vector<Eigen::Vector3d> bearings;  // unit vectors, camera frame
   std::vector<Descriptor> descriptors;
   std::vector<Color> colors;  // empty where the image had none
-  // Of IndexFeatures:
+  // Computed by IndexFeatures:
   SphereGrid grid;           // over the bearings of corners
   std::vector<int> corners;  // the finest feature that shows the same corner, or itself
 

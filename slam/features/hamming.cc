@@ -10,7 +10,7 @@ HWY_BEFORE_NAMESPACE();
 namespace orb360 {
 namespace HWY_NAMESPACE {
 
-// Compiled once per target; from SSE4 on this is the popcnt instruction.
+// Compiled once per target. From SSE4 on this uses the popcnt instruction.
 HWY_INLINE int Distance(const Descriptor& a, const Descriptor& b) {
   return static_cast<int>(hwy::PopCount(a[0] ^ b[0]) + hwy::PopCount(a[1] ^ b[1]) +
                           hwy::PopCount(a[2] ^ b[2]) + hwy::PopCount(a[3] ^ b[3]));

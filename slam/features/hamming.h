@@ -7,8 +7,8 @@
 
 namespace orb360 {
 
-/// The two nearest of some descriptors. Distances are numbers of differing bits; kNone where there
-/// is no such descriptor.
+/// The two nearest among some descriptors. Distances are numbers of differing bits, and kNone where
+/// there is no such descriptor.
 struct NearestTwo {
   static constexpr int kNone = 257;
   int best_index = -1;
@@ -17,15 +17,16 @@ struct NearestTwo {
   int second_distance = kNone;
 };
 
-/// Distance of one pair; for many use the functions below, which run on hardware popcount.
+/// Returns the distance of one pair. For many pairs use the functions below, which use hardware
+/// popcount.
 int HammingDistance(const Descriptor& a, const Descriptor& b);
 
-/// The two nearest to `query` among descriptors[i] for i in `candidates`; the earlier candidate
-/// wins a tie. The indices are elements of `candidates`.
+/// Finds the two descriptors nearest to `query` among descriptors[i] for i in `candidates`. The
+/// earlier candidate wins a tie. The returned indices are elements of `candidates`.
 NearestTwo FindNearestTwo(const Descriptor& query, std::span<const Descriptor> descriptors,
                           std::span<const int> candidates);
 
-/// Distances from `query` to all `descriptors`; `distances` has their size.
+/// Computes the distances from `query` to all `descriptors`; `distances` has the same size.
 void HammingDistances(const Descriptor& query, std::span<const Descriptor> descriptors,
                       std::span<uint16_t> distances);
 

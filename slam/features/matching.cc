@@ -15,7 +15,8 @@ bool IsDistinct(const NearestTwo& nearest, const MatchOptions& options) {
          nearest.best_distance < options.ratio * nearest.second_distance;
 }
 
-// Best in the second set for each of the first, -1 where none; then those that are mutual.
+// Keeps matches that are mutually best: `forward` and `backward` hold the best match in the other
+// set.
 std::vector<Match> KeepMutual(const std::vector<NearestTwo>& forward,
                               const std::vector<int>& backward) {
   std::vector<Match> matches;
@@ -28,7 +29,7 @@ std::vector<Match> KeepMutual(const std::vector<NearestTwo>& forward,
   return matches;
 }
 
-// For each feature of `from`, the nearest two of `to` within the radius.
+// Finds, for each feature of `from`, the nearest two features of `to` within the radius.
 std::vector<NearestTwo> FindNearby(const Features& from, const Features& to, double radius,
                                    int num_threads) {
   std::vector<NearestTwo> nearest(from.size());

@@ -12,10 +12,10 @@
 namespace orb360 {
 namespace {
 
-// A level's share of the features: by the square of its number of pixels. Fine features are placed
-// more exactly and found again more often, and most coarse ones show a corner that a fine one shows
-// as well; coarse ones are needed where the distance changes, as on the way back on the other
-// side of a street. The exponent is measured (docs/features.md).
+// A level's weight in the distribution of features, a power of its number of pixels. Fine features
+// are located better and found again more often, and most coarse ones show a corner that a fine one
+// shows too. Coarse features are needed where the distance changes, for example on the way back on
+// the other side of a street. The exponent was measured (docs/results/features.md).
 double Weight(const PyramidLevel& level) { return std::pow(level.scale, -4.0); }
 
 std::vector<int> ShareOut(int num_features, const SpherePyramid& levels) {

@@ -13,21 +13,23 @@ constexpr int kSide = 2 * Patch::kRadius + 1;
 constexpr int kCount = kSide * kSide;
 constexpr double kMaxShift = 2.0;        // samples
 constexpr double kMinCorrelation = 0.8;  // normalized, of the weighted gray values
-// At the guess: below that one in two hundred still is aligned, and the others take most steps.
+// Least correlation at the initial guess. Only one in 200 patches below it is aligned successfully,
+// and those below take most steps.
 constexpr double kMinGuessedCorrelation = 0.4;
 constexpr double kMinRoundness = 0.01;  // of the smaller to the larger eigenvalue of the structure
-// Of gray values: how little two pictures of the same differ by, squared, and how many errors of
-// their own a patch's samples have, which lie half a pixel apart.
+// Noise of gray values: the least squared difference between two images of the same surface, and
+// the number of independent errors among a patch's samples, which lie half a pixel apart.
 constexpr double kLeastNoise = 4.0;
 constexpr double kIndependent = 15.0;
 constexpr int kMaxSteps = 15;
-// Samples that a step moves the centre, and the rim by the slope, to be the last.
+// A step is the last one when it moves the centre, and the rim by the slope, by less than these
+// numbers of samples.
 constexpr double kEnough = 0.01;
 constexpr double kEnoughBend = 0.05;
 
 using Values = Eigen::Array<float, kCount, 1>;
 
-// What is near the centre belongs to the same surface more likely.
+// Samples near the centre are more likely to belong to the same surface.
 Values MakeWeights() {
   Values weights;
   for (int y = 0; y < kSide; ++y) {
@@ -46,13 +48,13 @@ const Values& Weights() {
   return weights;
 }
 
-// Whether samples up to `radius` from the centre lie in the level or its margin, with the pixels
-// that are blended.
+// Returns true if the samples up to `radius` from the centre, with the pixels that are blended, lie
+// in the level or its margin.
 bool IsInside(const PyramidLevel& level, const PatchGrid& grid, double radius) {
   const Eigen::Vector2d reach = radius * grid.steps.cwiseAbs().rowwise().sum();
   const Eigen::Vector2d least(1.0 - PyramidLevel::kMarginX, 1.0 - PyramidLevel::kMarginY);
   const Eigen::Vector2d most(level.camera.width() - least.x(), level.camera.height() - least.y());
-  // Not so for what is not a number.
+  // The comparison is false for NaN.
   return ((grid.center - reach).array() >= least.array()).all() &&
          ((grid.center + reach).array() <= most.array()).all();
 }
@@ -90,15 +92,17 @@ float Mean(const Values& values) { return (Weights() * values).sum(); }
 
 float MeanProduct(const Values& a, const Values& b) { return (Weights() * a * b).sum(); }
 
-// A patch as the steps need it: values about their weighted mean, and how they change with what is
-// looked for: the centre, in samples, and the surface's slope.
+// A patch in the form that the steps need: its values relative to their weighted mean, and their
+// derivatives with respect to the parameters, which are the centre (in samples) and the slope of
+// the surface.
 struct Template {
   using Columns = std::array<Values, 4>;
   Values values;
   Columns by_parameter;  // x, y, slope x, slope y
   Eigen::Matrix4d structure;
 
-  // `moved`: by how many samples a slope of one moves a sample that is one away from the centre.
+  // `moved` is the number of samples by which a slope of one moves a sample at distance one from
+  // the centre.
   Template(const Patch& patch, const Eigen::Vector2f& moved) {
     const auto at = [&](int x, int y) {
       return static_cast<float>(patch.gray[y * Patch::kWidth + x]);
@@ -115,8 +119,8 @@ struct Template {
       }
     }
     values -= Mean(values);
-    // What another brightness explains tells nothing of where things are: a ramp that is stretched
-    // looks like one with less contrast.
+    // Changes that a different brightness explains say nothing about position: a stretched ramp
+    // looks like one with less contrast. They are removed from the derivatives.
     const float variance = MeanProduct(values, values);
     for (Values& column : by_parameter) {
       column -= Mean(column);
@@ -129,13 +133,13 @@ struct Template {
     }
   }
 
-  // Enough structure in every direction to tell where the centre is.
+  // Returns true if there is enough structure in every direction to locate the centre.
   bool IsDistinct() const {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(structure.topLeftCorner<2, 2>());
     return eigen.eigenvalues()[0] > kMinRoundness * eigen.eigenvalues()[1];
   }
 
-  // What a picture with such noise tells of the slope, whatever the centre is.
+  // Information that an image with such noise gives about the slope, independent of the centre.
   Eigen::Matrix2d SlopeInformation(double squared_noise) const {
     const Eigen::Matrix2d mixed = structure.topRightCorner<2, 2>();
     return (structure.bottomRightCorner<2, 2>() -
@@ -144,7 +148,7 @@ struct Template {
   }
 };
 
-// A picture's gray values on a grid, compared with a template.
+// An image's gray values on a grid, compared with a template.
 struct Comparison {
   Values error;          // after the brightness is made the template's
   double correlation;    // not a number where one of both is even
@@ -188,7 +192,7 @@ std::optional<AlignedPatch> AlignPatch(const Patch& patch, const PyramidLevel& l
     const Comparison seen(wanted, level, grid);
     if (!std::isfinite(seen.correlation)) return std::nullopt;
     if (i == 0 && seen.correlation < kMinGuessedCorrelation) return std::nullopt;
-    // A step d of the template's slope, undone in the picture's steps guess.steps (I + moved a^T):
+    // A step d of the template's slope is undone in the image's steps guess.steps (I + moved a^T):
     // (I + moved a^T) (I + moved d^T)^-1 = I + moved (a - growth / (1 + moved^T d) d)^T.
     const double growth = 1 + moved.dot(added_slope);
     const Eigen::Matrix2d prior = seen.squared_noise * slope.information;

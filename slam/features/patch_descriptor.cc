@@ -16,7 +16,7 @@ namespace orb360 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// atan(y / x) for x >= 0, |error| < 2e-6 rad: minimax polynomial in the smaller ratio.
+// atan(y / x) for x >= 0 with |error| < 2e-6 rad, by a minimax polynomial in the smaller ratio.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V AtanOfRatio(D d, V y, V x) {
   const V ay = hn::Abs(y);
@@ -42,14 +42,14 @@ HWY_INLINE V Atan2(D d, V y, V x) {
   return hn::IfThenElse(hn::Lt(x, hn::Zero(d)), left, right);
 }
 
-// atan(t) / t of a small t, from its square.
+// atan(t) / t for a small t, computed from its square.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V AtanSeries(D d, V square) {
   return hn::MulAdd(hn::MulAdd(square, hn::Set(d, 0.2f), hn::Set(d, -1.0f / 3.0f)), square,
                     hn::Set(d, 1.0f));
 }
 
-// Byte offsets from the centre of the pixels at tangent coordinates (a, b).
+// Byte offsets, from the centre, of the pixels at tangent coordinates (a, b).
 template <class D, class V = hn::Vec<D>, class DI = hn::RebindToSigned<D>>
 HWY_INLINE hn::Vec<DI> Offsets(D d, const TangentSampling& at, int stride, V a, V b) {
   const DI di;
@@ -57,7 +57,7 @@ HWY_INLINE hn::Vec<DI> Offsets(D d, const TangentSampling& at, int stride, V a, 
   const V south = hn::Mul(b, hn::Set(d, at.k));
   const V one = hn::Set(d, 1.0f);
   const V secant = hn::Set(d, 1.0f / at.cosine);
-  // Of pixels that are not aside of the band's ends.
+  // Offsets of pixels that do not lie beyond the sides of the band.
   const auto offsets = [&](V longitude, V down) HWY_ATTR {
     const V columns = hn::Round(hn::Mul(hn::Set(d, at.fx), longitude));
     const V rows = hn::Round(hn::Mul(hn::Set(d, -at.fy), down));
@@ -83,7 +83,8 @@ HWY_INLINE hn::Vec<DI> Offsets(D d, const TangentSampling& at, int stride, V a, 
     const V p = hn::Mul(hn::MulAdd(hn::Set(d, at.sine), e, south), shrink);
     return offsets(hn::Mul(q, AtanSeries(d, q2)), hn::Mul(p, AtanSeries(d, hn::Mul(p, p))));
   }
-  // Exactly, in a frame whose meridian is the patch's own: nothing depends on the longitude.
+  // The exact projection in a frame whose meridian is the patch's own, so that nothing depends on
+  // the longitude.
   const V forward = hn::MulAdd(hn::Set(d, at.sine), south, hn::Set(d, at.cosine));
   const V up = hn::NegMulAdd(hn::Set(d, at.cosine), south, hn::Set(d, at.sine));
   const V longitude = Atan2(d, east, forward);
@@ -99,7 +100,7 @@ HWY_INLINE hn::Vec<DI> Offsets(D d, const TangentSampling& at, int stride, V a, 
                  hn::Sub(u, hn::Set(di, at.u_index)));
 }
 
-// The pixels at those offsets. Reads three bytes beyond, which the margins of a level allow.
+// The pixels at those offsets. Reads three bytes beyond them, which the margins of a level allow.
 template <class DI, class VI = hn::Vec<DI>>
 HWY_INLINE VI GatherPixels(DI di, const uint8_t* center, VI offsets) {
   const VI words = hn::GatherOffset(di, reinterpret_cast<const int32_t*>(center), offsets);

@@ -7,8 +7,8 @@
 namespace orb360 {
 namespace {
 
-// Five keys of 24 bits recognise as much as ten and need half the time and memory
-// (docs/loops.md).
+// Five keys of 24 bits recognise as many places as ten and need half of the time and memory
+// (docs/results/loops.md).
 constexpr int kKeyBits = 24;
 constexpr int kTables = 5;
 constexpr int kSlotBits = 18;  // of a table: some entries in each, with a thousand places
@@ -28,7 +28,8 @@ Keys KeysOf(const Descriptor& descriptor) {
   return keys;
 }
 
-// Multiplicative hashing by the golden ratio: the highest bits depend on all of the key's.
+// Multiplicative hashing by the golden ratio, so that the highest bits depend on all bits of the
+// key.
 uint32_t SlotOf(uint32_t key) { return (key * 2654435769u) >> (32 - kSlotBits); }
 
 }  // namespace
@@ -44,7 +45,7 @@ int PlaceIndex::Add(std::span<const Descriptor> descriptors) {
     for (int t = 0; t < kTables; ++t) {
       Table& table = tables_[t];
       int32_t& newest = table.newest[SlotOf(keys[t])];
-      // A place shows a key once, however often it is there: repeated texture tells nothing more.
+      // A place is listed once for a key, because repeated texture carries no further information.
       bool is_new = true;
       for (int32_t e = newest; e >= 0 && table.entries[e].place == place && is_new;
            e = table.entries[e].next) {

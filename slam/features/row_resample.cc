@@ -53,7 +53,8 @@ void ResampleRow(const uint8_t* row, const ResampleTaps& taps, uint8_t* out) {
   const int num_fast = taps.lookup.empty() ? 0 : count - count % 8;
   for (; x < num_fast; x += 8) {
     const auto source = hn::LoadU(d8, row + taps.index[x]);
-    // Both samples of a pixel in one 16-bit word (little endian: the first is the low half).
+    // Both samples of a pixel are in one 16-bit word (little endian: the first one is the low
+    // half).
     const auto pairs = hn::BitCast(
         d16, hn::TableLookupBytes(source, hn::LoadU(d8, taps.lookup.data() + ptrdiff_t{2} * x)));
     const auto blended = Blend(d16, hn::And(pairs, low), hn::ShiftRight<8>(pairs),
@@ -106,7 +107,7 @@ HWY_EXPORT(HalveRows);
 ResampleTaps::ResampleTaps(int source, int target)
     : source_size(source), index(target), weight(target) {
   for (int i = 0; i < target; ++i) {
-    // (i + 1/2) * source / target - 1/2, as a fraction over 2 * target.
+    // (i + 1/2) * source / target - 1/2 as a fraction over 2 * target.
     const int64_t numerator = (int64_t{2} * i + 1) * source - target;
     const int64_t denominator = int64_t{2} * target;
     const int64_t whole = numerator >= 0 ? numerator / denominator : -1;

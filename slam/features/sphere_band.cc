@@ -22,12 +22,13 @@ constexpr int kLastWhole = kSphereBands - 1 - kFirstWhole;
 
 bool IsWhole(int index) { return index >= kFirstWhole && index <= kLastWhole; }
 
-// Of the band's middle: the mean proportion of its pixels on the sphere.
+// Cosine of the latitude of the band's middle, which is the mean aspect ratio of its pixels on the
+// sphere.
 double CosineOfBand(int index) { return std::sin(std::numbers::pi * (index + 0.5) / kSphereBands); }
 
-// Widths from the level's to the band's, each at least half of the one before, so that two taps
-// suffice for a step; all multiples of the number of cells, so that a roll by whole cells stays
-// one.
+// Widths from the level's to the band's. Each is at least half of the previous one, so that two
+// taps are enough for a step. All are multiples of the number of cells, so that a roll by whole
+// cells remains one.
 std::vector<ResampleTaps> Steps(int level_width, int band_width) {
   std::vector<ResampleTaps> steps;
   for (int width = level_width; width > band_width;) {
@@ -39,7 +40,7 @@ std::vector<ResampleTaps> Steps(int level_width, int band_width) {
   return steps;
 }
 
-// All rows of the band, compressed to its width, with margins left and right.
+// Compresses all rows of the band to its width and adds margins on the left and right.
 void Compress(const PyramidLevel& level, SphereBand* band) {
   const int level_width = level.camera.width();
   std::vector<uint8_t> row(level_width + 2 + kResampleReach);
@@ -60,7 +61,8 @@ void Compress(const PyramidLevel& level, SphereBand* band) {
   }
 }
 
-// Rows [first, last), all columns but the outermost that the blur would read beyond.
+// Blurs rows [first, last), all columns except the outermost ones, beyond which the blur would
+// read.
 void BlurRows(const cv::Mat& from, int first, int last, cv::Mat* to) {
   BlurImage(from.ptr(first) + kReach, static_cast<ptrdiff_t>(from.step), from.cols - 2 * kReach,
             last - first, to->ptr(first) + kReach, static_cast<ptrdiff_t>(to->step));
@@ -103,7 +105,7 @@ void BlurBand(int index, const SphereBand& band, cv::Mat* whole, SphereBand* blu
     return;
   }
   blurred->padded = *whole;
-  // The outermost of these bands also do the rows that patches reach beyond them.
+  // The outermost of these bands also blur the rows beyond them that patches reach.
   const int first = band.y_begin + (index == kFirstWhole ? kReach : kMarginY);
   const int last = band.y_end + kMarginY + (index == kLastWhole ? kMarginY - kReach : 0);
   BlurRows(band.padded, first, last, whole);

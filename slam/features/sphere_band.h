@@ -11,17 +11,18 @@
 
 namespace orb360 {
 
-/// Bands of latitude of equal height on every level: 11.25 degrees, so that a 32nd of one is about
-/// square at the equator.
+/// Number of bands of latitude of equal height on every level. A band is 11.25 degrees high, so
+/// that a 32nd of it is about square at the equator.
 inline constexpr int kSphereBands = 16;
 
-/// A band of one level, compressed horizontally to about the proportions it has on the sphere: near
-/// the poles an equirectangular image is stretched by 1 / cos(latitude), and both what is a corner
-/// and what a blur hides would depend on the direction.
+/// A band of one level, compressed horizontally to about the proportions that it has on the sphere.
+/// Near the poles an equirectangular image is stretched by 1 / cos(latitude), so both the detection
+/// of corners and the effect of a blur would depend on the direction.
 ///
-/// Its width is a multiple of kSphereColumns, so that a roll by whole cells of the level is one of
-/// the band. Around it is the margin of a level (sphere_pyramid.h): rows beyond, and columns that
-/// wrap. Below 45 degrees the compression would be slight, and the band is a view of the level.
+/// The width is a multiple of kSphereColumns, so that a roll of the level by whole cells is one of
+/// the band. The margin is that of a level (sphere_pyramid.h): rows beyond the band, and columns
+/// that wrap. Below 45 degrees the compression would be slight, and the band is a view of the
+/// level.
 struct SphereBand {
   int y_begin;  // rows of the level: [y_begin, y_end)
   int y_end;
@@ -31,19 +32,19 @@ struct SphereBand {
   cv::Mat padded;                         // CV_8U, width + 2 PyramidLevel::kMarginX columns
 
   ptrdiff_t stride() const { return static_cast<ptrdiff_t>(padded.step); }
-  /// Pixel at column x of the band and row y of the level.
+  /// Returns the pixel at column x of the band and row y of the level.
   const uint8_t* Pixel(int x, int y) const {
     return padded.ptr(y - first_row) + PyramidLevel::kMarginX + x;
   }
 };
 
-/// Band `index`, from the top, of a level. `band` may be the same band of an earlier image: its
-/// memory is used again.
+/// Cuts band `index`, counted from the top, from a level. `band` may hold the same band of an
+/// earlier image; its memory is reused.
 void CutBand(const PyramidLevel& level, int index, SphereBand* band);
 
-/// Blurs band `index` for the comparison of single pixels (blur.h); of the margin all but the
-/// outermost 3 pixels. `whole`: memory of the size of the level's `padded`, the same for all bands
-/// of a level; those that are views of their level are views of it when blurred.
+/// Blurs band `index` for the comparison of single pixels (blur.h), including its margin except for
+/// the outermost 3 pixels. `whole` is memory of the size of the level's `padded`, the same for all
+/// bands of a level; bands that are views of their level become views of it.
 void BlurBand(int index, const SphereBand& band, cv::Mat* whole, SphereBand* blurred);
 
 }  // namespace orb360

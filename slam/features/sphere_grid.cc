@@ -7,7 +7,7 @@ namespace orb360 {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-// 4 degrees: a typical search window of tracking touches 4 to 9 cells.
+// A ring is 4 degrees high, so that a typical search window of tracking touches 4 to 9 cells.
 constexpr int kRings = 45;
 constexpr double kRingHeight = kPi / kRings;
 
@@ -54,7 +54,8 @@ void SphereGrid::Query(const Eigen::Vector3d& center, double radius,
   }
   const double latitude = Latitude(center);
   const double longitude = std::atan2(center.y(), center.x());
-  // Half width in longitude of a cap: asin(sin r / cos lat), everything once it holds a pole.
+  // Half of a cap's width in longitude: asin(sin r / cos lat), or the whole circle if it contains a
+  // pole.
   const bool holds_pole = std::abs(latitude) + radius >= 0.5 * kPi;
   const double half_width =
       holds_pole ? kPi : std::asin(std::min(1.0, std::sin(radius) / std::cos(latitude)));

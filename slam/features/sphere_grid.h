@@ -9,17 +9,17 @@
 
 namespace orb360 {
 
-/// Unit vectors sorted into cells of about equal solid angle, to find those near a direction.
-/// Rings of equal height in latitude (about the +Z axis), each with a number of cells in
-/// proportion to its circumference.
+/// Unit vectors sorted into cells of about equal solid angle, to find those near a direction. Rings
+/// of equal height in latitude (about the +Z axis) have a number of cells in proportion to their
+/// circumference.
 class SphereGrid {
  public:
   SphereGrid() = default;
   explicit SphereGrid(std::span<const Eigen::Vector3d> bearings);
 
-  /// Appends the indices of all bearings within `radius` (radians) of the unit vector `center` and
-  /// some of those just outside, in ascending order within each cell. Radii beyond 90 degrees
-  /// return everything.
+  /// Appends the indices of all bearings within `radius` (radians) of the unit vector `center`, and
+  /// of some bearings just outside, in ascending order within each cell. Radii beyond 90 degrees
+  /// return all bearings.
   void Query(const Eigen::Vector3d& center, double radius, std::vector<int>* indices) const;
 
  private:

@@ -15,7 +15,7 @@ namespace {
 constexpr int kLevelsPerOctave = 4;
 constexpr int kMinWidth = 64;
 
-// How a level is resampled from a finer one; reads one pixel into its margin.
+// Describes how a level is resampled from a finer one; reads one pixel into its margin.
 struct Resampling {
   const PyramidLevel* source;
   PyramidLevel* target;
@@ -38,7 +38,7 @@ struct Resampling {
   }
 };
 
-// The next octave: exactly half where that is possible, and nearly so otherwise.
+// Computes the next octave, at exactly half of the size where that is possible.
 void Halve(const PyramidLevel& source, PyramidLevel* target) {
   if (2 * target->camera.width() != source.camera.width() ||
       2 * target->camera.height() != source.camera.height()) {
@@ -62,7 +62,8 @@ PyramidLevel MakeLevel(int width, int height, double scale) {
 SpherePyramid MakeLevels(int full_width, int full_height, int num_levels) {
   SpherePyramid levels = {MakeLevel(full_width, full_height, 1.0)};
   for (int l = 1; l < num_levels; ++l) {
-    // In the first octave a multiple of twice the columns, so that the next divides by them too.
+    // In the first octave the width is a multiple of twice the columns, so that that of the next
+    // octave is divisible too.
     const bool first_octave = l < kLevelsPerOctave;
     const int multiple = first_octave ? 2 * kSphereColumns : kSphereColumns;
     const EquirectangularCamera& source = levels[first_octave ? 0 : l - kLevelsPerOctave].camera;
@@ -93,7 +94,7 @@ void FillSphereMargin(PyramidLevel* level) {
     std::memcpy(row, row + width, kX);
     std::memcpy(row + kX + width, row + kX, kX);
   }
-  // Across the pole the same meridian goes on at the opposite longitude.
+  // Across a pole the meridian continues at the opposite longitude.
   const auto cross_pole = [&](int target, int source) {
     uint8_t* out = padded.ptr(target);
     const uint8_t* in = padded.ptr(source) + kX;
@@ -136,7 +137,7 @@ void BuildSpherePyramid(const cv::Mat& gray, int num_levels, SpherePyramid* resu
       }
     }
 #pragma omp barrier
-    // A level and the one an octave above it are independent of the others.
+    // A level and the level one octave above it are independent of the other levels.
 #pragma omp for schedule(dynamic)
     for (int first = 0; first < std::min(kLevelsPerOctave, num_made); ++first) {
       if (first > 0) FillSphereMargin(&levels[first]);

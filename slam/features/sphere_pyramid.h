@@ -8,26 +8,27 @@
 
 namespace orb360 {
 
-/// Number of columns of cells on every pyramid level. Level widths are multiples of it (but for
-/// level 0, which is the input), so that rolling the input by k/32 of its width rolls every level
-/// by whole pixels and whole cells, and features come out exactly the same.
+/// Number of columns of cells on every pyramid level. Level widths are multiples of it (except
+/// level 0, which is the input). Rolling the input by k/32 of its width therefore rolls every level
+/// by whole pixels and whole cells, and the features are exactly the same.
 inline constexpr int kSphereColumns = 32;
 
 /// One level of the pyramid: an equirectangular image with a margin that continues the sphere.
 struct PyramidLevel {
-  /// Margins in pixels. Horizontally the reach of a descriptor (tangent_sampling.h), of the blur,
-  /// and the three bytes beyond that gathering reads; vertically its radius and the blur.
+  /// Margins in pixels. The horizontal one is the reach of a descriptor (tangent_sampling.h), of
+  /// the blur, and the three further bytes that gathering reads; the vertical one is the
+  /// descriptor's radius and the blur.
   static constexpr int kMarginX = 32;
   static constexpr int kMarginY = 24;
 
   EquirectangularCamera camera;
-  /// Level-0 pixels per pixel of this level, horizontally: the feature's scale.
+  /// Number of level-0 pixels per pixel of this level, horizontally: the scale of its features.
   double scale;
-  /// CV_8U, (height + 2 kMarginY) x (width + 2 kMarginX). Longitude wraps; across a pole, row
-  /// -1 - i is row i turned by half the width.
+  /// CV_8U, (height + 2 kMarginY) x (width + 2 kMarginX). Longitude wraps; across a pole, row -1 -
+  /// i is row i turned by half the width.
   cv::Mat padded;
 
-  /// The image without its margin; pointers into it may reach into the margin.
+  /// The image without its margin. Pointers into it may reach into the margin.
   cv::Mat image() const {
     return padded(cv::Rect(kMarginX, kMarginY, camera.width(), camera.height()));
   }
@@ -35,11 +36,11 @@ struct PyramidLevel {
 
 using SpherePyramid = std::vector<PyramidLevel>;
 
-/// Scales grow by 2^(1/4) a level: levels 1 to 3 are resampled from the input, and level l + 4 is
-/// level l at half size. `gray` is CV_8U and covers the whole sphere. Levels that would be narrower
-/// than 64 pixels are left out. `levels` is empty, or from an earlier call with the same number and
-/// size: its memory is used again. Runs on `num_threads` OpenMP threads; the result does not depend
-/// on how many.
+/// Builds the pyramid. Scales grow by 2^(1/4) per level: levels 1 to 3 are resampled from the
+/// input, and level l + 4 is level l at half size. `gray` is CV_8U and covers the whole sphere.
+/// Levels narrower than 64 pixels are left out. `levels` is empty or comes from an earlier call
+/// with the same number and size; its memory is reused. Runs on `num_threads` OpenMP threads; the
+/// result does not depend on how many.
 void BuildSpherePyramid(const cv::Mat& gray, int num_levels, SpherePyramid* levels,
                         int num_threads = 1);
 

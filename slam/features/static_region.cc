@@ -11,28 +11,28 @@
 namespace orb360 {
 namespace {
 
-// Working resolution: 1.4 degrees a pixel, so that motion shows as a few pixels at most.
+// Working resolution: 1.4 degrees per pixel, so that motion is a few pixels at most.
 constexpr int kWidth = 256;
 constexpr int kHeight = 128;
-// What moves with the camera is looked for below this latitude, rad (12 degrees below the horizon,
-// where the ground is nearer than five times the camera's height).
+// Regions that move with the camera are searched below this latitude, rad: 12 degrees below the
+// horizon, where the ground is nearer than five times the camera's height.
 constexpr double kMaxLatitude = -0.21;
-// Pictures to compare before a judgement.
+// Number of image pairs that are needed for a decision.
 constexpr int kMinPairs = 8;
-// Texture, grey levels per pixel: below, a change says nothing.
+// Least texture, gray levels per pixel. Below it a change carries no information.
 constexpr float kMinTexture = 1.5f;
-// Pixels over which texture and change are averaged.
+// Size of the box, pixels, over which texture and change are averaged.
 constexpr int kBox = 5;
-// The median change per texture is about the motion in pixels of the working resolution; below
-// this the camera stands still.
+// The median ratio of change to texture is about the motion in pixels of the working resolution.
+// Below this value the camera stands still.
 constexpr float kMinMotion = 0.25f;
-// Static: less than this share of the median motion.
+// A pixel is static if it moves less than this fraction of the median motion.
 constexpr float kStaticShare = 0.3f;
-// Differences are capped (grey levels), so that an occluding edge does not outweigh the rest.
+// Differences are capped (gray levels), so that an occluding edge does not outweigh the rest.
 constexpr float kMaxChange = 40.0f;
-// Never brighter than this (of 255): nothing was recorded there.
+// Nothing was recorded where no image is brighter than this (of 255).
 constexpr double kBlack = 12.0;
-// Regions smaller than this share of the sphere are left in.
+// Regions smaller than this fraction of the sphere are ignored.
 constexpr double kMinArea = 0.004;
 
 double SolidAngleShare(const cv::Mat& region) {
@@ -45,15 +45,15 @@ double SolidAngleShare(const cv::Mat& region) {
   return share;
 }
 
-// Continues the panorama across the seam, so that filters and regions go on there.
+// Continues the panorama across the seam, so that filters and regions continue there.
 cv::Mat Unroll(const cv::Mat& image, int margin) {
   cv::Mat wide;
   cv::copyMakeBorder(image, wide, 0, 0, margin, margin, cv::BORDER_WRAP);
   return wide;
 }
 
-// Root of the structure tensor's smaller eigenvalue: the gradient (grey levels per pixel) across
-// the direction in which the picture varies least. An edge has none: along itself it may move
+// Root of the structure tensor's smaller eigenvalue: the gradient (gray levels per pixel) across
+// the direction in which the image varies least. It is zero at an edge, which can move along itself
 // unseen.
 cv::Mat CornerStrength(const cv::Mat& dx, const cv::Mat& dy) {
   cv::Mat xx;
@@ -69,13 +69,14 @@ cv::Mat CornerStrength(const cv::Mat& dx, const cv::Mat& dy) {
   return strength;
 }
 
-// Keeps connected regions (across the seam too) of at least kMinArea, grown by two pixels.
+// Keeps connected regions (also across the seam) of at least kMinArea, grown by two pixels.
 cv::Mat LargeRegions(const cv::Mat& region) {
   cv::Mat labels;
   const int count = cv::connectedComponents(Unroll(region, kWidth / 2), labels, 8, CV_32S);
   cv::Mat kept = cv::Mat::zeros(region.size(), CV_8U);
   for (int label = 1; label < count; ++label) {
-    // Every region lies whole in one of the two halves of the unrolled picture, or spans all.
+    // Every region lies entirely in one of the two halves of the unrolled image, or spans all of
+    // it.
     const cv::Mat wide = labels == label;
     cv::Mat folded = wide(cv::Rect(kWidth / 2, 0, kWidth, kHeight)).clone();
     folded.colRange(kWidth / 2, kWidth) |= wide.colRange(0, kWidth / 2);
@@ -157,7 +158,7 @@ cv::Mat StaticRegionDetector::Mask(cv::Size size) const {
     cv::Mat still = (ratio < kStaticShare * motion[motion.size() / 2]) & textured;
     const int first_row = static_cast<int>((0.5 - kMaxLatitude / std::numbers::pi) * kHeight);
     still.rowRange(0, first_row).setTo(0);
-    // Smooth parts between still texture belong to the same body.
+    // Smooth parts between static texture belong to the same body.
     cv::Mat closed;
     cv::morphologyEx(Unroll(still, 16), closed, cv::MORPH_CLOSE,
                      cv::getStructuringElement(cv::MORPH_ELLIPSE, {9, 9}));

@@ -5,23 +5,23 @@
 namespace orb360 {
 
 /// Finds what moves with the camera: the car or hand that carries it, and the black areas that
-/// stitching leaves. Pictures a fraction of a second apart are compared at low resolution: where
-/// there is texture, yet the picture changes much less than that texture would under the motion
-/// the rest of the picture shows, something stands still in front of the lens.
+/// stitching leaves. Images a fraction of a second apart are compared at low resolution. Where
+/// there is texture, but the image changes much less than that texture would under the motion of
+/// the rest of the image, an object stands still in front of the lens.
 ///
-/// Only below the horizon (by kMaxLatitude): above, what stands still may as well be far away.
-/// Black areas are found everywhere.
+/// Static regions are found only below the horizon (by kMaxLatitude), because above it they may as
+/// well be far away. Black areas are found everywhere.
 class StaticRegionDetector {
  public:
-  /// Another picture of the same camera, CV_8UC1 or CV_8UC3, any size. Best 0.2 s or more after the
-  /// one before.
+  /// Adds an image of the same camera, CV_8UC1 or CV_8UC3, of any size. It should be taken 0.2 s or
+  /// more after the previous one.
   void Add(const cv::Mat& image);
 
-  /// Whether enough pictures show enough motion for a judgement.
+  /// Returns true if enough images show enough motion for a decision.
   bool HasEvidence() const;
 
-  /// CV_8U of the given size: 0 where the camera's carrier or nothing is seen, 255 elsewhere. All
-  /// 255 without evidence of motion, but for black areas.
+  /// Returns a mask, CV_8U of the given size: 0 where the camera's carrier or nothing is seen, 255
+  /// elsewhere. Without evidence of motion only black areas are 0.
   cv::Mat Mask(cv::Size size) const;
 
  private:

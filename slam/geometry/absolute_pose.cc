@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 constexpr size_t kSampleSize = 3;
 
-/// camera_from_world with its rotation as a matrix.
+/// A model: camera_from_world with its rotation as a matrix.
 struct Model {
   Matrix3d rotation;
   Vector3d translation;
@@ -34,7 +34,7 @@ struct Correspondences {
   double sigma(size_t i) const { return internal::SigmaOf(sigmas, i, options); }
 };
 
-/// What OpenGV's minimal solver reads; the camera sits at its viewpoint.
+/// Adapts a sample to the interface of OpenGV's minimal solver; the camera lies at its viewpoint.
 class SampleAdapter : public opengv::absolute_pose::AbsoluteAdapterBase {
  public:
   explicit SampleAdapter(const Correspondences& data) : data_(data) {}
@@ -49,8 +49,8 @@ class SampleAdapter : public opengv::absolute_pose::AbsoluteAdapterBase {
   const Correspondences& data_;
 };
 
-/// Squared sine of the angle between bearing and point in standard deviations; infinite on the
-/// wrong side.
+/// Squared sine of the angle between bearing and point, in standard deviations. Infinite when the
+/// point lies on the opposite side of the camera.
 double SquaredError(const Correspondences& data, const Model& model, size_t i) {
   const Vector3d point = model.rotation * data.points[i] + model.translation;
   if (!(point.dot(data.bearings[i]) > 0.0)) return std::numeric_limits<double>::infinity();
@@ -58,7 +58,7 @@ double SquaredError(const Correspondences& data, const Model& model, size_t i) {
   return point.cross(data.bearings[i]).squaredNorm() / (point.squaredNorm() * sigma * sigma);
 }
 
-/// A Gauss-Newton step on all correspondences, weighted by the loss; the transform is updated on
+/// One Gauss-Newton step on all correspondences, weighted by the loss. The transform is updated on
 /// the left.
 Model Refine(const Correspondences& data, const Model& model, const TukeyLoss& loss) {
   using Vector6d = Eigen::Matrix<double, 6, 1>;
@@ -101,7 +101,8 @@ std::optional<AbsolutePose> EstimateAbsolutePose(std::span<const Vector3d> point
   const auto solve = [&](const std::array<int, kSampleSize>& sample, const auto& consider) {
     for (const Eigen::Matrix<double, 3, 4>& world_from_camera :
          opengv::absolute_pose::p3p_kneip(adapter, sample[0], sample[1], sample[2])) {
-      // Roots that are not real come back as the nearest real ones, which miss the sample.
+      // The solver returns the nearest real number for a complex root; such a pose does not fit the
+      // sample.
       if (!world_from_camera.allFinite()) continue;
       const Matrix3d rotation = Eigen::Quaterniond(world_from_camera.leftCols<3>().transpose())
                                     .normalized()

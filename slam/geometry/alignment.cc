@@ -11,14 +11,15 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Points within this share of their distance from the origin are one place: rounding of the mean.
+// Points are taken for one place when they differ by less than this fraction of their distance from
+// the origin, which is the rounding error of their mean.
 constexpr double kSamePlace = 1e-12;
 
-// Second singular value of the covariance in units of the first below which the points lie on a
-// line: a millionth of the line's length on both sides.
+// Points are taken for collinear when the second singular value of the covariance is below this
+// fraction of the first, which is a millionth of the line's length on either side.
 constexpr double kSameLine = 1e-12;
 
-/// Rotation about the centroids, and what the scale follows from.
+/// The rotation about the centroids, and the sums from which the scale follows.
 struct Centered {
   Vector3d source_mean, target_mean;
   double source_variance = 0.0, target_variance = 0.0;  // zero for a single place
@@ -62,7 +63,7 @@ std::optional<Centered> AlignCentered(std::span<const Vector3d> source,
     result.correlation = singular(0);
     return result;
   }
-  // A reflection would fit better where this is negative; the third axis gives way.
+  // A negative sign means that a reflection would fit better; then the third axis is inverted.
   const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0 ? -1.0 : 1.0;
   const Vector3d signs(1.0, 1.0, sign);
   result.rotation = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();

@@ -22,7 +22,7 @@ bool EquirectangularCamera::Project(const Eigen::Vector3d& point, Eigen::Vector2
                                     Eigen::Matrix<double, 2, 3>* jacobian) const {
   const double horizontal_squared = point.head<2>().squaredNorm();
   const double range_squared = point.squaredNorm();
-  // !(a > b) so that NaN is refused too.
+  // The comparison is written as !(a > b) so that NaN is refused too.
   if (!(horizontal_squared > 1e-18 * range_squared)) return false;
   const double horizontal = std::sqrt(horizontal_squared);
   *pixel = Project(point);

@@ -7,15 +7,15 @@
 namespace orb360 {
 
 /// The equirectangular camera (paper Eq. 1-4): an image of `width` x `height` pixels that covers
-/// the whole sphere, each axis with its own scale, so a picture that is not exactly 2:1 is a
+/// the whole sphere. Each axis has its own scale, so an image that is not exactly 2:1 is a
 /// stretched full sphere.
 ///
-/// Camera frame: -X forward, +Y right, +Z up. Longitude atan2(Y, -X) runs to the right from
-/// straight ahead, latitude asin(Z/r) upward. Pixels are continuous, the centre of the top-left
-/// pixel at (0.5, 0.5); u is periodic with the image's width.
+/// Camera frame: -X forward, +Y right, +Z up. The longitude atan2(Y, -X) increases to the right
+/// from the forward direction, the latitude asin(Z/r) upward. Pixels are continuous with the centre
+/// of the top-left pixel at (0.5, 0.5); u is periodic with the image's width.
 class EquirectangularCamera {
  public:
-  /// Throws ContractError unless both are positive.
+  /// Throws ContractError unless both sizes are positive.
   EquirectangularCamera(int width, int height);
 
   int width() const { return width_; }
@@ -25,29 +25,30 @@ class EquirectangularCamera {
   double cx() const { return 0.5 * width_; }
   double cy() const { return 0.5 * height_; }
 
-  /// Pixel of a point in the camera frame, any non-zero length (Eq. 1-2): u in [0, width),
-  /// v in [0, height].
+  /// Returns the pixel of a point in the camera frame of any non-zero length (Eq. 1-2), with u in
+  /// [0, width) and v in [0, height].
   Eigen::Vector2d Project(const Eigen::Vector3d& point) const;
 
-  /// As above, with d(u,v)/d(point). False, outputs untouched, where no derivative exists: at the
-  /// centre and on the polar axis (within 1e-9 rad).
+  /// As above, with the derivative d(u,v)/d(point). Returns false and leaves the outputs unchanged
+  /// where the derivative does not exist: at the centre and on the polar axis (within 1e-9 rad).
   bool Project(const Eigen::Vector3d& point, Eigen::Vector2d* pixel,
                Eigen::Matrix<double, 2, 3>* jacobian) const;
 
-  /// Unit vector through a pixel (Eq. 3-4 with d = 1). u may lie outside [0, width).
+  /// Returns the unit vector through a pixel (Eq. 3-4 with d = 1). u may lie outside [0, width).
   Eigen::Vector3d Bearing(const Eigen::Vector2d& pixel) const;
 
-  /// Point at `range` along the pixel's ray (Eq. 3-4): range is the distance, not a depth along z.
+  /// Returns the point at `range` along the pixel's ray (Eq. 3-4). The range is the distance, not a
+  /// depth along z.
   Eigen::Vector3d BackProject(const Eigen::Vector2d& pixel, double range) const {
     return range * Bearing(pixel);
   }
 
-  /// u brought into [0, width).
+  /// Returns u modulo the width, in [0, width).
   double WrapU(double u) const;
-  /// A difference of two u brought into [-width/2, width/2).
+  /// Returns a difference of two u modulo the width, in [-width/2, width/2).
   double WrapDeltaU(double du) const;
 
-  /// The angle in radians that `pixels` span at the image's equator: t * 2 pi / width.
+  /// Returns the angle in radians that `pixels` span at the image's equator: t * 2 pi / width.
   double AngleOfPixels(double pixels) const { return pixels * 2.0 * std::numbers::pi / width_; }
 
  private:

@@ -35,7 +35,8 @@ struct Correspondences {
   }
 };
 
-/// What OpenGV's minimal solver reads; cameras sit at their viewpoints.
+/// Adapts a sample to the interface of OpenGV's minimal solver; the cameras lie at their
+/// viewpoints.
 class SampleAdapter : public opengv::relative_pose::RelativeAdapterBase {
  public:
   explicit SampleAdapter(const Correspondences& data) : data_(data) {}
@@ -52,7 +53,7 @@ class SampleAdapter : public opengv::relative_pose::RelativeAdapterBase {
   const Correspondences& data_;
 };
 
-/// A pose with what its errors are computed from.
+/// A pose with the quantities from which its errors are computed.
 struct Model {
   Matrix3d rotation;      // camera 1 from camera 2
   Vector3d translation;   // unit
@@ -63,7 +64,7 @@ struct Model {
       : rotation(r), translation(t), essential(Skew(t) * r), translation2(r.transpose() * t) {}
 };
 
-/// Squared error of a correspondence in standard deviations; see EstimateRelativePose.
+/// Squared error of a correspondence, in standard deviations (see EstimateRelativePose).
 double SquaredError(const Correspondences& data, const Model& model, size_t i, double limit) {
   const Vector3d& bearing1 = data.bearings1[i];
   const Vector3d& bearing2 = data.bearings2[i];
@@ -74,7 +75,7 @@ double SquaredError(const Correspondences& data, const Model& model, size_t i, d
   const double squared =
       triple * triple / (variance1 * (1.0 - along2 * along2) + variance2 * (1.0 - along1 * along1));
   if (!(squared < limit)) return limit;
-  // Ranges along the bearings, times the positive |b1 x R b2|^2 / |t|.
+  // The ranges along the bearings, times the positive number |b1 x R b2|^2 / |t|.
   const double cosine = bearing1.dot(model.rotation * bearing2);
   const double range1 = along1 - along2 * cosine;
   const double range2 = along1 * cosine - along2;
@@ -83,8 +84,8 @@ double SquaredError(const Correspondences& data, const Model& model, size_t i, d
   return std::max(squared, squared_angle / (variance1 + variance2));
 }
 
-/// The two rotations and two translations of an essential matrix (Horn, Recovering Baseline and
-/// Orientation from Essential Matrix, 1990): R = cofactors(E) -+ [t]x E for |t| = 1.
+/// Passes on the two rotations and two translations of an essential matrix (Horn, Recovering
+/// Baseline and Orientation from Essential Matrix, 1990): R = cofactors(E) -+ [t]x E for |t| = 1.
 template <typename Consider>
 void Decompose(const Matrix3d& essential, const Consider& consider) {
   const Matrix3d scaled = essential * (std::sqrt(2.0) / essential.norm());
@@ -105,11 +106,12 @@ void Decompose(const Matrix3d& essential, const Consider& consider) {
   }
 }
 
-/// Largest squared parallax (of the chord) with full weight while the model is still coarse.
+/// Largest squared parallax (of the chord) that has full weight while the model is still coarse.
 ///
-/// A correspondence determines the translation in proportion to its parallax, so that where most
-/// is far away a single wrong match can outweigh all others and hold a poor model in place. Nearer
-/// points than a quarter of the median range count as that one does, until the last steps.
+/// A correspondence determines the translation in proportion to its parallax. Where most points are
+/// far away, a single wrong match could outweigh all others and keep a poor model. Until the last
+/// steps, points nearer than a quarter of the median range therefore have the weight of a point at
+/// that range.
 double SquaredParallaxBound(const Correspondences& data, const Model& model,
                             const TukeyLoss& loss) {
   constexpr double kTimesMedian = 4.0;
@@ -126,8 +128,8 @@ double SquaredParallaxBound(const Correspondences& data, const Model& model,
   return kTimesMedian * kTimesMedian * *middle;
 }
 
-/// A Gauss-Newton step on all correspondences, weighted by the loss: rotation on the left,
-/// translation on the sphere.
+/// One Gauss-Newton step on all correspondences, weighted by the loss. The rotation is updated on
+/// the left, the translation on the sphere.
 Model Refine(const Correspondences& data, const Model& model, const TukeyLoss& loss) {
   using Vector5d = Eigen::Matrix<double, 5, 1>;
   using Matrix5d = Eigen::Matrix<double, 5, 5>;
@@ -166,7 +168,7 @@ Model Refine(const Correspondences& data, const Model& model, const TukeyLoss& l
     hessian.selfadjointView<Eigen::Lower>().rankUpdate(jacobian, weight);
     gradient += weight * residual * jacobian;
   }
-  // A little damping: without translation the problem does not determine its direction.
+  // A small damping is needed because without translation its direction is undetermined.
   constexpr double kDamping = 1e-6;
   hessian.diagonal() *= 1.0 + kDamping;
   hessian.diagonal().array() += kDamping;
@@ -193,7 +195,7 @@ std::optional<RelativePose> EstimateRelativePose(std::span<const Vector3d> beari
     const std::vector<int> indices(sample.begin(), sample.end());
     for (const Eigen::Matrix3cd& solution :
          opengv::relative_pose::fivept_stewenius(adapter, indices)) {
-      // A complex pair of roots is no geometry; real ones come with an imaginary part of rounding.
+      // A complex pair of roots gives no pose. Real roots have an imaginary part from rounding.
       if (!(solution.imag().squaredNorm() < 1e-12 * solution.real().squaredNorm())) continue;
       Decompose(solution.real(), [&](const Model& model) {
         if (std::all_of(sample.begin(), sample.end(),

@@ -8,7 +8,7 @@
 
 namespace orb360 {
 
-/// The ground as a camera at the origin sees it: normal . p = -height.
+/// The ground as seen from a camera at the origin: normal . p = -height.
 struct GroundPlane {
   Eigen::Vector3d normal;       // unit, towards the camera
   double height;                // of the camera over it, in the points' unit
@@ -17,21 +17,22 @@ struct GroundPlane {
 };
 
 struct GroundPlaneOptions {
-  /// Points less than this angle under the horizon are too far away to tell a height, rad.
+  /// Points less than this angle below the horizon are too far away to determine a height, rad.
   double min_below = 0.25;
-  /// Largest angle between the normal and the "up" that is expected, rad.
+  /// Largest angle between the normal and the expected "up", rad.
   double max_tilt = 0.25;
-  /// Points within this share of the height from the plane lie on it, or within less where most of
-  /// them are nearer: kerbs and what else stands on a road would all lift it.
+  /// Points within this fraction of the height from the plane lie on it. The tolerance is smaller
+  /// where most points are nearer, because kerbs and objects standing on a road would lift the
+  /// plane.
   double tolerance = 0.05;
-  /// A ground holds so many points, and this share of all below.
+  /// A ground must contain this many points and the fraction below of all points under the camera.
   int min_points = 20;
   double min_share = 0.3;
 };
 
-/// The plane that most points below the camera lie on, by random samples (always the same ones) and
-/// weighted least squares. Points are relative to the camera; `up` is a unit vector in their frame.
-/// Empty where no plane holds enough of them.
+/// Fits the plane that contains most points below the camera, by random samples with a fixed seed
+/// and weighted least squares. Points are relative to the camera; `up` is a unit vector in their
+/// frame. Returns nullopt where no plane contains enough points.
 std::optional<GroundPlane> FitGroundPlane(std::span<const Eigen::Vector3d> points,
                                           const Eigen::Vector3d& up,
                                           const GroundPlaneOptions& options);

@@ -12,50 +12,51 @@
 
 namespace orb360 {
 
-/// What every robust estimate on bearings is asked for. Errors are angles, measured in standard
-/// deviations of the bearings' own noise, so that one threshold suits every feature.
+/// Options of all robust estimates on bearings. Errors are angles in standard deviations of the
+/// bearings' own noise, so that one threshold suits every feature.
 struct RansacOptions {
-  /// Angular noise in radians (standard deviation in each direction) of a bearing that comes
-  /// without its own: one pixel of a 2048 pixels wide panorama.
+  /// Angular noise (standard deviation in each direction) of a bearing without its own, radians:
+  /// one pixel of a panorama 2048 pixels wide.
   double sigma = 0.003;
-  /// A correspondence is an inlier below this many standard deviations: 3 keeps 99 % of the right
-  /// ones, of one or two degrees of freedom.
+  /// Correspondences below this many standard deviations are inliers. 3 keeps 99 % of the correct
+  /// ones with one or two degrees of freedom.
   double max_error = 3.0;
-  /// Fewer inliers than this are no result. Among 1000 wrong matches about 10 fit any epipolar
+  /// A model with fewer inliers is rejected. Of 1000 wrong matches about 10 fit any epipolar
   /// geometry by chance.
   int min_inliers = 12;
-  /// Sampling ends when a sample without outliers has been drawn with this probability, ...
+  /// Sampling ends when a sample without outliers has been drawn with this probability, if the
+  /// fraction of correct correspondences is min_inlier_share.
   double confidence = 0.999;
-  /// ... supposing that at least this share of the correspondences is right: 0.4 allows 40 samples
-  /// of two, 105 of three, 672 of five.
+  /// Least fraction of correct correspondences that is assumed. 0.4 allows 40 samples of two, 105
+  /// of three, and 672 of five.
   double min_inlier_share = 0.4;
   /// The same seed gives the same result.
   uint64_t seed = 1;
 };
 
-/// Angular noise of each correspondence: a span as long as the data, or an empty one for
-/// RansacOptions::sigma throughout.
+/// Angular noise of each correspondence, radians: a span as long as the data, or an empty one to
+/// use RansacOptions::sigma for all.
 using Sigmas = std::span<const double>;
 
-/// Tukey's biweight loss, by which models are compared and refined: grows smoothly to 1 at 1.5
-/// times the inliers' threshold, by default 4.5 standard deviations, where a fit is 95 % as
-/// efficient as least squares on Gaussian noise. Takes squared errors in standard deviations.
+/// Tukey's biweight loss, by which models are compared and refined. It grows smoothly to 1 at 1.5
+/// times the threshold of inliers, by default 4.5 standard deviations, where a fit is 95 % as
+/// efficient as least squares on Gaussian noise. It takes squared errors in standard deviations.
 class TukeyLoss {
  public:
-  /// `widening` > 1 catches correspondences that a model still to be refined is far from.
+  /// `widening` > 1 includes correspondences that are far from a model that is still to be refined.
   explicit TukeyLoss(const RansacOptions& options, double widening = 1.0)
       : is_wide_(widening > 1.0), limit_(std::pow(1.5 * widening * options.max_error, 2)) {}
 
   bool is_wide() const { return is_wide_; }
 
-  /// Square of the error from which on the loss is 1.
+  /// Square of the error beyond which the loss is 1.
   double limit() const { return limit_; }
   double Loss(double squared_error) const {
     if (!(squared_error < limit_)) return 1.0;
     const double rest = 1.0 - squared_error / limit_;
     return 1.0 - rest * rest * rest;
   }
-  /// Weight of the residual in least squares, the loss's derivative but for a constant.
+  /// Weight of the residual in least squares: the derivative of the loss up to a constant.
   double Weight(double squared_error) const {
     if (!(squared_error < limit_)) return 0.0;
     const double rest = 1.0 - squared_error / limit_;
@@ -73,13 +74,13 @@ inline double SigmaOf(Sigmas sigmas, size_t i, const RansacOptions& options) {
   return sigmas.empty() ? options.sigma : sigmas[i];
 }
 
-/// SplitMix64 (Steele et al., Fast Splittable Pseudorandom Number Generators, OOPSLA 2014): unlike
-/// the standard library's distributions the same numbers on every platform.
+/// SplitMix64 (Steele et al., Fast Splittable Pseudorandom Number Generators, OOPSLA 2014). Unlike
+/// the standard library's distributions it gives the same numbers on every platform.
 class SampleGenerator {
  public:
   explicit SampleGenerator(uint64_t seed) : state_(seed) {}
 
-  /// `kSize` different indices below `count`, which must not be smaller.
+  /// Returns `kSize` different indices below `count`, which must not be smaller than kSize.
   template <size_t kSize>
   std::array<int, kSize> Draw(size_t count) {
     std::array<int, kSize> sample;
@@ -107,13 +108,14 @@ class SampleGenerator {
 
 }  // namespace internal
 
-/// Best model for `count` correspondences: random samples, each improvement refined at once
-/// (locally optimized RANSAC), all in one fixed order. Models are compared by the sum of TukeyLoss.
+/// Returns the best model for `count` correspondences. Random samples are drawn, and each
+/// improvement is refined at once (locally optimized RANSAC), all in one fixed order. Models are
+/// compared by the sum of TukeyLoss.
 ///
 /// `solve(sample, consider)` calls `consider(model)` for each model through `kSampleSize` indices.
 /// `error(model, i)` is the squared error in standard deviations, exact below TukeyLoss::limit
-/// (NaN: an outlier). `refine(model, loss)` is one step towards the least sum of losses.
-/// Empty when there are fewer correspondences than a sample takes or no model was found.
+/// (NaN: an outlier). `refine(model, loss)` is one step towards the least sum of losses. Returns
+/// nullopt when there are fewer correspondences than a sample needs or no model was found.
 template <typename Model, size_t kSampleSize, typename Solve, typename Error, typename Refine>
 std::optional<Model> Ransac(size_t count, const RansacOptions& options, const Solve& solve,
                             const Error& error, const Refine& refine) {
@@ -123,7 +125,7 @@ std::optional<Model> Ransac(size_t count, const RansacOptions& options, const So
   const double inlier_limit = options.max_error * options.max_error;
   std::optional<Model> best;
   double best_loss = std::numeric_limits<double>::infinity();
-  // How often to draw until a sample is free of outliers with the wanted confidence.
+  // Number of samples after which one is free of outliers with the wanted confidence.
   const auto iterations_for = [&](double inlier_share) {
     const double all_right = std::pow(inlier_share, kSampleSize);
     return all_right < 1.0 ? std::log(1.0 - options.confidence) / std::log1p(-all_right) : 0.0;
@@ -145,7 +147,7 @@ std::optional<Model> Ransac(size_t count, const RansacOptions& options, const So
     iterations_needed = iterations_for(std::max(inlier_share, options.min_inlier_share));
     return true;
   };
-  // A model through few noisy correspondences is far from most: the loss starts wide.
+  // A model through few noisy correspondences is far from most others, so the loss starts wide.
   const std::array<TukeyLoss, 4> narrowing = {TukeyLoss(options, 4.0), TukeyLoss(options, 2.0),
                                               loss, loss};
   internal::SampleGenerator generator(options.seed);

@@ -18,10 +18,10 @@ using Eigen::Vector3d;
 
 constexpr size_t kSampleSize = 2;
 
-// Bearings closer together than this (radians), or to opposite, determine no rotation.
+// Bearings closer together than this (radians), or that close to opposite, determine no rotation.
 constexpr double kMinSine = 1e-6;
 
-/// Right-handed frame with a on its first axis and b in the plane of the first two.
+/// Returns a right-handed frame with a on its first axis and b in the plane of the first two axes.
 Matrix3d FrameOf(const Vector3d& a, const Vector3d& b) {
   const Vector3d normal = a.cross(b).normalized();
   Matrix3d frame;
@@ -54,7 +54,7 @@ std::optional<RelativePose> EstimateRotation(std::span<const Vector3d> bearings1
     consider(Matrix3d(FrameOf(bearings1[i], bearings1[j]) *
                       FrameOf(bearings2[i], bearings2[j]).transpose()));
   };
-  // The rotation that best turns bearings2 into bearings1 (Kabsch), weighted by the loss.
+  // Returns the rotation that best turns bearings2 into bearings1 (Kabsch), weighted by the loss.
   const auto refine = [&](const Matrix3d& rotation, const TukeyLoss& loss) -> Matrix3d {
     Matrix3d correlation = Matrix3d::Zero();
     for (size_t i = 0; i < count; ++i) {

@@ -10,15 +10,17 @@
 
 namespace orb360 {
 
-/// Rotation between two cameras that see the same points at no parallax, from unit bearings at
-/// equal positions, some of them wrong: two-point samples, then a robust least-squares fit (Kabsch)
-/// to all correspondences. It fits nearly as many correspondences as EstimateRelativePose exactly
-/// when the camera did not move, or all is far away.
+/// Estimates the rotation between two cameras that see the same points without parallax, from unit
+/// bearings that correspond by position; some may be wrong. Two-point samples are followed by a
+/// robust least-squares fit (Kabsch) to all correspondences. The rotation fits nearly as many
+/// correspondences as EstimateRelativePose exactly when the camera did not move or all points are
+/// far away.
 ///
 /// The error of a correspondence is the angle between bearing1 and R * bearing2 in standard
-/// deviations, sqrt(sigma1^2 + sigma2^2). The result's translation is zero.
+/// deviations sqrt(sigma1^2 + sigma2^2). The result's translation is zero.
 ///
-/// Empty when fewer than options.min_inliers agree. Throws ContractError when sizes differ.
+/// Returns nullopt when fewer than options.min_inliers agree. Throws ContractError when sizes
+/// differ.
 std::optional<RelativePose> EstimateRotation(std::span<const Eigen::Vector3d> bearings1,
                                              std::span<const Eigen::Vector3d> bearings2,
                                              Sigmas sigmas1, Sigmas sigmas2,

@@ -14,7 +14,7 @@ struct Rigid3 {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 
   Eigen::Vector3d operator*(const Eigen::Vector3d& p) const { return rotation * p + translation; }
-  /// The product's quaternion is normalized, so that chains of any length stay rotations.
+  /// The quaternion of the product is normalized, so that chains of any length remain rotations.
   Rigid3 operator*(const Rigid3& other) const {
     return {(rotation * other.rotation).normalized(), *this * other.translation};
   }
@@ -43,13 +43,13 @@ struct Similarity3 {
   }
 };
 
-/// The same transform with scale 1.
+/// Returns the same transform with scale 1.
 inline Similarity3 ToSimilarity(const Rigid3& transform) {
   return {1.0, transform.rotation, transform.translation};
 }
 
-/// The pose of a camera after its world is moved and scaled: target_from_camera, with the camera's
-/// own axes and units of length following the world's.
+/// Returns the pose of a camera after its world was moved and scaled: target_from_camera. The
+/// camera's axes stay, and its unit of length follows the world's.
 inline Rigid3 TransformPose(const Similarity3& target_from_world, const Rigid3& world_from_camera) {
   return {(target_from_world.rotation * world_from_camera.rotation).normalized(),
           target_from_world * world_from_camera.translation};

@@ -7,14 +7,15 @@
 
 namespace orb360 {
 
-/// The matrix with Skew(a) * b == a.cross(b).
+/// Returns the matrix with Skew(a) * b == a.cross(b).
 inline Eigen::Matrix3d Skew(const Eigen::Vector3d& a) {
   Eigen::Matrix3d m;
   m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
   return m;
 }
 
-/// Rotation by |omega| radians about omega. Exact to rounding for any angle, zero included.
+/// Returns the rotation by |omega| radians about omega, exact to rounding for any angle, zero
+/// included.
 inline Eigen::Quaterniond ExpSo3(const Eigen::Vector3d& omega) {
   const double squared = omega.squaredNorm();
   if (squared < 1e-16) {  // sin(x/2)/x = 1/2 to double precision below x = 1e-8
@@ -25,7 +26,7 @@ inline Eigen::Quaterniond ExpSo3(const Eigen::Vector3d& omega) {
   return Eigen::Quaterniond(std::cos(0.5 * angle), s * omega.x(), s * omega.y(), s * omega.z());
 }
 
-/// Inverse of ExpSo3 with an angle in [0, pi].
+/// Inverse of ExpSo3; the angle is in [0, pi].
 inline Eigen::Vector3d LogSo3(const Eigen::Quaterniond& q) {
   const double sign = q.w() < 0 ? -1.0 : 1.0;
   const double sine = q.vec().norm();

@@ -9,10 +9,11 @@
 namespace orb360 {
 namespace {
 
-// Rays closer to parallel than this (radians) meet nowhere: the range would be rounding error.
+// Rays closer to parallel than this (radians) do not intersect; their range would be rounding
+// error.
 constexpr double kMinParallax = 1e-7;
 
-// Weights settle geometrically; after two passes the point moves by far less than its noise.
+// The weights converge geometrically. After two passes the point moves by far less than its noise.
 constexpr int kReweightings = 2;
 
 }  // namespace
@@ -22,7 +23,7 @@ std::optional<Eigen::Vector3d> Triangulate(std::span<const Rigid3> camera_from_w
   ORB360_CHECK(camera_from_world.size() == bearings.size(), camera_from_world.size(),
                bearings.size());
   if (bearings.size() < 2) return std::nullopt;
-  // Relative to the first centre, so that a map far from its origin loses no digits.
+  // Positions are relative to the first centre, so that a map far from its origin loses no digits.
   const Eigen::Vector3d origin = camera_from_world[0].Inverse().translation;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   for (int pass = 0; pass <= kReweightings; ++pass) {
@@ -41,7 +42,8 @@ std::optional<Eigen::Vector3d> Triangulate(std::span<const Rigid3> camera_from_w
       weights += weight;
     }
     const Eigen::LDLT<Eigen::Matrix3d> ldlt(normal_matrix);
-    // The smallest pivot is a weighted mean of sin^2 of the rays' angles to their common direction.
+    // The smallest pivot is a weighted mean of sin^2 of the angles between the rays and their
+    // common direction.
     if (!(ldlt.vectorD().minCoeff() > kMinParallax * kMinParallax * weights)) return std::nullopt;
     point = ldlt.solve(right_side);
   }
@@ -60,7 +62,7 @@ std::optional<Eigen::Vector3d> TriangulateTwoViews(const Rigid3& camera1_from_ca
   if (!(baseline > 0.0)) return std::nullopt;
   const Eigen::Vector3d axis = camera1_from_camera2.translation / baseline;
   const Eigen::Vector3d ray2 = camera1_from_camera2.rotation * bearing2;
-  // The rays seen along the baseline, where each plane through it is a line through the origin.
+  // The rays as seen along the baseline, where each plane through it is a line through the origin.
   const Eigen::Matrix<double, 3, 2> across = TangentBasis(axis);
   const Eigen::Vector2d side1 = across.transpose() * bearing1;
   const Eigen::Vector2d side2 = across.transpose() * ray2;
@@ -71,7 +73,7 @@ std::optional<Eigen::Vector3d> TriangulateTwoViews(const Rigid3& camera1_from_ca
                               2.0 * (a.x() * a.y() + b.x() * b.y()));
   const double length = twice.norm();
   if (!(length > 0.0)) return std::nullopt;  // both on the baseline, or no plane is the closest
-  // Half-angle formulas, the one that does not cancel.
+  // Half-angle formulas; the one without cancellation is used.
   const Eigen::Vector2d line = (twice.x() > 0.0 ? Eigen::Vector2d(length + twice.x(), twice.y())
                                                 : Eigen::Vector2d(twice.y(), length - twice.x()))
                                    .normalized();

@@ -8,13 +8,13 @@
 
 namespace orb360 {
 
-/// A file that appears under its name only when it is finished: it is written as `NAME.tmp` beside
-/// it, brought to the disk and renamed. Whoever looks finds the old file or the whole new one.
-/// Failures are UserErrors and leave no temporary file.
+/// A file that appears under its name only when it is complete. It is written as `NAME.tmp` beside
+/// the target, synced to the disk, and renamed. A reader finds either the old file or the whole new
+/// one. Failures throw UserError and leave no temporary file.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path);
-  /// Without Commit: as if nothing had been written.
+  /// Without Commit, removes the temporary file and leaves the old file unchanged.
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;

@@ -15,7 +15,7 @@ class BoundedQueue {
  public:
   explicit BoundedQueue(size_t capacity) : capacity_(capacity) {}
 
-  /// Waits for room. False, and the item is dropped, once the queue is closed.
+  /// Waits for room. Returns false, and drops the item, once the queue is closed.
   bool Push(T item) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return closed_ || items_.size() < capacity_; });
@@ -25,7 +25,7 @@ class BoundedQueue {
     return true;
   }
 
-  /// Waits for an item. nullopt once the queue is closed and empty.
+  /// Waits for an item. Returns nullopt once the queue is closed and empty.
   std::optional<T> Pop() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return closed_ || !items_.empty(); });
@@ -36,7 +36,8 @@ class BoundedQueue {
     return item;
   }
 
-  /// Nothing more goes in; what is in can still be taken. Wakes all who wait.
+  /// Closes the queue: no item can be added, and those in it can still be taken. Wakes all waiting
+  /// threads.
   void Close() {
     const std::lock_guard lock(mutex_);
     closed_ = true;

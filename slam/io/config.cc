@@ -17,7 +17,7 @@
 namespace orb360 {
 namespace {
 
-/// A scalar of the file under its dotted key.
+/// A scalar value of the file with its dotted key.
 struct Entry {
   std::string key;
   std::string text;
@@ -40,7 +40,7 @@ void Flatten(const YAML::Node& map, const std::string& prefix, const std::filesy
     } else if (item.second.IsSequence()) {
       throw UserError(where + key + " must be a single value, not a list");
     }
-    // Nothing after the colon: a section or an option that is left at its defaults.
+    // The key has no value: it is a section or an option that keeps its default.
   }
 }
 
@@ -69,7 +69,7 @@ std::optional<bool> ParseBool(std::string_view text) {
   return std::nullopt;
 }
 
-/// YAML's double-quoted style.
+/// The text in YAML's double-quoted style.
 std::string Quoted(const std::string& text) {
   YAML::Emitter emitter;
   emitter << YAML::DoubleQuoted << text;
@@ -83,7 +83,7 @@ std::string TextOf(Number value) {
   return ToText(value);
 }
 
-/// " (at least 1)" and the like; empty for a number without limits.
+/// The range of a number as text, such as " (at least 1)"; empty for a number without limits.
 std::string RangeNote(double min, double max, bool is_int) {
   const bool has_min = is_int ? min > ConfigSchema::kIntMin : std::isfinite(min);
   const bool has_max = is_int ? max < ConfigSchema::kIntMax : std::isfinite(max);
@@ -129,8 +129,8 @@ const ConfigSchema::Option* ConfigSchema::Find(const std::string& key) const {
   return found == options_.end() ? nullptr : &*found;
 }
 
-/// The key a user most likely meant; empty if none is near: another section of the same name
-/// counts as near, otherwise up to a third of the characters may differ.
+/// Returns the key that the user most likely meant, or "" if none is near. A key with the same name
+/// in another section is near; otherwise up to a third of the characters may differ.
 std::string ConfigSchema::NearestKey(const std::string& key) const {
   std::string nearest;
   size_t least = std::max<size_t>(2, key.size() / 3) + 1;

@@ -8,20 +8,19 @@
 
 namespace orb360 {
 
-/// The options that a configuration file may set: each a dotted key, the variable it is stored
-/// in, what it means and the values it may take. Whoever owns the variables registers them; their
-/// values at that moment are the defaults. The file is YAML, with a section for each part of the
-/// key before a dot.
+/// The options that a configuration file may set. Each has a dotted key, a variable, a meaning and
+/// a range. The owner of the variables registers them; their values at that moment are the
+/// defaults. The file is YAML and has one section for each part of a key before a dot.
 class ConfigSchema {
  public:
   static constexpr int kIntMin = std::numeric_limits<int>::min();
   static constexpr int kIntMax = std::numeric_limits<int>::max();
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-  /// Registers `*value`, which must outlive the schema, under `key` ("mapping.min_parallax").
-  /// `doc` is one line that says what it is and its unit; a number may be `min` to `max`.
-  /// Throws ContractError for a key registered twice, one that is a section of another, or a
-  /// default out of range.
+  /// Registers `*value`, which must outlive the schema, under `key` ("mapping.min_parallax"). `doc`
+  /// is one line with the meaning and the unit; a number must lie in [min, max]. Throws
+  /// ContractError for a key registered twice, a key that is a section of another, or a default out
+  /// of range.
   void Add(const std::string& key, bool* value, const std::string& doc);
   void Add(const std::string& key, std::string* value, const std::string& doc);
   void Add(const std::string& key, int* value, const std::string& doc, int min = kIntMin,
@@ -29,13 +28,13 @@ class ConfigSchema {
   void Add(const std::string& key, double* value, const std::string& doc, double min = -kInfinity,
            double max = kInfinity);
 
-  /// Sets the variables that `file` names. Throws UserError with file, line and key for a file
-  /// that cannot be read, is not YAML, or has an unknown key (the nearest known one is suggested),
-  /// a value of the wrong type or out of range; then no variable has changed.
+  /// Sets the variables that `file` names. Throws UserError with file, line and key if the file
+  /// cannot be read, is not YAML, has an unknown key (the nearest known one is suggested), or has a
+  /// value of the wrong type or out of range. In that case no variable is changed.
   void Load(const std::filesystem::path& file) const;
 
-  /// A YAML file of all options at their present values, each below its documentation, in the
-  /// order of registration. Load reads it back to exactly these values.
+  /// Returns a YAML file of all options at their present values, each below its documentation, in
+  /// the order of registration. Load reads it back to exactly these values.
   std::string Document() const;
 
  private:

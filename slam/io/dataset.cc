@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kFileName = "sequence.yaml";
 
-/// A positive number under `key`; nullopt where the key is absent.
+/// Returns the positive number under `key`, or nullopt if the key is absent.
 std::optional<double> PositiveNumber(const YAML::Node& root, const char* key,
                                      const std::filesystem::path& file) {
   const YAML::Node node = root[key];

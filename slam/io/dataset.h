@@ -6,16 +6,17 @@
 namespace orb360 {
 
 /// A sequence folder: `rgb/000000.jpg`..., `depth/000000.png`..., `groundtruth.txt` (TUM) and
-/// `sequence.yaml`. Of the last, only the camera model, the frame rate and the camera's height are
-/// read: the rest would tell a SLAM system the answer.
+/// `sequence.yaml` (docs/formats/sequence.md). Only the camera model, the frame rate and the
+/// camera's height are read from the last one, because the rest would tell a SLAM system the
+/// answer.
 struct Dataset {
   static constexpr const char* kDepthName = "depth";
   static constexpr const char* kGroundTruthName = "groundtruth.txt";
 
   std::filesystem::path folder;
-  /// Frames a second.
+  /// Frames per second.
   double frame_rate = 0.0;
-  /// Metres above the ground.
+  /// Height of the camera above the ground, metres.
   std::optional<double> camera_height;
 
   std::filesystem::path images() const { return folder / "rgb"; }
@@ -23,11 +24,11 @@ struct Dataset {
   std::filesystem::path groundtruth() const { return folder / kGroundTruthName; }
 };
 
-/// True when `path` is a folder that holds a `sequence.yaml`.
+/// Returns true when `path` is a folder that contains a `sequence.yaml`.
 bool IsDataset(const std::filesystem::path& path);
 
-/// Reads `sequence.yaml`: `camera.model` (must be `equirectangular`), `fps` (frames a
-/// second) and, optional, `camera_height` (metres). Throws UserError, naming file and line.
+/// Reads `sequence.yaml`: `camera.model` (must be `equirectangular`), `fps` (frames per second) and
+/// the optional `camera_height` (metres). Throws UserError that names file and line.
 Dataset OpenDataset(const std::filesystem::path& folder);
 
 }  // namespace orb360

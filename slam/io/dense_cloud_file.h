@@ -16,10 +16,10 @@ struct DenseCloudSummary {
   std::uint64_t points = 0;
 };
 
-/// Fuses the stored depth of `views` (FuseCloud) and writes the cloud (SurfacePlyWriter), in the
-/// world of their poses. Memory is bounded by the options, whatever the number of views; a folder
-/// `PATH.voxels` holds the rest in the meantime. `look`, where there is one, is shown all points,
-/// in pieces. Throws UserError where the disk fails.
+/// Fuses the stored depth of `views` (FuseCloud) and writes the cloud (SurfacePlyWriter) in the
+/// world of their poses. The options bound the memory for any number of views; the remaining voxels
+/// are kept in a folder `PATH.voxels` meanwhile. `look`, if given, receives all points in pieces.
+/// Throws UserError if the disk fails.
 DenseCloudSummary WriteDenseCloud(
     const std::filesystem::path& path, const RangeStore& store, std::span<const DenseView> views,
     const DenseCloudOptions& options,

@@ -34,7 +34,7 @@ void WriteDepthImage(const std::filesystem::path& path, const cv::Mat& range) {
 }
 
 cv::Mat ReadDepthImage(const std::filesystem::path& path) {
-  // OpenCV would complain about an absent file on standard error.
+  // OpenCV would print a message about an absent file to standard error.
   const cv::Mat units = std::filesystem::is_regular_file(path)
                             ? cv::imread(path.string(), cv::IMREAD_UNCHANGED)
                             : cv::Mat();

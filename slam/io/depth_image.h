@@ -7,12 +7,12 @@
 namespace orb360 {
 
 /// Writes ranges (CV_32FC1, metres along each pixel's ray, 0 for none) as a 16-bit PNG of metres *
-/// 256, rounded, KITTI's convention; what is not positive or beyond 255.99 m becomes 0. Throws
-/// UserError if the file cannot be written.
+/// 256, rounded (KITTI's convention). Values that are not positive or are beyond 255.99 m become 0.
+/// Throws UserError if the file cannot be written.
 void WriteDepthImage(const std::filesystem::path& path, const cv::Mat& range);
 
-/// Reads such a file: CV_32FC1, metres, 0 for none. Throws UserError for a file that is not a
-/// 16-bit image of one channel.
+/// Reads such a file. Returns CV_32FC1, metres, 0 for none. Throws UserError for a file that is not
+/// a 16-bit image of one channel.
 cv::Mat ReadDepthImage(const std::filesystem::path& path);
 
 }  // namespace orb360

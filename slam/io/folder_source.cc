@@ -11,7 +11,7 @@ namespace {
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
-/// The run of digits at the start of `text`, cut off it, without leading zeros.
+/// Removes the run of digits at the start of `text` and returns it without leading zeros.
 std::string_view TakeNumber(std::string_view& text) {
   const auto end = std::ranges::find_if_not(text, IsDigit);
   std::string_view number(text.begin(), end);
@@ -24,7 +24,7 @@ std::vector<std::filesystem::path> ListImages(const std::filesystem::path& folde
                                               const std::string& name) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    // Names with a leading dot are what file managers leave behind.
+    // File managers leave files with a leading dot behind.
     if (IsImageFileName(entry.path()) && !entry.path().filename().string().starts_with('.') &&
         !entry.is_directory()) {
       files.push_back(entry.path());
@@ -45,7 +45,8 @@ void RequireSize(const std::filesystem::path& file, cv::Size size, cv::Size expe
                   ToString(expected) + "; all images of a folder must have the same size");
 }
 
-/// The size of the first image that states or shows it, the others' headers compared with it.
+/// Returns the size of the first image whose size can be found. Throws UserError if the header of
+/// another image states a different size.
 cv::Size CommonSize(const std::vector<std::filesystem::path>& files, const std::string& name) {
   std::optional<cv::Size> common;
   for (const std::filesystem::path& file : files) {

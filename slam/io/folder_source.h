@@ -10,20 +10,20 @@
 
 namespace orb360 {
 
-/// Frames a second of an image folder when nothing states it.
+/// Frame rate of an image folder when nothing states it, frames per second.
 inline constexpr double kFolderFrameRate = 30.0;
 
-/// Names in the order people expect: runs of digits compare as numbers (img2 before img10), all
-/// else byte by byte.
+/// Compares names in natural order: runs of digits compare as numbers (img2 before img10), all
+/// other characters byte by byte.
 bool NaturalLess(std::string_view a, std::string_view b);
 
-/// The images of a folder in natural order; timestamps are index / frame rate. A file that cannot
-/// be decoded is passed over with a warning and counts as a frame; images of different sizes are
-/// refused, for JPEG and PNG before the first is decoded.
+/// The images of a folder in natural order. Timestamps are index / frame rate. A file that cannot
+/// be decoded is skipped with a warning and counts as a frame. Images of different sizes are
+/// refused; for JPEG and PNG this happens before the first image is decoded.
 class FolderSource : public FrameSource {
  public:
-  /// Throws UserError for a folder without images, without one that can be decoded, or with images
-  /// of different sizes. `name` is what messages call the input.
+  /// Throws UserError for a folder without images, without an image that can be decoded, or with
+  /// images of different sizes. Messages call the input `name`.
   FolderSource(const std::filesystem::path& folder, std::string name,
                double frame_rate = kFolderFrameRate, std::optional<double> camera_height = {});
 

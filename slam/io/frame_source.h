@@ -8,44 +8,45 @@
 
 namespace orb360 {
 
-/// One picture of a sequence.
+/// One image of a sequence.
 struct Frame {
-  /// Position in the source, from 0; skipped and damaged frames count.
+  /// Index in the source, from 0. Skipped and damaged frames count.
   int index = 0;
-  /// Seconds, by the source's clock.
+  /// Time by the source's clock, seconds.
   double timestamp = 0.0;
-  /// CV_8UC3, BGR, the full sphere in equirectangular projection.
+  /// Image of the full sphere in equirectangular projection, CV_8UC3, BGR.
   cv::Mat image;
 };
 
 /// What is known of an input before it is read.
 struct SourceInfo {
-  /// How messages call it: the path as the user gave it.
+  /// The path as the user gave it; messages use it.
   std::string name;
   cv::Size image_size;
-  /// Frames a second.
+  /// Frames per second.
   double frame_rate = 0.0;
-  /// An estimate, fit for progress displays only: containers announce what they like.
+  /// An estimate that is good enough for progress displays only, because containers may state a
+  /// wrong number.
   std::optional<int> frame_count;
-  /// Height of the camera above the ground in metres, where the input states it.
+  /// Height of the camera above the ground, metres, if the input states it.
   std::optional<double> camera_height;
 };
 
-/// Frames one after the other, as a file, a folder or a renderer has them. Sequence makes of it
-/// what a user asked for: every n-th frame, from the m-th on, decoded ahead.
+/// Frames in order, from a file, a folder or a renderer. Sequence selects the frames that a user
+/// asked for and decodes them ahead.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
   virtual const SourceInfo& info() const = 0;
 
-  /// The next frame; its image is empty where it is damaged. nullopt at the end.
+  /// Returns the next frame, or nullopt at the end. The image of a damaged frame is empty.
   virtual std::optional<Frame> Read() = 0;
 
-  /// Passes over the next frame without decoding more than necessary. False at the end.
+  /// Skips the next frame without decoding more than necessary. Returns false at the end.
   virtual bool Skip() = 0;
 
-  /// One line for each thing a user should know about what was read since the last call.
+  /// Returns one line for each problem found in what was read since the last call.
   virtual std::vector<std::string> TakeWarnings() { return {}; }
 };
 

@@ -6,19 +6,19 @@
 
 namespace orb360 {
 
-/// How far a full sphere's width may be from twice its height, relative to that. Encoders round
-/// each side to a multiple of up to 16 pixels, 3 % of 512 rows; the nearest perspective format,
-/// 4096x2160 of digital cinema, is 5 % away.
+/// Largest relative difference between the width of a full sphere's image and twice its height.
+/// Encoders round each side to a multiple of up to 16 pixels, which is 3 % of 512 rows. The nearest
+/// perspective format, 4096x2160 of digital cinema, differs by 5 %.
 inline constexpr double kFullSphereTolerance = 0.03;
 
-/// True when a picture of this size can be an equirectangular full sphere, perhaps stretched a
-/// little.
+/// Returns true when an image of this size can be an equirectangular full sphere, perhaps slightly
+/// stretched.
 bool IsFullSphere(cv::Size size);
 
-/// Throws UserError, beginning with `name`, unless IsFullSphere(size).
+/// Throws UserError, whose message begins with `name`, unless IsFullSphere(size).
 void RequireFullSphere(const std::string& name, cv::Size size);
 
-/// "1024x512".
+/// Returns the size as text, such as "1024x512".
 std::string ToString(cv::Size size);
 
 }  // namespace orb360

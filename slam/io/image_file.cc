@@ -24,7 +24,7 @@ int BigEndian16(std::string_view data, size_t at) {
   return static_cast<int>(Byte(data, at) << 8 | Byte(data, at + 1));
 }
 
-/// Where the parts of a JPEG file begin, as far as `data` reaches.
+/// Size and offsets in a JPEG file, as far as `data` reaches.
 struct JpegLayout {
   std::optional<cv::Size> size;
   std::optional<size_t> scan;  ///< Offset of the first start-of-scan marker.
@@ -55,8 +55,8 @@ JpegLayout WalkJpeg(std::string_view data) {
   return layout;
 }
 
-/// False for a PNG or JPEG file that lacks its end. Its decoders would complain on standard error
-/// and give a half-grey picture.
+/// Returns false for a PNG or JPEG file that lacks its end. Its decoder would print a message to
+/// standard error and return a half-gray image.
 bool IsComplete(std::string_view data) {
   if (data.starts_with(kPngSignature)) return data.rfind("IEND") != std::string_view::npos;
   if (data.starts_with(kJpegSignature)) {
@@ -73,8 +73,8 @@ std::string ReadBytes(std::ifstream& file, size_t most) {
   return data;
 }
 
-/// The picture that OpenCV's decoder gives, in three fifths of its time. Empty for what is not a
-/// JPEG file or not an ordinary one (CMYK, damaged).
+/// Decodes to the same image as OpenCV's decoder in three fifths of its time. Returns an empty
+/// image if `data` is not a JPEG file or is not an ordinary one (CMYK, damaged).
 cv::Mat DecodeJpeg(std::string_view data) {
   if (!data.starts_with(kJpegSignature)) return {};
   const std::unique_ptr<void, decltype(&tjDestroy)> decoder(tjInitDecompress(), &tjDestroy);
@@ -94,10 +94,10 @@ cv::Mat DecodeJpeg(std::string_view data) {
   return failed != 0 ? cv::Mat() : image;
 }
 
-/// As LoadImage says, in any depth; empty where there is no picture.
+/// Decodes as LoadImage does, but keeps the depth of the file. Returns an empty image on failure.
 cv::Mat Decode(const std::string& data) {
   if (cv::Mat image = DecodeJpeg(data); !image.empty()) return image;
-  // cv::Mat has no constructor for data that is only read.
+  // cv::Mat has no constructor for constant data.
   const cv::Mat bytes(1, static_cast<int>(data.size()), CV_8U, const_cast<char*>(data.data()));
   return cv::imdecode(bytes,
                       cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
@@ -115,15 +115,15 @@ bool IsImageFileName(const std::filesystem::path& path) {
 }
 
 std::optional<cv::Size> ProbeImageSize(const std::filesystem::path& path) {
-  // Enough for the preview picture that cameras put before the header of the picture itself: one
-  // EXIF segment is 64 KiB at most, and mostly a few KiB.
+  // These sizes are enough for the preview image that cameras store before the header of the image
+  // itself: one EXIF segment has at most 64 KiB, and usually a few KiB.
   constexpr size_t kFirst = 4096;
   constexpr size_t kMost = 65536;
   std::ifstream file(path, std::ios::binary);
   std::string data = ReadBytes(file, kFirst);
   if (data.starts_with(kPngSignature)) {
-    // Signature, length and type of the header chunk, then width and height in 32 bits each. No
-    // picture this program can use needs more than 16 bits.
+    // The header chunk begins with signature, length and type, followed by width and height of 32
+    // bits each. No image that this program can use needs more than 16 bits.
     if (data.size() < 24 || BigEndian16(data, 16) != 0 || BigEndian16(data, 20) != 0) return {};
     return cv::Size(BigEndian16(data, 18), BigEndian16(data, 22));
   }

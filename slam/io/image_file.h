@@ -8,24 +8,25 @@
 
 namespace orb360 {
 
-/// True when the name's extension is that of an image format this program reads: JPEG, PNG, BMP,
-/// TIFF, WebP, PNM; upper or lower case.
+/// Returns true when the extension of the name is that of a format that this program reads: JPEG,
+/// PNG, BMP, TIFF, WebP or PNM, in upper or lower case.
 bool IsImageFileName(const std::filesystem::path& path);
 
-/// The size written in the header of a JPEG or PNG file; nullopt for other formats and files whose
-/// header is damaged or more than 64 KiB from the start. Reads no more than that.
+/// Returns the size stated in the header of a JPEG or PNG file. Returns nullopt for other formats,
+/// and for files whose header is damaged or more than 64 KiB from the start. Reads no more than
+/// that.
 std::optional<cv::Size> ProbeImageSize(const std::filesystem::path& path);
 
-/// An image, or why there is none.
+/// An image, or the reason why there is none.
 struct LoadedImage {
-  /// CV_8UC3, BGR; empty where `problem` says something.
+  /// The image, CV_8UC3, BGR; empty if `problem` is not.
   cv::Mat image;
   std::string problem;
 };
 
-/// Decodes an image file to 8-bit BGR: grey is copied to the three channels, 16 bits a channel are
-/// scaled by 255/65535, an alpha channel is dropped, an orientation tag ignored. A file that is
-/// empty, cut off or of an unknown kind gives a problem, not an exception.
+/// Decodes an image file to 8-bit BGR. Gray is copied to the three channels, 16 bits per channel
+/// are scaled by 255/65535, an alpha channel is dropped, and an orientation tag is ignored. A file
+/// that is empty, cut off or of an unknown kind gives a problem, not an exception.
 LoadedImage LoadImage(const std::filesystem::path& path);
 
 }  // namespace orb360

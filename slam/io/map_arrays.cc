@@ -63,7 +63,8 @@ bool AreFinite(std::span<const T> values) {
   return std::ranges::all_of(values, [](T v) { return std::isfinite(v); });
 }
 
-// Zero, and not minus zero: it is not kept, and the same file is to be written again.
+// True for zero with a positive sign. Minus zero is not kept, and a file that is read and written
+// again must have the same bytes.
 bool IsBlank(float value) { return std::bit_cast<uint32_t>(value) == 0; }
 
 bool IsUnit(double norm) { return std::abs(norm - 1.0) < kUnit; }

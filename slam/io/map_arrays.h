@@ -7,16 +7,16 @@
 
 namespace orb360 {
 
-/// A map as plain columns, the way it lies in a file: keyframes and landmarks are numbered from 0
-/// without gaps, in the order of their ids. What is removed is not in it, nor are pictures and
-/// patches of them.
+/// A map as plain columns, in the form of the file (docs/formats/map.md). Keyframes and landmarks
+/// are numbered from 0 without gaps, in the order of their ids. Removed ones, images and patches of
+/// images are not contained.
 struct MapArrays {
-  // By keyframe.
+  // One row per keyframe.
   std::vector<int32_t> frame_index;
   std::vector<double> timestamp;      // s
   std::vector<double> pose;           // world_from_camera: x y z, quaternion x y z w
   std::vector<int64_t> features_end;  // number of features up to and with this keyframe's
-  // By feature, keyframe after keyframe.
+  // One row per feature, keyframe after keyframe.
   std::vector<float> pixel;  // u v
   std::vector<float> angle;
   std::vector<float> sigma;
@@ -28,7 +28,7 @@ struct MapArrays {
   std::vector<int32_t> feature_landmark;  // -1: none
   std::vector<float> aligned_bearing;     // x y z; of the observation of that landmark
   std::vector<float> aligned_sigma;       // 0: not aligned
-  // By landmark.
+  // One row per landmark.
   std::vector<double> position;        // x y z
   std::vector<double> mean_direction;  // x y z
   std::vector<double> max_range;
@@ -39,8 +39,8 @@ struct MapArrays {
   std::vector<int32_t> found;
 };
 
-/// Calls `visit(name, column, width)` for each column of a MapArrays, const or not: the
-/// dataset of a file, and how many numbers a row has.
+/// Calls `visit(name, column, width)` for each column of a MapArrays, const or not. `name` is the
+/// dataset of the file, and `width` the number of values in a row.
 template <typename Arrays, typename Visit>
 void ForEachColumn(Arrays& a, const Visit& visit) {
   visit("keyframe_frame_index", a.frame_index, 1);
@@ -70,8 +70,8 @@ void ForEachColumn(Arrays& a, const Visit& visit) {
 
 MapArrays ToArrays(const Map& map);
 
-/// The map of such columns. Throws UserError with what is wrong where they are not those of a map:
-/// sizes that do not fit, numbers out of range, a landmark that is seen twice in a keyframe.
+/// Builds the map of such columns. Throws UserError if they do not describe a map: wrong sizes,
+/// numbers out of range, or a landmark that a keyframe observes twice.
 Map FromArrays(const MapArrays& arrays);
 
 }  // namespace orb360

@@ -57,7 +57,7 @@ void ReadColumn(hid_t file, const char* name, int width, std::vector<T>* column)
                         H5Sget_simple_extent_dims(space.get(), size.data(), nullptr) == 2 &&
                         size[1] == static_cast<hsize_t>(width) &&
                         H5Tequal(type.get(), TypeOf(T{})) > 0;
-  // No more than the file can hold, without compression.
+  // The largest number of rows that a file without compression can contain.
   constexpr hsize_t kMost = (hsize_t{1} << 36) / 8;
   if (!is_table || size[0] > kMost) {
     std::string reason = "holds no map: dataset ";

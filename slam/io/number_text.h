@@ -7,8 +7,8 @@
 
 namespace orb360 {
 
-/// The number that the whole of `text` spells, whatever the locale; nullopt if it spells none or
-/// one outside of Number's range. A leading plus is accepted.
+/// Parses the whole of `text` as a number, independent of the locale. Returns nullopt if it is not
+/// a number or is out of Number's range. A leading plus is accepted.
 template <typename Number>
 std::optional<Number> ParseNumber(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
@@ -18,7 +18,7 @@ std::optional<Number> ParseNumber(std::string_view text) {
   return number;
 }
 
-/// The shortest text that ParseNumber reads back to the same number.
+/// Returns the shortest text that ParseNumber reads back to the same number.
 template <typename Number>
 std::string ToText(Number number) {
   char buffer[32];

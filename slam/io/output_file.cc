@@ -58,7 +58,7 @@ void OutputFile::Overwrite(std::int64_t offset, std::string_view data) {
 
 void OutputFile::SyncAndClose() {
   ORB360_CHECK(descriptor_ >= 0, path_);
-  // EINVAL: a pipe or a device, which has nothing to wait for.
+  // EINVAL means that the file is a pipe or a device, which cannot be synced.
   if (fsync(descriptor_) != 0 && errno != EINVAL) ThrowWriteError(path_, errno);
   if (close(std::exchange(descriptor_, -1)) != 0) ThrowWriteError(path_, errno);
 }

@@ -6,23 +6,23 @@
 
 namespace orb360 {
 
-/// A file being written, without a buffer of its own: what Write has taken survives the end of the
-/// process, however it ends. Every failure (no such folder, no permission, disk full) is a
-/// UserError of one line.
+/// A file that is written without a buffer of its own: data passed to Write survive the end of the
+/// process, however it ends. Every failure (no such folder, no permission, full disk) throws
+/// UserError with one line.
 class OutputFile {
  public:
   enum class Mode { kReplace, kAppend };
 
-  /// Creates the file; empties the one that is there, or goes on at its end.
+  /// Creates the file. An existing file is emptied, or continued at its end.
   explicit OutputFile(std::filesystem::path path, Mode mode = Mode::kReplace);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
   void Write(std::string_view data);
-  /// Writes over what stands at `offset` (bytes from the beginning); Write goes on where it was.
+  /// Overwrites the bytes from `offset` on. The position at which Write continues does not change.
   void Overwrite(std::int64_t offset, std::string_view data);
-  /// Waits until all that was written is on the disk, and closes.
+  /// Waits until all data are on the disk, and closes the file.
   void SyncAndClose();
 
   const std::filesystem::path& path() const { return path_; }
@@ -32,7 +32,7 @@ class OutputFile {
   int descriptor_ = -1;
 };
 
-/// Throws the UserError for a failed attempt to write `path`, by the value of errno.
+/// Throws the UserError for a failed attempt to write `path`, according to the value of errno.
 [[noreturn]] void ThrowWriteError(const std::filesystem::path& path, int error);
 
 }  // namespace orb360

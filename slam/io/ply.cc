@@ -28,10 +28,11 @@ constexpr std::string_view kSurfaceProperties =
     "property uchar red\nproperty uchar green\nproperty uchar blue\n"
     "property float confidence\nend_header\n";
 constexpr size_t kSurfaceBytes = 7 * sizeof(float) + 3;
-/// Room for a comment and any number of points, so that headers are equally long.
+/// Size of the header's beginning. It has room for the comment and any number of points, so that
+/// all headers have the same length.
 constexpr size_t kSurfaceBeginBytes = 160;
 
-/// Clouds may be larger than the memory left: they are written in pieces.
+/// Clouds may be larger than the available memory, so they are written in pieces.
 constexpr size_t kChunkBytes = size_t{1} << 20;
 
 UserError NotOurs(const std::filesystem::path& path) {

@@ -16,29 +16,30 @@
 namespace orb360 {
 
 struct ColoredPoint {
-  /// Metres.
+  /// Position, metres.
   Eigen::Vector3f position = Eigen::Vector3f::Zero();
   std::array<std::uint8_t, 3> rgb{};
 };
 
-/// Writes points as binary little-endian PLY (x y z float, red green blue uchar), each moved into
-/// the file's world first (FileWorldFromMap). Throws UserError if the file cannot be written.
+/// Writes points as binary little-endian PLY (x y z float, red green blue uchar). Each point is
+/// first transformed into the file's world (FileWorldFromMap). Throws UserError if the file cannot
+/// be written.
 void WritePly(const std::filesystem::path& path, std::span<const ColoredPoint> points,
               const Rigid3& file_world_from_map = {});
 
-/// The points of a file that WritePly wrote. Throws UserError for any other.
+/// Reads a file that WritePly wrote. Throws UserError for any other file.
 std::vector<ColoredPoint> ReadPly(const std::filesystem::path& path);
 
-/// A cloud of surface points as binary little-endian PLY (x y z nx ny nz float, red green blue
-/// uchar, confidence float), written as the points come: their number is entered at the end. Throws
-/// UserError if the file cannot be written.
+/// Writes a cloud of surface points as binary little-endian PLY (x y z nx ny nz float, red green
+/// blue uchar, confidence float). Points are written as they are appended, and their number is
+/// entered at the end. Throws UserError if the file cannot be written.
 class SurfacePlyWriter {
  public:
-  /// `voxel_size`, world units, for the file's comment on what the confidence means.
+  /// `voxel_size`, world units, is stated in the header's comment on the confidence.
   SurfacePlyWriter(const std::filesystem::path& path, double voxel_size);
 
   void Append(std::span<const SurfacePoint> points);
-  /// The file appears under its name.
+  /// Makes the file appear under its name.
   void Commit();
 
   std::uint64_t num_points() const { return num_points_; }
@@ -51,10 +52,10 @@ class SurfacePlyWriter {
   std::uint64_t num_points_ = 0;
 };
 
-/// True where the file begins as those of SurfacePlyWriter do.
+/// Returns true if the file begins with the header of SurfacePlyWriter.
 bool IsSurfacePly(const std::filesystem::path& path);
 
-/// The points of a file that SurfacePlyWriter wrote. Throws UserError for any other.
+/// Reads a file that SurfacePlyWriter wrote. Throws UserError for any other file.
 std::vector<SurfacePoint> ReadSurfacePly(const std::filesystem::path& path);
 
 }  // namespace orb360

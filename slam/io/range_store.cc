@@ -73,8 +73,9 @@ const std::vector<float>& RangeOfCode() {
   return table;
 }
 
-/// The differences of neighbours in a row, of which most are small; their signs are in the lowest
-/// bit, so that their upper bytes are alike and, in a plane of their own, pack well.
+/// Stores the differences between neighbours in a row, most of which are small. The sign is moved
+/// to the lowest bit, so that the upper bytes are similar and compress well in a plane of their
+/// own.
 std::string Pack(const CodedDepth& coded) {
   const size_t pixels = coded.ranges.total();
   std::string planes(3 * pixels, '\0');
@@ -109,7 +110,7 @@ std::string Pack(const CodedDepth& coded) {
   return packed;
 }
 
-/// Of what Pack has made; images without pixels where it is damaged.
+/// Inverts Pack. Returns images without pixels if the data are damaged.
 CodedDepth Unpack(std::string_view packed, int width, int height) {
   const size_t pixels = static_cast<size_t>(width) * static_cast<size_t>(height);
   std::string planes(3 * pixels, '\0');
@@ -178,7 +179,7 @@ void RangeStore::Put(int frame_index, const DenseDepth& depth) const {
   const Header header{
       static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height),
       static_cast<std::uint32_t>(packed.size()), static_cast<std::uint32_t>(color.size())};
-  // Nobody needs these files after a crash: no waiting for the disk.
+  // These files are useless after a crash, so the disk is not synced.
   OutputFile file(PathOf(frame_index));
   file.Write({reinterpret_cast<const char*>(&header), sizeof header});
   file.Write(packed);

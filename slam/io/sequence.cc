@@ -16,10 +16,11 @@
 namespace orb360 {
 namespace {
 
-/// Frames decoded ahead: enough to bridge a keyframe's work, 50 MB of 4K pictures.
+/// Number of frames that are decoded ahead: enough to bridge the work on a keyframe, and 50 MB of
+/// 4K images.
 constexpr size_t kFramesAhead = 4;
 
-/// Of `count` source frames, those that start, stride and max_frames leave.
+/// Number of frames, among `count` source frames, that start, stride and max_frames select.
 int SelectedCount(int count, const SequenceOptions& options) {
   const int strided = count <= options.start ? 0 : (count - options.start - 1) / options.stride + 1;
   return options.max_frames > 0 ? std::min(strided, options.max_frames) : strided;
@@ -86,7 +87,7 @@ void Sequence::DecodeAhead() {
   queue_.Close();
 }
 
-/// Pushes every selected frame. False when nobody wants them any more.
+/// Pushes every selected frame. Returns false when the queue has been closed.
 bool Sequence::DecodeAll() {
   for (int i = 0; i < options_.start; ++i) {
     if (!source_->Skip()) return true;

@@ -12,50 +12,53 @@
 
 namespace orb360 {
 
-/// Which frames of an input are used, and how.
+/// The frames of an input that are used, and how.
 struct SequenceOptions {
-  /// Frames a second, in place of the input's own rate and timestamps; 0: as the input says.
+  /// Frame rate that replaces the input's own rate and timestamps, frames per second. 0: as the
+  /// input says.
   double fps = 0.0;
-  /// Every stride-th frame, at least 1.
+  /// Every stride-th frame is used; at least 1.
   int stride = 1;
-  /// The first frame, from 0.
+  /// Index of the first frame, from 0.
   int start = 0;
-  /// At most so many frames; 0: all.
+  /// Largest number of frames; 0: all.
   int max_frames = 0;
-  /// Scales every image to this size; empty: as it is. Must be near 2:1 (IsFullSphere).
+  /// Size to which every image is scaled; empty: not scaled. Must be near 2:1 (IsFullSphere).
   cv::Size resize;
 };
 
-/// The frames a user asked for, in order, decoded ahead on a thread of its own. One thread calls.
+/// The frames that a user asked for, in order. They are decoded ahead on another thread. All
+/// methods must be called from one thread.
 class Sequence {
  public:
-  /// Throws UserError when the images cannot be a full sphere, ContractError for options out of
+  /// Throws UserError when the images cannot be a full sphere, and ContractError for options out of
   /// range.
   Sequence(std::unique_ptr<FrameSource> source, const SequenceOptions& options);
   ~Sequence();
   Sequence(const Sequence&) = delete;
   Sequence& operator=(const Sequence&) = delete;
 
-  /// The next frame that can be decoded; nullopt at the end, for good. Throws UserError where the
-  /// input becomes unusable (an image of another size) and at the end of an input that gave no
+  /// Returns the next frame that can be decoded, or nullopt at the end. Throws UserError if the
+  /// input becomes unusable (an image of another size), and at the end of an input that gave no
   /// frame at all.
   std::optional<Frame> Next();
 
-  /// Of the images that Next gives.
+  /// Size of the images that Next returns.
   cv::Size image_size() const { return image_size_; }
-  /// Frames a second of the source, before stride.
+  /// Frame rate of the source before stride, frames per second.
   double frame_rate() const { return frame_rate_; }
-  /// About how many frames Next will give, where that is known; for progress displays only.
+  /// Approximate number of frames that Next will return, if it is known; for progress displays
+  /// only.
   std::optional<int> frame_count() const { return frame_count_; }
-  /// Height of the camera above the ground in metres, where the input states it.
+  /// Height of the camera above the ground, metres, if the input states it.
   std::optional<double> camera_height() const { return camera_height_; }
 
-  /// What the user should know about the frames so far, one line each: damaged images, a truncated
-  /// video. Each is given once.
+  /// Returns one line for each problem of the frames so far, such as damaged images or a truncated
+  /// video. Each line is returned once.
   std::vector<std::string> TakeWarnings() { return std::exchange(warnings_, {}); }
 
  private:
-  /// What the decoding thread hands over.
+  /// One item that the decoding thread hands over.
   struct Step {
     std::optional<Frame> frame;
     std::vector<std::string> warnings;
@@ -78,8 +81,8 @@ class Sequence {
   std::thread decoder_;  // Last: it uses the others.
 };
 
-/// Opens a video file, a folder of images, or a sequence folder (Dataset). Throws UserError when
-/// there is no such input, it cannot be read, or its pictures are not full spheres.
+/// Opens a video file, a folder of images, or a sequence folder (Dataset). Throws UserError if the
+/// input does not exist, cannot be read, or does not consist of full spheres.
 std::unique_ptr<Sequence> OpenSequence(const std::string& input, const SequenceOptions& options);
 
 }  // namespace orb360

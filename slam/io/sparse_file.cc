@@ -20,7 +20,7 @@ constexpr const char* kFrameIndex = "frame_index";
 constexpr const char* kTimestamp = "timestamp";
 constexpr const char* kPose = "world_from_camera";
 
-// A file of the HDF5 library's core driver: in memory alone.
+// Access properties of a file that exists in memory only (core driver of HDF5).
 Hdf5Handle MemoryFileAccess() {
   constexpr size_t kGrowth = 1 << 20;  // bytes
   Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -79,7 +79,7 @@ std::string Encode(const SparseSample& sample) {
   return bytes;
 }
 
-// A dataset of the given type class and rank; its size by dimension.
+// Reads a dataset if it exists and has the given dimensions.
 bool ReadArray(hid_t file, const char* name, hid_t type, const std::vector<hsize_t>& dims,
                void* data) {
   const Hdf5Handle set(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);

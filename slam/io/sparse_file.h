@@ -9,7 +9,7 @@
 
 namespace orb360 {
 
-/// What one keyframe gives to depth completion.
+/// The data of one keyframe that depth completion needs.
 struct SparseSample {
   cv::Mat image;  // CV_8UC3, BGR
   SparseDepth sparse;
@@ -18,13 +18,13 @@ struct SparseSample {
   Rigid3 world_from_camera;  // map frame and units, camera -X forward
 };
 
-/// Writes one HDF5 file: datasets `image` (height x width x 3, uint8, RGB), `range` and
-/// `confidence` (height x width, float32, 0 = no point; range along the ray in the map's units),
-/// and attributes `frame_index`, `timestamp` and `world_from_camera` (tx ty tz qx qy qz qw).
-/// Throws UserError where the file cannot be written; no partial file stays.
+/// Writes one HDF5 file (docs/formats/sparse_keyframe.md): datasets `image` (height x width x 3,
+/// uint8, RGB), `range` and `confidence` (height x width, float32, 0 = no point; range along the
+/// ray in the map's units), and attributes `frame_index`, `timestamp` and `world_from_camera` (tx
+/// ty tz qx qy qz qw). Throws UserError if the file cannot be written; no partial file remains.
 void WriteSparseSample(const std::filesystem::path& path, const SparseSample& sample);
 
-/// Reads it back. Throws UserError for a file that is missing or not of this form.
+/// Reads such a file. Throws UserError for a file that is missing or has another form.
 SparseSample ReadSparseSample(const std::filesystem::path& path);
 
 }  // namespace orb360

@@ -31,7 +31,7 @@ void AppendNumber(std::string* line, double value, std::chars_format format, int
   line->append(buffer.data(), result.ptr);
 }
 
-/// The words of a line, separated by blanks; a carriage return counts as one.
+/// Splits a line into words separated by blanks; a carriage return counts as a blank.
 std::vector<std::string_view> Words(std::string_view line) {
   constexpr std::string_view kBlanks = " \t\r";
   std::vector<std::string_view> words;
@@ -43,7 +43,7 @@ std::vector<std::string_view> Words(std::string_view line) {
   return words;
 }
 
-/// `where` begins the message of the UserError.
+/// Parses the words of a line. The message of the UserError begins with `where`.
 StampedPose ParsePose(const std::vector<std::string_view>& words, const std::string& where) {
   std::array<double, 8> values{};
   if (words.size() != values.size()) {
@@ -79,7 +79,7 @@ Rigid3 FileWorldFromMap(const Rigid3& map_from_first_camera,
     const Eigen::Vector3d up = up_in_map->normalized();
     const Eigen::Vector3d forward = map_from_file.col(0);
     const Eigen::Vector3d left = map_from_file.col(1);
-    // Within half a degree of the vertical, forward has no heading of its own.
+    // Within half a degree of the vertical, the forward direction has no heading.
     const Eigen::Vector3d level_left =
         up.cross(forward).norm() > 0.01 ? up.cross(forward) : left - left.dot(up) * up;
     map_from_file.col(2) = up;

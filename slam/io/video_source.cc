@@ -9,15 +9,15 @@
 namespace orb360 {
 namespace {
 
-/// Frame counts are computed from durations in many containers, and edit lists hide a frame or
-/// two: only a larger gap is worth a warning.
+/// Many containers compute frame counts from durations, and edit lists hide a frame or two, so only
+/// a larger difference deserves a warning.
 constexpr int kFrameCountSlack = 2;
 
-/// Frames a second of a video that does not say.
+/// Frame rate of a video that does not state one, frames per second.
 constexpr double kDefaultFrameRate = 30.0;
 
 cv::VideoCapture Open(const std::string& path) {
-  // Read by OpenCV when it first opens a video; -8 is FFmpeg's AV_LOG_QUIET.
+  // OpenCV reads this variable when it first opens a video; -8 is FFmpeg's AV_LOG_QUIET.
   setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", /*overwrite=*/0);
   cv::VideoCapture capture(path, cv::CAP_FFMPEG);
   if (capture.isOpened()) return capture;

@@ -9,13 +9,14 @@
 
 namespace orb360 {
 
-/// The frames of a video file, by OpenCV's FFmpeg reader. Timestamps are the file's where they
-/// increase, else the previous frame's plus one frame time. A file that ends before the number of
-/// frames it announces (truncated, damaged) gives what can be decoded and a warning. Silences
-/// FFmpeg's own messages in the whole process unless OPENCV_FFMPEG_LOGLEVEL is set.
+/// Reads the frames of a video file by OpenCV's FFmpeg reader. Timestamps are the file's where they
+/// increase, otherwise the previous frame's plus one frame time. A file that ends before its
+/// announced number of frames (truncated, damaged) gives the frames that can be decoded and a
+/// warning. Silences FFmpeg's own messages in the whole process unless OPENCV_FFMPEG_LOGLEVEL is
+/// set.
 class VideoSource : public FrameSource {
  public:
-  /// Throws UserError when no video can be read from `path`.
+  /// Throws UserError if no video can be read from `path`.
   explicit VideoSource(const std::string& path);
 
   const SourceInfo& info() const override { return info_; }

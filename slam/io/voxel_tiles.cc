@@ -50,7 +50,8 @@ void VoxelTiles::ForEach(const std::function<void(std::span<const Voxel>)>& take
       throw UserError(PathOf(tile).string() +
                       ": is damaged or gone; keep the folder as it is until the run has ended");
     }
-    // Stable: parts of a voxel are added in the order in which they came.
+    // The sort is stable so that parts of a voxel are added in the order in which they were
+    // appended.
     std::ranges::stable_sort(voxels, {}, &Voxel::key);
     size_t last = 0;
     for (size_t i = 1; i < voxels.size(); ++i) {

@@ -11,11 +11,12 @@
 
 namespace orb360 {
 
-/// Voxels on disk, by the cube of space they are in (VoxelTile): as many as the disk holds, joined
-/// one cube at a time. Throws UserError where the disk fails.
+/// Voxels on disk, in one file for each cube of space (VoxelTile). Their number is limited by the
+/// disk only; the parts of voxels are added up one cube at a time. Throws UserError if the disk
+/// fails.
 class VoxelTiles {
  public:
-  /// Makes the folder, and removes it again in the end.
+  /// Creates the folder; the destructor removes it.
   explicit VoxelTiles(std::filesystem::path folder);
   ~VoxelTiles();
   VoxelTiles(const VoxelTiles&) = delete;
@@ -24,7 +25,8 @@ class VoxelTiles {
   /// Adds voxels, or parts of voxels.
   void Append(std::span<const Voxel> voxels);
 
-  /// Gives the voxels of each cube, whole and ordered by key; cubes in the order of their numbers.
+  /// Passes on the voxels of each cube, complete and ordered by key, cube by cube in the order of
+  /// their numbers.
   void ForEach(const std::function<void(std::span<const Voxel>)>& take) const;
 
  private:

@@ -9,7 +9,7 @@ namespace orb360 {
 YAML::Node LoadYamlMap(const std::filesystem::path& file) {
   YAML::Node root;
   try {
-    // Opening a folder succeeds; reading it fails in a way of its own.
+    // Opening a folder succeeds, but reading it fails with an unclear message.
     if (std::filesystem::is_directory(file)) throw YAML::BadFile(file.string());
     root = YAML::LoadFile(file.string());
   } catch (const YAML::ParserException& error) {

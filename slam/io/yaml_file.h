@@ -7,11 +7,11 @@
 
 namespace orb360 {
 
-/// The map at the top of a YAML file, empty for an empty file. Throws UserError, naming file and
-/// line, for a file that cannot be opened, is not YAML or holds something else.
+/// Returns the map at the top of a YAML file, empty for an empty file. Throws UserError with file
+/// and line for a file that cannot be opened, is not YAML, or contains something else at the top.
 YAML::Node LoadYamlMap(const std::filesystem::path& file);
 
-/// "file:line: ", for messages about `node`; lines count from 1.
+/// Returns "file:line: " for messages about `node`; lines count from 1.
 std::string WhereIs(const std::filesystem::path& file, const YAML::Node& node);
 
 }  // namespace orb360

@@ -6,14 +6,15 @@
 
 namespace orb360 {
 
-/// Two keyframes that see the same landmarks.
+/// Two keyframes that observe common landmarks.
 struct CovisibilityEdge {
   KeyframeId first;  ///< The smaller id.
   KeyframeId second;
   int shared;  ///< Landmarks seen by both.
 };
 
-/// All pairs of keyframes with at least `min_shared` landmarks in common, ordered by their ids.
+/// Returns all pairs of keyframes with at least `min_shared` landmarks in common, ordered by their
+/// ids.
 std::vector<CovisibilityEdge> FindCovisibilityEdges(const Map& map, int min_shared);
 
 }  // namespace orb360

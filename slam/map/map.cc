@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kLevelsPerOctave = 4.0;
 
-// The observation with the smallest median distance to the others: robust against a few wrong ones.
+// Returns the descriptor with the smallest median distance to the others, which is robust against a
+// few wrong ones.
 const Descriptor& MostTypical(std::span<const Descriptor> descriptors) {
   std::vector<uint16_t> distances(descriptors.size());
   size_t best = 0;
@@ -166,7 +167,7 @@ void Map::UpdateAppearance(LandmarkId id) {
     directions += (target.position - observer.world_from_camera.translation).normalized();
   }
   target.descriptor = MostTypical(descriptors);
-  // Seen from opposite sides the directions cancel; then any direction may see it.
+  // Directions from opposite sides cancel; then the landmark may be seen from any direction.
   target.mean_direction =
       directions.norm() > 1e-9 ? directions.normalized() : Eigen::Vector3d(Eigen::Vector3d::Zero());
   const Observation& newest = target.observations.back();

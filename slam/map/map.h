@@ -14,28 +14,29 @@
 
 namespace orb360 {
 
-// Pictures are kept here and not looked at: what a map is made of does without OpenCV.
+// Images are stored here but not looked at, so that code that uses maps does not depend on OpenCV.
 struct PyramidLevel;
 using SpherePyramid = std::vector<PyramidLevel>;  // sphere_pyramid.h
 
-/// Keyframes and landmarks refer to each other by id: the index in their map, never used again
-/// after removal.
+/// Keyframes and landmarks refer to each other by id. An id is the index in the map and is never
+/// reused after removal.
 using KeyframeId = int;
 using LandmarkId = int;
 inline constexpr int kNoId = -1;
 
-/// One landmark's sighting: feature `feature` of keyframe `keyframe`.
+/// An observation of one landmark by feature `feature` of keyframe `keyframe`.
 struct Observation {
   KeyframeId keyframe = kNoId;
   int feature = 0;
-  /// Where the keyframe's picture shows the landmark's patch: more exact than the feature. Unit,
-  /// camera frame; with its angular noise, rad, which is 0 where that is not known.
+  /// Direction in which the keyframe's image shows the landmark's patch, which is more exact than
+  /// the feature's: unit vector, camera frame. aligned_sigma is its angular noise, rad; 0 if the
+  /// direction is not known.
   Eigen::Vector3f aligned_bearing = Eigen::Vector3f::Zero();
   float aligned_sigma = 0;
   bool was_compared = false;  // with the landmark's patch, whatever came of it
 };
 
-/// A patch of a keyframe's picture around a landmark, with which later pictures are aligned.
+/// A patch of a keyframe's image around a landmark, with which later images are aligned.
 struct LandmarkPatch {
   KeyframeId keyframe;      // may have been removed since
   Eigen::Vector3d bearing;  // of the patch's centre, unit, in its camera frame
@@ -43,7 +44,7 @@ struct LandmarkPatch {
   Patch patch;
 };
 
-/// What is known of a feature's range without any landmark: from completed depth.
+/// Range of a feature from completed depth, independent of any landmark.
 struct RangePrior {
   float range = 0;  // along the bearing, world units
   float sigma = 0;  // standard deviation of ln(range); 0 where nothing is known
@@ -64,7 +65,7 @@ struct Keyframe {
   }
 };
 
-/// By corner (`Features::corners`): whether it is a landmark, by the feature of whichever level.
+/// For each corner (`Features::corners`): whether it has a landmark, by a feature of any level.
 std::vector<uint8_t> FindMappedCorners(const Keyframe& keyframe);
 
 struct Landmark {
@@ -81,46 +82,46 @@ struct Landmark {
   int visible = 1;                             // frames in which it should have been seen
   int found = 1;                               // and was
 
-  /// Null where the keyframe does not see it.
+  /// Returns null if the keyframe does not observe the landmark.
   const Observation* FindObservation(KeyframeId from) const;
   Observation* FindObservation(KeyframeId from);
 };
 
-/// The range at which a feature of pyramid level l at `range` would be on level 0. Scales grow by
-/// 2^(1/4) a level (sphere_pyramid.h).
+/// Returns the range at which a feature of pyramid level l at `range` would appear on level 0.
+/// Scales grow by 2^(1/4) per level (sphere_pyramid.h).
 double RangeAtLevelZero(double range, int level);
-/// The inverse: the level, rounded and not clamped, on which a landmark is seen from `range`.
+/// The inverse: returns the level, rounded and not clamped, on which a landmark appears at `range`.
 int PredictLevel(double max_range, double range);
 
-/// The map: keyframes, landmarks, and who sees whom. A value with one owner (no locking): whoever
-/// works on it has it. Copying copies everything but features, pictures and patches, which are
-/// shared.
+/// The map: keyframes, landmarks and the observations between them. A map is a value with one owner
+/// and without locks. Copies share features, images and patches; everything else is copied.
 ///
-/// Invariant: landmark l lists the observation (k, f) exactly when keyframe k has l at feature f.
+/// Invariant: landmark l lists the observation (k, f) exactly when keyframe k lists l at feature f.
 class Map {
  public:
   KeyframeId AddKeyframe(int frame_index, double timestamp, const Rigid3& world_from_camera,
                          std::shared_ptr<const Features> features);
-  /// Removes a keyframe and its observations. Its pose lives on relative to `successor`, another
-  /// keyframe: PoseOf(id) follows the successor from now on.
+  /// Removes a keyframe and its observations. Its pose is kept relative to another keyframe,
+  /// `successor`: from now on PoseOf(id) follows the successor.
   void RemoveKeyframe(KeyframeId id, KeyframeId successor);
 
-  /// Releases the pictures of all keyframes but the newest `num_kept`.
+  /// Releases the images of all keyframes except the newest `num_kept`.
   void ForgetPictures(int num_kept);
 
-  /// A landmark without observations.
+  /// Adds a landmark without observations.
   LandmarkId AddLandmark(const Eigen::Vector3d& position, const Color& color);
   void RemoveLandmark(LandmarkId id);
-  /// Moves the observations of `from` to `to` (where a keyframe sees both, `to` keeps its own) and
-  /// removes `from`; Resolve(from) is `to` from now on. Moved observations are not aligned with
-  /// the patch of `to` yet.
+  /// Moves the observations of `from` to `to` and removes `from`. Where a keyframe observes both,
+  /// `to` keeps its own observation. Resolve(from) is `to` from now on. Moved observations are not
+  /// yet aligned with the patch of `to`.
   void MergeLandmark(LandmarkId from, LandmarkId to);
 
-  /// Contract: neither has an observation of the other yet.
+  /// Contract: neither the landmark nor the feature has an observation of the other yet.
   void AddObservation(LandmarkId landmark, KeyframeId keyframe, int feature);
   void RemoveObservation(LandmarkId landmark, KeyframeId keyframe);
 
-  /// Recomputes descriptor, mean direction and range limit from the observations (at least one).
+  /// Recomputes descriptor, mean direction and range limit from the observations, of which there
+  /// must be at least one.
   void UpdateAppearance(LandmarkId id);
 
   bool HasKeyframe(KeyframeId id) const {
@@ -129,20 +130,20 @@ class Map {
   bool HasLandmark(LandmarkId id) const {
     return id >= 0 && id < landmark_end() && landmarks_[id].has_value();
   }
-  /// Contract: it exists.
+  /// Contract: the keyframe or landmark exists.
   Keyframe& keyframe(KeyframeId id);
   const Keyframe& keyframe(KeyframeId id) const;
   Landmark& landmark(LandmarkId id);
   const Landmark& landmark(LandmarkId id) const;
 
-  /// The landmark that `id` is part of now, kNoId if it was removed.
+  /// Returns the landmark that contains `id` now, or kNoId if it was removed.
   LandmarkId Resolve(LandmarkId id) const;
-  /// world_from_camera of a keyframe, removed ones included.
+  /// Returns world_from_camera of a keyframe, which may have been removed.
   Rigid3 PoseOf(KeyframeId id) const;
-  /// A living keyframe that stands for `id` (itself, or its successor).
+  /// Returns an existing keyframe that represents `id`: itself or its successor.
   KeyframeId LivingKeyframe(KeyframeId id) const;
 
-  /// One more than the largest id ever given: for loops over all ids with Has...().
+  /// One more than the largest id ever given, for loops over all ids with Has...().
   KeyframeId keyframe_end() const { return static_cast<int>(keyframes_.size()); }
   LandmarkId landmark_end() const { return static_cast<int>(landmarks_.size()); }
   int num_keyframes() const { return num_keyframes_; }
@@ -153,26 +154,26 @@ class Map {
     KeyframeId keyframe;
     int shared;  // landmarks seen by both
   };
-  /// Keyframes that see at least `min_shared` of the landmarks, most first (ties: newest first),
-  /// without `except`.
+  /// Returns keyframes that observe at least `min_shared` of the landmarks, ordered by that number
+  /// (largest first; ties: newest first), without `except`.
   std::vector<Covisible> FindCovisible(std::span<const LandmarkId> landmarks, int min_shared,
                                        KeyframeId except = kNoId) const;
 
-  /// Median distance of a keyframe's landmarks from it; 0 if it has none.
+  /// Returns the median distance of a keyframe's landmarks from it, or 0 if it has none.
   double MedianRange(KeyframeId id) const;
 
-  /// Applies target_from_world to every pose, landmark and range: a change of gauge.
+  /// Applies target_from_world to every pose, landmark and range, which is a change of gauge.
   void Transform(const Similarity3& target_from_world);
-  /// Bends the map: `corrections` holds, by keyframe id, what moves the world around that keyframe
-  /// (entries of removed ones are those of the keyframe that stands for them). A landmark goes with
-  /// the keyframe in the middle of those that see it.
+  /// Deforms the map. `corrections` contains, for each keyframe id, the similarity that moves the
+  /// world around that keyframe; entries of removed keyframes are those of the keyframes that
+  /// represent them. A landmark moves with the middle one of the keyframes that observe it.
   void Deform(std::span<const Similarity3> corrections);
 
-  /// Takes over all keyframes and landmarks of another map in the same world; their ids grow by
-  /// keyframe_end() and landmark_end() of this one as it was before.
+  /// Adds all keyframes and landmarks of another map in the same world. Their ids grow by the
+  /// keyframe_end() and landmark_end() that this map had before.
   void Append(const Map& other);
 
-  /// Throws ContractError where the invariant is broken; for tests.
+  /// Throws ContractError if the invariant is violated; for tests.
   void CheckConsistency() const;
 
  private:

@@ -19,8 +19,8 @@ struct DumpedTensor {
 /// Inputs and results of one run of a network, by name.
 using Dump = std::map<std::string, DumpedTensor, std::less<>>;
 
-/// The runs that weights_tools.dump_reference stored with a network, by name; docs/networks.md
-/// describes the files.
+/// The runs that weights_tools.dump_reference stored with a network, by name;
+/// docs/formats/network.md describes the files.
 std::map<std::string, Dump> ReadDumps(const std::filesystem::path& path);
 
 }  // namespace orb360::nn

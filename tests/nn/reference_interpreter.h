@@ -9,8 +9,8 @@
 
 namespace orb360::nn {
 
-/// What a node computes of its inputs: loops in double precision, written from docs/networks.md and
-/// sharing nothing with the kernels.
+/// What a node computes of its inputs: loops in double precision, written from
+/// docs/formats/network.md and sharing nothing with the kernels.
 struct NodeResult {
   std::vector<PlainPicture> outputs;
   /// By output and element: the sum of the absolute values of what is added up there, on which the

@@ -27,7 +27,7 @@ def street() -> np.ndarray:
 
 
 def frame(seed: int = 0) -> Frame:
-    """With features everywhere below the sky, travelling ahead."""
+    """A frame with features everywhere below the sky, of a camera that moves forward."""
     random = np.random.RandomState(seed)
     count = 4000
     features = np.stack(
@@ -74,8 +74,8 @@ def write_drive(folder: Path, frames: int = 3, depth_every: int = 2) -> None:
     random = np.random.RandomState(0)
     blocks = random.randint(0, 256, (HEIGHT // 8, WIDTH // 8, 3)).astype(np.uint8)
     for i in range(frames):
-        picture = np.kron(blocks, np.ones((8, 8, 1), np.uint8))
-        cv2.imwrite(str(folder / f"rgb/{i:06}.jpg"), picture)
+        image = np.kron(blocks, np.ones((8, 8, 1), np.uint8))
+        cv2.imwrite(str(folder / f"rgb/{i:06}.jpg"), image)
         if i % depth_every == 0:
             metres = np.rint(street() * 256).astype(np.uint16)
             cv2.imwrite(str(folder / f"depth/{i:06}.png"), metres)

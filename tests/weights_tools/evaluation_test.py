@@ -1,4 +1,4 @@
-"""Measures are what they say, on pictures whose errors are known."""
+"""Measures are what they say, on images whose errors are known."""
 
 import contextlib
 import io
@@ -16,7 +16,7 @@ import numpy as np
 
 from tests.weights_tools import drives
 from weights_tools import network_file, networks
-from weights_tools.evaluation import evaluate_depth, pictures, results, tables
+from weights_tools.evaluation import evaluate_depth, results, tables, visualization
 from weights_tools.evaluation.classical import interpolate
 from weights_tools.evaluation.depth_errors import DepthErrors
 from weights_tools.export import export, untrained
@@ -49,7 +49,7 @@ class DepthErrorsTest(unittest.TestCase):
         self.assertAlmostEqual(errors.measures(band=0)["absrel"], 1.0)
         self.assertEqual(errors.measures(band=1)["absrel"], 0.0)
         self.assertTrue(np.isnan(errors.measures(band=3)["absrel"]))
-        # Errors of both ranges are equal shares: RMSE tells them apart.
+        # Errors of both ranges count equally: RMSE tells them apart.
         near, far = errors.measures(range_bin=0)["rmse"], errors.measures(range_bin=3)["rmse"]
         self.assertAlmostEqual(far / near, 10)
         twice = DepthErrors()
@@ -149,7 +149,7 @@ print(json.dumps([dict(sparse=str(f), depth=here + "/street.png", confidence=her
         table = results.calibration_table(total)
         np.testing.assert_allclose(table[:, 1], 0.2, atol=0.01)
         np.testing.assert_allclose(table[:, 0], 65535 / 60000 - 1, atol=1e-4)
-        pictures.write_calibration(self.folder / "calibration.png", table)
+        visualization.write_calibration(self.folder / "calibration.png", table)
         for name in ("street-0.jpg", "calibration.png"):
             self.assertIsNotNone(cv2.imread(str(self.folder / name)), name)
         with contextlib.redirect_stdout(io.StringIO()) as printed:

@@ -56,7 +56,7 @@ class NetworkFileTest(unittest.TestCase):
             expected = network.weights()[name].detach().numpy().astype(np.float16)
             np.testing.assert_array_equal(values, expected)
 
-    def test_says_what_pictures_it_expects_and_which_errors(self) -> None:
+    def test_says_what_images_it_expects_and_which_errors(self) -> None:
         network = Network(networks.unguided())
         export(self.path, network, {}, width=256, log_error=0.2)
         stated = network_file.read(self.path).graph.normalisation

@@ -15,7 +15,7 @@ HEIGHT, WIDTH = 64, 128
 
 
 def panorama(seed: int = 0, dtype: torch.dtype = torch.float64) -> dict[str, Tensor]:
-    """A random picture with 5 % of its depths."""
+    """A random image with 5 % of its depths."""
     random = np.random.RandomState(seed)
     known = random.uniform(size=(1, 1, HEIGHT, WIDTH)) < 0.05
     arrays = {
@@ -152,7 +152,7 @@ class NormalizationTest(unittest.TestCase):
 
 
 class DepthCompletionTest(unittest.TestCase):
-    def test_outputs_have_the_size_of_the_picture(self) -> None:
+    def test_outputs_have_the_size_of_the_image(self) -> None:
         outputs = small().double()(panorama())
         for name in ("log_depth", "confidence", "ground"):
             self.assertEqual(outputs[name].shape, (1, 1, HEIGHT, WIDTH))
@@ -175,7 +175,7 @@ class DepthCompletionTest(unittest.TestCase):
         outputs = network(inputs)
         turned = network({name: value.roll(64, -1) for name, value in inputs.items()})
         for name in ("log_depth", "confidence", "ground"):
-            # Not exact here: BLAS adds up in another order elsewhere in the picture.
+            # Not exact here: BLAS adds up in another order elsewhere in the image.
             difference = (outputs[name].roll(64, -1) - turned[name]).abs().max().item()
             self.assertLess(difference, 1e-12, name)
         self.assertEqual(outputs["scale"], turned["scale"])
@@ -192,7 +192,7 @@ class DepthCompletionTest(unittest.TestCase):
             self.assertLess(difference, 1e-13, name)
         self.assertAlmostEqual(scaled["scale"].item(), 0.1 * outputs["scale"].item())
 
-    def test_is_finite_and_can_be_trained_without_points_and_without_a_picture(self) -> None:
+    def test_is_finite_and_can_be_trained_without_points_and_without_a_image(self) -> None:
         inputs = panorama(dtype=torch.float32)
         for name in inputs:
             network = small("wrap_cross_pole")

@@ -1,4 +1,4 @@
-"""Operations against plain loops that read docs/networks.md literally."""
+"""Operations against plain loops that read docs/formats/network.md literally."""
 
 import itertools
 import math
@@ -51,7 +51,7 @@ def correlate(x: np.ndarray, weight: np.ndarray, stride: int, padding: str) -> n
 
 
 class PadTest(unittest.TestCase):
-    def test_every_padding_continues_the_picture_however_small_it_is(self) -> None:
+    def test_every_padding_continues_the_image_however_small_it_is(self) -> None:
         for padding, width in itertools.product(PADDINGS, (0, 1, 2, 5)):
             for height, columns in sizes_for(padding):
                 x = random(1, 1, height, columns)
@@ -195,12 +195,12 @@ class SizeTest(unittest.TestCase):
                 y = OPERATIONS["convex_upsample"](x, weights, padding=padding)
                 for v, u, i, j in np.ndindex(height, width, 2, 2):
                     first = 9 * (2 * i + j)
-                    shares = weights[0, first : first + 9, v, u].exp().tolist()
+                    fractions = weights[0, first : first + 9, v, u].exp().tolist()
                     neighbours = [
                         pixel(x[0, 0].numpy(), v + dy, u + dx, padding)
                         for dy, dx in itertools.product((-1, 0, 1), repeat=2)
                     ]
-                    expected = sum(map(math.prod, zip(shares, neighbours))) / sum(shares)
+                    expected = sum(map(math.prod, zip(fractions, neighbours))) / sum(fractions)
                     result = y[0, 0, 2 * v + i, 2 * u + j].item()
                     self.assertAlmostEqual(result, expected, places=14)
 
@@ -244,7 +244,7 @@ class PanoramaTest(unittest.TestCase):
         np.testing.assert_allclose(x.flatten(), expected, rtol=1e-6)
         self.assertEqual(certainty.flatten().tolist(), [1, 0.5, 1, 0, 0, 0, 0, 1, 0, 0])
 
-    def test_median_log_has_a_median_for_each_picture_of_a_batch(self) -> None:
+    def test_median_log_has_a_median_for_each_image_of_a_batch(self) -> None:
         depth = torch.tensor([2.0, 8.0, 8.0, 0.0, 0.0, 0.0]).view(2, 1, 1, 3)
         x, certainty, median = OPERATIONS["median_log"](depth, torch.ones_like(depth))
         self.assertEqual(median.flatten().tolist(), [8.0, 1.0])

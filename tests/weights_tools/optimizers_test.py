@@ -45,7 +45,7 @@ class OptimizersTest(unittest.TestCase):
             self.assertTrue(0.6 * 0.008 < size < 1.2 * 0.008, size)
             self.assertLess((weight * weight.grad).sum().item(), 0)
 
-    def test_weights_decay_by_their_share_of_the_rate(self) -> None:
+    def test_weights_decay_by_their_fraction_of_the_rate(self) -> None:
         weight = torch.nn.Parameter(torch.ones(4, 2, 3, 3))
         weight.grad = torch.zeros_like(weight)
         Muon([weight], lr=0.1, weight_decay=0.5).step()

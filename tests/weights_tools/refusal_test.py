@@ -86,7 +86,7 @@ class RefusalTest(unittest.TestCase):
         said = self.refused("training.make_shard", *options[:2])
         self.assertIn("sequence.yaml: tells no camera_height", said)
 
-    def test_pictures_of_another_size_are_named(self) -> None:
+    def test_images_of_another_size_are_named(self) -> None:
         drive, out = self.folder / "drive", self.folder / "out"
         drives.write_drive(drive)
         for name in ("rgb/000000.jpg", "moving/000000.png", "depth/000002.png"):
@@ -102,7 +102,7 @@ class RefusalTest(unittest.TestCase):
         for path, frame in zip(paths, (drives.frame(), make_shard.halved(drives.frame()))):
             shards.write(path, shards.pack([frame]))
         said = self.refused("training.train", self.folder / "out", "--shards", *paths)
-        self.assertIn(f"{paths[1]}: has pictures of 64x32, {paths[0]} of 128x64", said)
+        self.assertIn(f"{paths[1]}: has images of 64x32, {paths[0]} of 128x64", said)
 
     def test_errors_of_the_program_are_not_hidden(self) -> None:
         with self.assertRaises(KeyError), refusing("any"):

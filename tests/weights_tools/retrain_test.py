@@ -20,12 +20,12 @@ from weights_tools.training.shards import Frame
 
 
 def doubled(frame: Frame) -> Frame:
-    def grow(picture: np.ndarray) -> np.ndarray:
-        return picture.repeat(2, axis=0).repeat(2, axis=1)
+    def grow(image: np.ndarray) -> np.ndarray:
+        return image.repeat(2, axis=0).repeat(2, axis=1)
 
     features = frame.features * [2, 2, 1]
-    pictures = {name: grow(getattr(frame, name)) for name in ("rgb", "range", "moving", "ground")}
-    return replace(frame, features=features, **pictures)
+    images = {name: grow(getattr(frame, name)) for name in ("rgb", "range", "moving", "ground")}
+    return replace(frame, features=features, **images)
 
 
 class RetrainTest(unittest.TestCase):

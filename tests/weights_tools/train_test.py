@@ -264,7 +264,7 @@ class TrainTest(unittest.TestCase):
         factor = 1.3
 
         class Scaled(torch.nn.Module):
-            """Knows the truth, but for a factor on half of the picture, and finds no ground."""
+            """Knows the truth, but for a factor on half of the image, and finds no ground."""
 
             description = networks.depth_completion()
             knows_any_unit = True

@@ -1,4 +1,4 @@
-"""From drives to samples: what SLAM would know, and nothing that is not there."""
+"""Samples made of drives contain what SLAM would know and nothing else."""
 
 import tempfile
 import unittest
@@ -81,8 +81,8 @@ class ShardTest(unittest.TestCase):
             self.assertTrue(frame.moving[40, 127])
             # It drives to its own right.
             np.testing.assert_allclose(frame.travel, [0, 1, 0], atol=1e-6)
-        picture = cv2.imread(str(self.folder / "rgb/000000.jpg"))
-        np.testing.assert_array_equal(frames[0].rgb, picture[:, :, ::-1])
+        image = cv2.imread(str(self.folder / "rgb/000000.jpg"))
+        np.testing.assert_array_equal(frames[0].rgb, image[:, :, ::-1])
 
     def test_points_of_slam_are_kept_in_metres(self) -> None:
         drives.write_drive(self.folder)
@@ -137,11 +137,11 @@ class ShardTest(unittest.TestCase):
 
     def test_features_are_found_on_both_sides_of_the_seam_once(self) -> None:
         noise = np.random.RandomState(0).randint(0, 256, (60, 80)).astype(np.uint8)
-        picture = np.full((256, 512, 3), 128, np.uint8)
+        image = np.full((256, 512, 3), 128, np.uint8)
         blurred = cv2.normalize(cv2.GaussianBlur(noise, (0, 0), 2), None, 0, 255, cv2.NORM_MINMAX)
-        picture[100:160, 180:260] = blurred[:, :, None]
-        moved = np.roll(picture, 512 - 220, axis=1)  # the texture is cut in two
-        expected, found = make_shard.detect(picture), make_shard.detect(moved)
+        image[100:160, 180:260] = blurred[:, :, None]
+        moved = np.roll(image, 512 - 220, axis=1)  # the texture is cut in two
+        expected, found = make_shard.detect(image), make_shard.detect(moved)
         # Coarser levels are sampled at other places; about as many corners are found there.
         self.assertAlmostEqual(len(found) / len(expected), 1, delta=0.2)
         expected, found = (f[f[:, 2] < 1.1 * 2 * np.pi / 512] for f in (expected, found))
@@ -284,7 +284,7 @@ class BatchTest(unittest.TestCase):
             self.assertFalse((values == other.inputs[name]).all())
         self.assertTrue((first.truth == same.truth).all())
 
-    def test_points_stay_on_what_they_measure_when_pictures_turn(self) -> None:
+    def test_points_stay_on_what_they_measure_when_images_turn(self) -> None:
         batch = batches.draw(self.frames, 0, 0, 8, EXACT)
         known = batch.inputs["depth"] > 0
         measured = (batch.inputs["depth"] / batch.scale)[known]
@@ -303,7 +303,7 @@ class BatchTest(unittest.TestCase):
         self.assertTrue(8 < (counts == 1).sum() < 32)
         self.assertTrue((counts[counts != 1] > 100).all())
 
-    def test_pictures_turn_with_their_depth(self) -> None:
+    def test_images_turn_with_their_depth(self) -> None:
         frame = drives.frame()
         # Grey says how far it is.
         grey = np.where(frame.range > 0, np.clip(20 * frame.range, 1, 255), 0).astype(np.uint8)
@@ -331,8 +331,8 @@ class ComparePointsTest(unittest.TestCase):
         result = compare_points.summary([part, part[:, :2]])
         self.assertEqual(result["points of a frame, median"], 3)
         self.assertAlmostEqual(result["|ln error|, median"], 0.15)
-        self.assertAlmostEqual(result["share with |ln error| > 0.25"], 2 / 6)
-        self.assertAlmostEqual(result["confidence 0.9 to 1.0: share"], 0.5)
+        self.assertAlmostEqual(result["fraction with |ln error| > 0.25"], 2 / 6)
+        self.assertAlmostEqual(result["confidence 0.9 to 1.0: fraction"], 0.5)
         self.assertAlmostEqual(result["confidence 0.9 to 1.0: |ln error|, median"], 0.1)
         self.assertAlmostEqual(result["metres 20 to 40: |ln error|, median"], 0.3)
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from weights_tools.training.sphere import row_weights
 
-# Upper ends of the bins of true range, metres; beyond the last nothing counts. As slam/evaluation.
+# Upper ends of the bins of true range, metres, as in slam/evaluation; farther pixels are ignored.
 RANGE_ENDS = (5.0, 10.0, 20.0, 40.0, 80.0)
 LATITUDE_BANDS = 6  # of equal height, the lowest first
 _KINDS = ("weight", "squared", "absolute", "relative", "within")
@@ -42,7 +42,7 @@ class DepthErrors:
         return self
 
     def measures(self, range_bin: int | None = None, band: int | None = None) -> dict[str, float]:
-        """Of everything, a bin of range or a band of latitude; NaN where there are no pixels."""
+        """Errors of all pixels, a bin of range or a band of latitude; NaN without pixels."""
         sums = self.sums if range_bin is None else self.sums[range_bin : range_bin + 1]
         sums = sums if band is None else sums[:, band : band + 1]
         weight, squared, absolute, relative, within = sums.sum(axis=(0, 1))

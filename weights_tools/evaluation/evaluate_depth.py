@@ -26,7 +26,7 @@ import numpy as np
 import torch
 
 from weights_tools import network_file
-from weights_tools.evaluation import pictures
+from weights_tools.evaluation import visualization
 from weights_tools.evaluation.classical import interpolate
 from weights_tools.evaluation.depth_errors import RANGE_ENDS
 from weights_tools.evaluation.results import (
@@ -50,7 +50,7 @@ from weights_tools.training.validate import error_cut
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 POINTS = (100, 500, 1000, 2000, 3000)
-CLASSICAL_STEP = 4  # pixels between those that classical interpolation is measured at
+CLASSICAL_STEP = 4  # pixels; classical interpolation is measured at every fourth row and column
 # Height (None: the town's own), pitch, roll; and how many of a town's frames have it.
 MOUNTINGS = ((None, 0, 0, 8), (1.0, 5, -3, 6), (3.0, -4, 5, 6))
 # One frame every five seconds of the drive, with --quick; otherwise each second.
@@ -87,7 +87,7 @@ def read_frames(path: Path) -> list[Frame]:
 
 
 def renderer_fingerprint() -> str:
-    """Changes with the renderer's source, so that no stale drive is used."""
+    """A digest of the renderer's source, so that no stale drive is used."""
     digest = hashlib.sha256()
     for folder in ("apps/town", "slam/geometry"):
         for path in sorted((ROOT / folder).rglob("*")):
@@ -97,7 +97,7 @@ def renderer_fingerprint() -> str:
 
 
 def write_sparse(path: Path, frame: Frame, points: SparsePoints) -> None:
-    """As `orb360 run --save-sparse` does."""
+    """Writes a keyframe in the format of `orb360 run --save-sparse`."""
     with h5py.File(path, "w") as file:
         file["image"] = frame.rgb
         file["range"], file["confidence"] = points.depth, points.confidence
@@ -107,7 +107,7 @@ def write_sparse(path: Path, frame: Frame, points: SparsePoints) -> None:
 
 
 def propagation_of(weights: Path, out: Path) -> Path:
-    """A network file whose outputs are the first guess of another's."""
+    """Writes a network file whose outputs are the first estimate of another network."""
     network = network_file.read(weights)
     outputs = {"log_depth": "propagated", "confidence": "propagated.c", "scale": "points.median"}
     ports = [{"name": name, "tensor": tensor} for name, tensor in outputs.items()]
@@ -117,13 +117,13 @@ def propagation_of(weights: Path, out: Path) -> Path:
 
 
 def complete(orb360: Path, weights: Path, sparse: Path, out: Path) -> dict[str, dict[str, Any]]:
-    """What --json tells, by the name of the sparse file."""
+    """Runs `orb360 complete --json`; gives its entries by the name of the sparse file."""
     command = [orb360, "complete", "--sparse", sparse, "--weights", weights, "--out", out, "--json"]
     done = subprocess.run([str(part) for part in command], check=True, stdout=subprocess.PIPE)
     return {Path(entry["sparse"]).stem: entry for entry in json.loads(done.stdout)}
 
 
-def read_share(path: str) -> np.ndarray:
+def read_fraction(path: str) -> np.ndarray:
     return cv2.imread(path, cv2.IMREAD_UNCHANGED).astype(np.float32) / 65535
 
 
@@ -136,11 +136,11 @@ class Evaluation:
     networks: dict[str, Path]  # methods and their weights
     orb360: Path
     points: Sequence[int]
-    shown: int  # frames of each drive that pictures are made of
+    shown: int  # frames of each drive that images are written of
     out: Path
 
     def drive(self, name: str, frames: Sequence[Frame]) -> Result:
-        """Of every frame with every number of points."""
+        """Measures every frame with every number of points."""
         result = Result()
         with tempfile.TemporaryDirectory() as temporary:
             folder = Path(temporary)
@@ -166,12 +166,12 @@ class Evaluation:
                     _add_scale(scales[count], told[OURS][key], frames[i])
                 if count == 1000 and i < self.shown:
                     entry = told[OURS][key]
-                    pictures.write_completion(
+                    visualization.write_completion(
                         self.out / f"{name}-{i}.jpg",
                         frames[i],
                         points,
                         read_depth(entry["depth"]),
-                        read_share(entry["confidence"]),
+                        read_fraction(entry["confidence"]),
                     )
             result.scales += [scale for count, scale in scales.items() if count in self.points]
         return result
@@ -194,7 +194,7 @@ class Evaluation:
         if count in HEADLINE:
             depth, confidence = (
                 read_depth(told[OURS]["depth"]),
-                read_share(told[OURS]["confidence"]),
+                read_fraction(told[OURS]["confidence"]),
             )
             self._confidence(result, frame.range, depth, confidence)
 
@@ -214,7 +214,7 @@ class Evaluation:
 
 
 def _add_scale(scale: Scale, entry: dict[str, Any], frame: Frame) -> None:
-    """The input is in metres: the true scale is 1."""
+    """Adds the errors of the metric scale. The input is in metres, so the true scale is 1."""
     for estimates, name in ((scale.plane, "camera_height"), (scale.guard, "camera_height_guess")):
         estimates.append(np.log(frame.camera_height / entry.get(name, np.nan)))
 
@@ -228,7 +228,7 @@ def build() -> None:
 
 
 def town_name(text: str) -> str:
-    """Refuses what `town` does not know before anything is rendered."""
+    """The name of a town. Refuses names that `town` does not know before anything is rendered."""
     if not re.fullmatch(r"Town[1-5]|Loop|[0-9]{1,18}", text):
         raise argparse.ArgumentTypeError(
             f"unknown town {text!r}: use Town1 ... Town5, Loop, or a seed of at most 18 digits"
@@ -263,7 +263,7 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--cache", type=Path, default=caches / "orb360/depth",
                         help="folder for the rendered drives [%(default)s]")  # fmt: skip
     parser.add_argument("--out", type=Path, default=ROOT / "out/evaluate-depth",
-                        help="folder for the pictures [out/evaluate-depth]")  # fmt: skip
+                        help="folder for the images [out/evaluate-depth]")  # fmt: skip
     parser.add_argument("--build", type=Path, default=ROOT / "build", help="folder of the programs")
     parser.add_argument("--skip-build", action="store_true", help="use what is there")
     return parser.parse_args()
@@ -301,7 +301,7 @@ def main() -> int:
         results.setdefault(group, Result()).__iadd__(result)
         if group in (*towns, "shards"):
             total += result
-    pictures.write_calibration(arguments.out / "calibration.png", calibration_table(total))
+    visualization.write_calibration(arguments.out / "calibration.png", calibration_table(total))
     if arguments.json:
         summaries = {name: result.summary() for name, result in results.items()}
         summaries["all"] = total.summary()
@@ -310,5 +310,5 @@ def main() -> int:
         print(json.dumps(finite, indent=2))
     else:
         print_tables(results, total)
-        print(f"\nPictures are in {arguments.out}.")
+        print(f"\nThe images are in {arguments.out}.")
     return 0

@@ -1,4 +1,4 @@
-"""What is measured of networks and simpler ways on drives, and the figures that sum it up."""
+"""Errors of networks and of classical interpolation on drives, and their summary."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -7,7 +7,7 @@ import numpy as np
 
 from weights_tools.evaluation.depth_errors import DepthErrors
 
-# Numbers of points whose mean the headline figures are.
+# The headline figures are means over these numbers of points.
 HEADLINE = (500, 1000, 2000)
 OURS, ALONE, PUBLISHED = "depth completion", "propagation alone", "published encoder-decoder"
 NEAREST, WEIGHTED = "nearest neighbour", "inverse distance"
@@ -17,7 +17,7 @@ FUSED = 10  # keyframes
 
 @dataclass
 class Scale:
-    """Of the frames of a drive, in order: |ln| of the error of the metric scale."""
+    """Errors of the metric scale in the frames of a drive, in the order of time."""
 
     plane: list[float] = field(default_factory=list)  # ln of estimated over true scale
     guard: list[float] = field(default_factory=list)
@@ -25,7 +25,7 @@ class Scale:
 
 @dataclass
 class Result:
-    """Of a town, or of several."""
+    """What was measured on one town or on several."""
 
     errors: dict[tuple[str, int], DepthErrors] = field(default_factory=dict)
     cuts: list[float] = field(default_factory=list)
@@ -73,13 +73,13 @@ class Result:
         }
 
 
-def _quantile(values: np.ndarray, share: float) -> float:
+def _quantile(values: np.ndarray, fraction: float) -> float:
     values = values[np.isfinite(values)]
-    return float(np.quantile(values, share)) if len(values) else np.nan
+    return float(np.quantile(values, fraction)) if len(values) else np.nan
 
 
 def _fused(logs: Sequence[float]) -> Iterator[float]:
-    """Medians over neighbouring frames; of fewer where a drive is short."""
+    """Medians over FUSED neighbouring frames, or over fewer where a drive is short."""
     logs = [value for value in logs if np.isfinite(value)]
     for first in range(0, max(len(logs) - FUSED, 0) + 1, FUSED):
         if logs[first : first + FUSED]:
@@ -87,15 +87,15 @@ def _fused(logs: Sequence[float]) -> Iterator[float]:
 
 
 def calibration_table(result: Result) -> np.ndarray:
-    """By decile of the expected error: means of expected and observed relative error."""
+    """Means of the expected and the observed relative error for each decile of the expected one."""
     if not result.calibration:
         return np.zeros((0, 2))
     expected, observed, weight = np.concatenate(result.calibration, axis=1)
     order = np.argsort(expected)
-    share = np.cumsum(weight[order]) / weight.sum()
+    fraction = np.cumsum(weight[order]) / weight.sum()
     rows = []
     for i in range(10):
-        part = order[(share > i / 10) & (share <= (i + 1) / 10)]
+        part = order[(fraction > i / 10) & (fraction <= (i + 1) / 10)]
         own = weight[part]
         rows.append([(values[part] * own).sum() / own.sum() for values in (expected, observed)])
     return np.array(rows)

@@ -1,1 +1,1 @@
-"""From rendered drives to trained weights. Only making shards needs OpenCV, only files h5py."""
+"""Trains networks on rendered drives. OpenCV is needed only for shards, h5py only for files."""

@@ -18,11 +18,11 @@ from weights_tools.training.sparse_points import NoiseModel, SparsePoints, from_
 
 @dataclass(frozen=True)
 class Batch:
-    """N samples; pictures are N x channels x H x W, the others N x 1 x 1 x 1."""
+    """N samples; images are N x channels x H x W, the others N x 1 x 1 x 1."""
 
     inputs: dict[str, Tensor]  # image, depth, confidence: what networks read
     truth: Tensor  # metres; 0 where there is no surface
-    ground: Tensor  # 1 where it is the road's plane under the camera, else 0
+    ground: Tensor  # 1 in the plane of the road under the camera, else 0
     scale: Tensor  # units of the input's depth in a metre
     camera_height: Tensor  # metres
 
@@ -45,7 +45,7 @@ class Frames:
             size, first = (self._shard(j).range.shape[1:] for j in (i, 0))
             if size != first:
                 raise ValueError(
-                    f"{path}: has pictures of {size[1]}x{size[0]}, {self._paths[0]} of "
+                    f"{path}: has images of {size[1]}x{size[0]}, {self._paths[0]} of "
                     f"{first[1]}x{first[0]}; take shards of one size"
                 )
             lengths.append(len(self._shard(i)))
@@ -86,26 +86,26 @@ class Sample:
 
 
 def plain(frame: Frame, points: SparsePoints) -> Sample:
-    """A sample as it was taken."""
+    """A sample without augmentation."""
     image = frame.rgb.astype(np.float32) / 255
     return Sample(image, frame.range, frame.ground, points, frame.camera_height)
 
 
 def augment(frame: Frame, points: SparsePoints, random: np.random.RandomState) -> Sample:
-    """Turned, mirrored, and seen by another camera in another light."""
+    """A sample that is turned and mirrored, with other exposure, colours and noise."""
     columns = random.randint(frame.range.shape[1])
     mirror = random.randint(2) == 1
 
-    def move(picture: np.ndarray) -> np.ndarray:
-        turned = np.roll(picture, columns, axis=1)
+    def move(pixels: np.ndarray) -> np.ndarray:
+        turned = np.roll(pixels, columns, axis=1)
         return turned[:, ::-1] if mirror else turned
 
     # Gains of exposure and of each colour, and a curve: what cameras of several makers do.
     gain = np.exp(random.normal(0, 0.2) + random.normal(0, 0.05, 3))
     curve = np.exp(random.normal(0, 0.15))
     levels = (np.clip(np.linspace(0, 1, 256)[:, None] * gain, 0, 1) ** curve).astype(np.float32)
-    picture = move(frame.rgb)
-    image = np.stack([levels[:, i].take(picture[..., i]) for i in range(3)], axis=-1)
+    rgb = move(frame.rgb)
+    image = np.stack([levels[:, i].take(rgb[..., i]) for i in range(3)], axis=-1)
     if random.uniform() < 0.2:
         image = _blur(image)
     if random.uniform() < 0.5:
@@ -118,14 +118,14 @@ def augment(frame: Frame, points: SparsePoints, random: np.random.RandomState) -
 
 
 def _blur(image: np.ndarray) -> np.ndarray:
-    """A binomial filter of three pixels that goes round the seam."""
+    """A binomial filter of three pixels that continues across the seam."""
     image = (np.roll(image, 1, axis=1) + 2 * image + np.roll(image, -1, axis=1)) / 4
     rows = np.pad(image, ((1, 1), (0, 0), (0, 0)), mode="edge")
     return (rows[:-2] + 2 * rows[1:-1] + rows[2:]) / 4
 
 
 def collate(samples: Sequence[Sample]) -> Batch:
-    def pictures(values: list[np.ndarray]) -> Tensor:
+    def stacked(values: list[np.ndarray]) -> Tensor:
         return torch.from_numpy(np.stack(values).astype(np.float32))
 
     def numbers(values: list[float]) -> Tensor:
@@ -133,12 +133,12 @@ def collate(samples: Sequence[Sample]) -> Batch:
 
     return Batch(
         inputs={
-            "image": pictures([sample.image.transpose(2, 0, 1) for sample in samples]),
-            "depth": pictures([sample.points.depth[None] for sample in samples]),
-            "confidence": pictures([sample.points.confidence[None] for sample in samples]),
+            "image": stacked([sample.image.transpose(2, 0, 1) for sample in samples]),
+            "depth": stacked([sample.points.depth[None] for sample in samples]),
+            "confidence": stacked([sample.points.confidence[None] for sample in samples]),
         },
-        truth=pictures([sample.truth[None] for sample in samples]),
-        ground=pictures([sample.ground[None] for sample in samples]),
+        truth=stacked([sample.truth[None] for sample in samples]),
+        ground=stacked([sample.ground[None] for sample in samples]),
         scale=numbers([sample.points.scale for sample in samples]),
         camera_height=numbers([sample.camera_height for sample in samples]),
     )

@@ -1,4 +1,4 @@
-"""How well the simulated sparse points resemble SLAM's, on frames that have both:
+"""Compares simulated sparse points with those of SLAM on frames that have both:
 
     python3 -m weights_tools.training.compare_points SHARD.npz ...
 """
@@ -16,13 +16,13 @@ from weights_tools.training.sparse_points import SparsePoints, from_slam, simula
 
 CONFIDENCES = (0.0, 0.25, 0.5, 0.75, 0.9, 1.0)
 RANGES = (0, 5, 10, 20, 40, 80)  # metres
-OUTLIER = 0.25  # of |ln(range / truth)|: farther off than noise is at the confidences that matter
+OUTLIER = 0.25  # of |ln(range / truth)|; noise is smaller than this at the confidences that matter
 
 
 def errors(
     frames: Frames, give: Callable[[Frame, np.random.RandomState], SparsePoints]
 ) -> Iterator[np.ndarray]:
-    """Of each frame that SLAM has points for: ln(range / truth), confidence, truth."""
+    """ln(range / truth), confidence and truth of the points, for each frame with points of SLAM."""
     for i in range(len(frames)):
         frame = frames[i]
         if len(frame.points) == 0:
@@ -35,20 +35,20 @@ def errors(
 
 
 def summary(parts: list[np.ndarray]) -> dict[str, float]:
-    """Counts, errors and how they are spread, by name."""
+    """Counts, errors and their distribution, by name."""
     error, confidence, truth = np.concatenate(parts, axis=1)
     error = np.abs(error)
     result = {
         "points of a frame, median": float(np.median([part.shape[1] for part in parts])),
         "|ln error|, median": float(np.median(error)),
         "|ln error|, 90th percentile": float(np.percentile(error, 90)),
-        f"share with |ln error| > {OUTLIER}": float((error > OUTLIER).mean()),
+        f"fraction with |ln error| > {OUTLIER}": float((error > OUTLIER).mean()),
     }
     spreads = (("confidence", confidence, CONFIDENCES), ("metres", truth, RANGES))
     for name, values, limits in spreads:
         for low, high in zip(limits, limits[1:]):
             inside = (values > low) & (values <= high)
-            result[f"{name} {low} to {high}: share"] = float(inside.mean())
+            result[f"{name} {low} to {high}: fraction"] = float(inside.mean())
             median = np.median(error[inside]) if inside.any() else np.nan
             result[f"{name} {low} to {high}: |ln error|, median"] = float(median)
     return result

@@ -11,7 +11,7 @@ from weights_tools.training.sphere import bearings
 # How far off the plane a surface may be: metres, and metres for each metre away from the camera,
 # within which the road bends. Kerbs are 0.12 m high.
 NEAR, BEND, FARTHEST = 0.04, 0.005, 0.1
-# Metres around the camera that the plane is fitted in: roads bend and pavements begin beyond.
+# Radius around the camera, metres, in which the plane is fitted; roads bend beyond it.
 RADIUS = 8.0
 
 
@@ -44,7 +44,7 @@ def ground_pixels(ranges: np.ndarray, up: np.ndarray, camera_height: float) -> n
 
 
 def _across(up: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Two unit vectors at right angles to it and to each other."""
+    """Two unit vectors perpendicular to the given one and to each other."""
     first = np.cross(up, [0.0, 1.0, 0.0] if abs(up[1]) < 0.7 else [1.0, 0.0, 0.0])
     first /= np.linalg.norm(first)
     return first, np.cross(up, first)

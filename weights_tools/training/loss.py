@@ -1,6 +1,6 @@
-"""What training makes small. Errors are of the logarithm of depth, weighted by solid angle; that of
-the completed depth itself is the mean with its relative error, so that where it is uncertain the
-nearer of two surfaces is preferred, as that error does."""
+"""The losses of training. Errors are those of the logarithm of depth, weighted by solid angle. The
+loss of the completed depth is the mean of that error and the relative error; where the network is
+unsure between two surfaces the relative error prefers the nearer one."""
 
 import math
 from collections.abc import Mapping
@@ -13,24 +13,24 @@ from weights_tools.network import Network
 from weights_tools.training.batches import Batch
 from weights_tools.training.sphere import row_weights
 
-# Shares of the terms. Depth is what matters; the others mostly train parts of their own. The metric
-# scale is one number of a whole picture: with 0.2 half of the encoder's gradient came from it.
-SHARES = {"depth": 1.0, "confidence": 0.1, "propagated": 0.2, "metric": 0.05, "ground": 0.1}
-# The least depth that a network which predicts metres is understood to mean.
+# Weights of the terms. Depth matters most; the other terms mainly train branches of their own. The
+# metric scale is one number for an image; with 0.2, half of the encoder's gradient came from it.
+WEIGHTS = {"depth": 1.0, "confidence": 0.1, "propagated": 0.2, "metric": 0.05, "ground": 0.1}
+# The least depth in metres; smaller predictions are raised to it.
 _LEAST = 1e-2
-# The relative error that the confidence in any depth of the sky is to tell.
+# The relative error that the confidence should state in the sky, which has no depth.
 _SKY_ERROR = 1.0
 
 
 def losses(network: Network, batch: Batch, bfloat16: bool = False) -> dict[str, Tensor]:
-    """The terms that the network has outputs for, by name; without their shares."""
+    """The terms that the network has outputs for, by name, without their weights."""
     tensors = network.tensors(batch.inputs, bfloat16)
     ports = {port["name"]: tensors[port["tensor"]] for port in network.description.graph.outputs}
     weight = pixel_weights(batch.truth)
     # Depth in the unit of the input; 1 where there is none, which has no weight.
     truth = torch.where(batch.truth > 0, batch.truth * batch.scale, 1.0)
     if "log_depth" not in ports:
-        # In units of the input and perhaps negative: a relative error has a derivative everywhere.
+        # The depth may be negative; its relative error has a derivative everywhere.
         relative = (ports["depth"].float() - truth).abs() / truth
         return {"depth": _mean(relative, weight)}
     target = (truth / ports["scale"]).log()
@@ -55,14 +55,14 @@ def losses(network: Network, batch: Batch, bfloat16: bool = False) -> dict[str, 
 
 
 def relative_error(difference: Tensor) -> Tensor:
-    """|estimate / truth - 1| of a difference of logarithms. Beyond a factor of e it goes on with the
-    slope that it has there: a few pixels must not outweigh a picture."""
+    """|estimate / truth - 1| for a difference of logarithms. Beyond a factor of e it continues
+    linearly, so that a few pixels do not outweigh an image."""
     inside = difference.clamp(max=1.0)
     return inside.expm1().abs() + math.e * (difference - inside)
 
 
 def total(terms: Mapping[str, Tensor]) -> Tensor:
-    return sum((SHARES[name] * value for name, value in terms.items()), torch.zeros(()))
+    return sum((WEIGHTS[name] * value for name, value in terms.items()), torch.zeros(()))
 
 
 def pixel_weights(truth: Tensor) -> Tensor:
@@ -72,7 +72,7 @@ def pixel_weights(truth: Tensor) -> Tensor:
 
 
 def predicted_depth(outputs: Mapping[str, Tensor]) -> Tensor:
-    """In the unit of the input."""
+    """The depth that the outputs state, in the unit of the input."""
     if "log_depth" in outputs:
         return outputs["scale"] * outputs["log_depth"].exp()
     return outputs["depth"].float().clamp(min=_LEAST)

@@ -23,7 +23,7 @@ LIGHTS = ("noon", "morning", "sunset", "overcast")
 SIZES = ("full", "half", "quarter")
 # Towns to train on, frames of a drive, of one that SLAM tracks, and width in pixels.
 SEEDS, FRAMES, TRACKED_FRAMES, WIDTH = range(1000, 1220), 24, 200, 1024
-# Those that other measurements are made on.
+# Circuits reserved for measurements.
 RESERVED = ("street-1", "aalborg")
 
 
@@ -50,7 +50,7 @@ class DriveSpec:
 
 
 def town_spec(seed: int, frames: int, width: int, is_tracked: bool = False) -> DriveSpec:
-    """Light, traffic, the camera's height and tilt and what its sensor does follow from the seed."""
+    """Draws light, traffic, height and tilt of the camera and sensor effects from the seed."""
     random = np.random.RandomState([seed, is_tracked])
     options = ["--town", str(seed), "--light", LIGHTS[random.randint(len(LIGHTS))]]
     options += ["--traffic", f"{random.uniform():.2f}"]
@@ -76,8 +76,8 @@ def circuit_spec(mesh: Path, frames: int, width: int) -> DriveSpec:
 
 def _sensor(random: np.random.RandomState) -> list[str]:
     options = []
-    for option, share in (("--auto-exposure", 0.5), ("--noise", 0.3), ("--dual-lens", 0.2)):
-        if random.uniform() < share:
+    for option, probability in (("--auto-exposure", 0.5), ("--noise", 0.3), ("--dual-lens", 0.2)):
+        if random.uniform() < probability:
             options.append(option)
     if random.uniform() < 0.3:
         options += ["--jpeg-quality", str(random.randint(40, 95))]
@@ -85,7 +85,7 @@ def _sensor(random: np.random.RandomState) -> list[str]:
 
 
 def make(spec: DriveSpec, programs: Programs, out: Path) -> None:
-    """Writes OUT/full/NAME.npz, and the same with sides of a half and a quarter."""
+    """Writes OUT/full/NAME.npz, and the same with sides of a half and of a quarter."""
     paths = [out / size / f"{spec.name}.npz" for size in SIZES]
     if all(path.exists() for path in paths):
         return
@@ -98,7 +98,7 @@ def make(spec: DriveSpec, programs: Programs, out: Path) -> None:
 
 
 def make_all(specs: Sequence[DriveSpec], programs: Programs, out: Path) -> int:
-    """Gives how many could be made; says which not, and why."""
+    """Makes all drives. Returns how many could be made, and prints which could not and why."""
     out.mkdir(parents=True, exist_ok=True)
     made = 0
     for i, spec in enumerate(specs, 1):
@@ -142,7 +142,7 @@ def main() -> int:
     parser.add_argument("--seeds", type=int, nargs=2, default=(SEEDS.start, SEEDS.stop),
                         metavar=("FIRST", "END"))  # fmt: skip
     parser.add_argument("--frames", type=int, default=FRAMES, help="of a drive (default: %(default)s)")
-    parser.add_argument("--width", type=int, default=WIDTH, help="of the pictures (default: %(default)s)")
+    parser.add_argument("--width", type=int, default=WIDTH, help="of the images (default: %(default)s)")
     parser.add_argument("--tracked-seeds", type=int, nargs="*", default=[],
                         help="towns that SLAM tracks, for sparse points of its own")  # fmt: skip
     parser.add_argument("--tracked-frames", type=int, default=TRACKED_FRAMES,

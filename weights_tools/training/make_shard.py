@@ -19,7 +19,7 @@ from weights_tools.refusal import refusing
 from weights_tools.training import shards
 from weights_tools.training.ground import ground_pixels
 
-# As many as a crowded picture has; training takes a part of them.
+# The number of corners in an image with much texture; training uses a part of them.
 FEATURES = 6000
 # Scale from level to level of ORB's pyramid, and the standard deviation of a corner at its level.
 SCALE, PIXELS = 1.2, 1.0
@@ -43,15 +43,15 @@ def read_drive(folder: Path, halvings: int = 0, run: Path | None = None) -> list
         if frames and units.shape != size:
             raise ValueError(f"{path}: has another size than frames before it; render the drive again")
         size = units.shape
-        picture = _read(folder / "rgb" / f"{path.stem}.jpg", cv2.IMREAD_COLOR, size)
+        image = _read(folder / "rgb" / f"{path.stem}.jpg", cv2.IMREAD_COLOR, size)
         moving = _read(folder / "moving" / path.name, cv2.IMREAD_UNCHANGED, size)
         metres = units.astype(np.float32) / shards.RANGE_UNITS
         frame = shards.Frame(
-            picture[:, :, ::-1],
+            image[:, :, ::-1],
             metres,
             moving > 0,
             ground_pixels(metres, ups[int(path.stem)], camera_height),
-            detect(picture),
+            detect(image),
             travels[int(path.stem)],
             camera_height,
             read_points(sparse.get(int(path.stem)), metres),
@@ -77,7 +77,7 @@ def read_poses(path: Path) -> np.ndarray:
 
 
 def read_camera_height(path: Path) -> float:
-    """Metres above the road."""
+    """Height of the camera above the road, metres."""
     try:
         return float(yaml.safe_load(path.read_text())["camera_height"])
     except (yaml.YAMLError, KeyError, TypeError) as error:
@@ -85,7 +85,7 @@ def read_camera_height(path: Path) -> float:
 
 
 def halved(frame: shards.Frame) -> shards.Frame:
-    """With half as many rows and columns."""
+    """The frame with half as many rows and columns."""
     height, width = frame.range.shape
     small = cv2.resize(frame.rgb, (width // 2, height // 2), interpolation=cv2.INTER_AREA)
     features, points = frame.features.copy(), frame.points.copy()
@@ -103,7 +103,7 @@ def halved(frame: shards.Frame) -> shards.Frame:
 
 
 def sparse_files(run: Path) -> dict[int, Path]:
-    """Of a run's keyframes, by frame."""
+    """Sparse points of a run's keyframes, by index of the frame."""
     files = {}
     for path in (run / "sparse").glob("*.h5"):
         with _sparse_file(path) as file:
@@ -139,34 +139,34 @@ def _sparse_file(path: Path) -> Iterator[h5py.File]:
 
 
 def _read(path: Path, how: int, size: tuple[int, int] | None = None) -> np.ndarray:
-    picture = cv2.imread(str(path), how)
-    if picture is None:
+    image = cv2.imread(str(path), how)
+    if image is None:
         raise ValueError(f"{path}: cannot be read; render the drive with `town render --masks`")
-    if size and picture.shape[:2] != size:
+    if size and image.shape[:2] != size:
         raise ValueError(f"{path}: has another size than the frame's depth; render the drive again")
-    return picture
+    return image
 
 
-def shrink_range(picture: np.ndarray) -> np.ndarray:
-    """The lower median of each square of 2 x 2: a number that is in the picture, never one between
+def shrink_range(image: np.ndarray) -> np.ndarray:
+    """The lower median of each square of 2 x 2: a number that is in the image, never one between
     a near and a far surface. 0 is taken to be infinitely far."""
-    height, width = picture.shape[0] // 2, picture.shape[1] // 2
-    squares = picture[: 2 * height, : 2 * width].reshape(height, 2, width, 2).swapaxes(1, 2)
+    height, width = image.shape[0] // 2, image.shape[1] // 2
+    squares = image[: 2 * height, : 2 * width].reshape(height, 2, width, 2).swapaxes(1, 2)
     squares = np.where(squares == 0, np.inf, squares).reshape(height, width, 4)
     median = np.sort(squares, axis=-1)[:, :, 1]
     return np.where(np.isinf(median), 0, median).astype(np.float32)
 
 
 def shrink_mask(mask: np.ndarray) -> np.ndarray:
-    """Where two of four pixels or more are set."""
+    """Halves a mask; a pixel is set where at least two of four are."""
     height, width = mask.shape[0] // 2, mask.shape[1] // 2
     return mask[: 2 * height, : 2 * width].reshape(height, 2, width, 2).sum(axis=(1, 3)) >= 2
 
 
-def detect(picture: np.ndarray) -> np.ndarray:
+def detect(image: np.ndarray) -> np.ndarray:
     """Corners as SLAM finds them: u, v in pixels, standard deviation in radians."""
-    width = picture.shape[1]
-    wide = np.concatenate([picture[:, -MARGIN:], picture, picture[:, :MARGIN]], axis=1)
+    width = image.shape[1]
+    wide = np.concatenate([image[:, -MARGIN:], image, image[:, :MARGIN]], axis=1)
     detector = cv2.ORB_create(FEATURES, scaleFactor=SCALE, fastThreshold=7)
     features = []
     for corner in detector.detect(wide):
@@ -201,7 +201,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Packs a rendered drive for training.")
     parser.add_argument("drive", type=Path, help="folder of `town render --masks`")
     parser.add_argument("out", type=Path, help="file to write (.npz)")
-    parser.add_argument("--halvings", type=int, default=0, help="of the pictures' sides")
+    parser.add_argument("--halvings", type=int, default=0, help="of the images' sides")
     parser.add_argument("--run", type=Path, help="folder of `orb360 run DRIVE --save-sparse`")
     arguments = parser.parse_args()
     frames = read_drive(arguments.drive, arguments.halvings, arguments.run)

@@ -8,7 +8,7 @@ from torch import Tensor
 
 from weights_tools.network import Network
 
-# Of the running mean of gradients that a step follows.
+# Fraction of the running mean of gradients that a step keeps.
 _MOMENTUM = 0.95
 # Mean size of a number's step per unit of the rate: AdamW's are hardly larger than 1 and mostly
 # smaller, and what both train then takes the same rates.
@@ -40,7 +40,7 @@ class Muon(torch.optim.Optimizer):
                 if not state:
                     state["momentum"] = torch.zeros_like(parameter)
                 momentum = state["momentum"].mul_(_MOMENTUM).add_(parameter.grad)
-                ahead = (parameter.grad + _MOMENTUM * momentum).flatten(1)  # Nesterov's
+                ahead = (parameter.grad + _MOMENTUM * momentum).flatten(1)  # Nesterov momentum
                 step = orthogonal(ahead.to(self._type)).to(parameter.dtype)
                 # An orthogonal matrix of m x n numbers has a mean square of 1 / max(m, n).
                 size = _STEP * group["lr"] * math.sqrt(max(step.shape))
@@ -62,7 +62,7 @@ def orthogonal(matrix: Tensor) -> Tensor:
 def make_optimizers(
     network: Network, rate: float, decay: float, bfloat16: bool
 ) -> list[torch.optim.Optimizer]:
-    """Of what is to be trained; each has the same rate."""
+    """Optimizers of the parameters that are to be trained; all have the same rate."""
     trained = [values for values in network.parameters() if values.requires_grad]
     inner = {id(values) for values in network.inner_convolutions()}
     matrices = [values for values in trained if id(values) in inner]

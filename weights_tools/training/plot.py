@@ -7,14 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
-from weights_tools.evaluation.pictures import write_chart
+from weights_tools.evaluation.visualization import write_chart
 from weights_tools.refusal import refusing
 
 COLUMNS = ("depth", "unseen_absrel", "unseen_scale_error")
 
 
 def draw(out: Path, folders: Sequence[Path]) -> None:
-    """Of several stages one after the other."""
+    """Reads the logs of several stages and joins them in their order."""
     curves: dict[str, tuple[list[float], list[float]]] = {}
     first = 0
     for folder in folders:
@@ -37,7 +37,7 @@ def draw(out: Path, folders: Sequence[Path]) -> None:
 @refusing("plot")
 def main() -> None:
     parser = argparse.ArgumentParser(description="Draws learning curves.")
-    parser.add_argument("out", type=Path, help="picture to write (.png)")
+    parser.add_argument("out", type=Path, help="image to write (.png)")
     parser.add_argument("folders", type=Path, nargs="+", help="stages, in their order")
     arguments = parser.parse_args()
     draw(arguments.out, arguments.folders)

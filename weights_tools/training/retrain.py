@@ -2,7 +2,7 @@
 
 Renders the drives, trains both networks in stages, draws their learning curves and writes
 OUT/depth_completion.h5 and OUT/encoder_decoder.h5. Can be stopped at any time: the same command goes
-on. Pictures of a quarter of the size come first: a step costs a sixteenth there, and what is learned
+on. Images of a quarter of the size come first: a step costs a sixteenth there, and what is learned
 lasts.
 """
 
@@ -29,14 +29,14 @@ from weights_tools.training.make_dataset import (
 )
 from weights_tools.training.train import Settings, train
 
-# Towns by seed. What networks are compared on while they are trained is never trained on.
+# Towns by seed. The validation towns are never used for training.
 VALIDATION_SEEDS, VALIDATION_FRAMES = range(2000, 2008), 6
-TRACKED_SEEDS = range(3000, 3008)  # whose sparse points come from SLAM itself
+TRACKED_SEEDS = range(3000, 3008)  # their sparse points come from SLAM
 
 
 @dataclass(frozen=True)
 class Stage:
-    """A training, from where others have ended."""
+    """One training that begins where earlier stages ended."""
 
     name: str  # of its folder
     size: str  # of the shards
@@ -51,7 +51,8 @@ _ALONE = Settings(batch=4, warm_up=20, rate=1e-2, decay=0, average=0.98)
 
 
 def stages(factor: float) -> list[Stage]:
-    """In their order. `factor`: on the numbers of steps; 1 takes two cores a night."""
+    """The stages in their order. `factor` multiplies the numbers of steps; with 1 they take two
+    cores a night."""
 
     def steps(settings: Settings, network: str, count: int, batch: int) -> Settings:
         count = max(round(factor * count), 1)
@@ -69,8 +70,8 @@ def stages(factor: float) -> list[Stage]:
     ]
 
 
-# The file of a stage, and the relative error of ranges to be expected where the network's own
-# confidence does not tell it: the published one's is its mean one on towns it has not seen.
+# The file of a stage, and the expected relative error of ranges where the network's confidence does
+# not state it. For the published network it is the mean error on unseen towns.
 RELEASED = {
     "ours_half": ("depth_completion.h5", None),
     "published_half": ("encoder_decoder.h5", 0.13),

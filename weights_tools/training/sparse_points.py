@@ -15,25 +15,26 @@ from weights_tools.training.sphere import bearings
 
 @dataclass(frozen=True)
 class NoiseModel:
-    """The defaults give what SLAM gives (compare_points), and a share that is noisier."""
+    """The distribution of errors. The defaults resemble those of SLAM (compare_points), with a
+    little more noise."""
 
     points: tuple[int, int] = (100, 3000)  # drawn evenly in the logarithm, like all pairs below
     # Metres between the places that see a landmark 10 m away; it grows with the square root of the
     # range, as far landmarks stay in sight for longer.
     baseline: tuple[float, float] = (1.5, 16.0)
-    observations: tuple[int, int] = (2, 12)  # of a landmark
+    observations: tuple[int, int] = (2, 12)  # observations of a landmark
     scale: tuple[float, float] = (0.05, 20.0)  # units of the map in a metre
     noise: tuple[float, float] = (0.7, 2.5)  # factor on the corners' noise, one for each frame
-    largest_error: float = 0.2  # share of the range; SLAM makes no landmarks of less parallax
-    near: float = 1.2  # points are chosen by 1 / range to this power: more keyframes saw near ones
+    largest_error: float = 0.2  # fraction of the range; SLAM makes no landmarks of less parallax
+    near: float = 1.2  # points are chosen by 1 / range to this power; more keyframes saw near ones
     half_confidence_error: float = 0.1  # as SparseDepthOptions has it
-    min_confidence: float = 0.5  # likewise
-    estimate_bias: float = 0.4  # of the error that SLAM estimates: it finds its points too good
+    min_confidence: float = 0.5  # as SparseDepthOptions has it
+    estimate_bias: float = 0.4  # of the error that SLAM estimates; its estimates are too small
     estimate_error: float = 0.3  # standard deviation of ln of that
-    outliers: float = 0.05  # share of points matched wrongly, anywhere
-    edge_outliers: float = 0.1  # share of those at an occlusion edge with the other side's range
-    moving_kept: float = 0.4  # share of the points on moving objects that SLAM does not drop
-    from_slam: float = 0.5  # of frames with points of SLAM itself, the share that uses them
+    outliers: float = 0.05  # fraction of points matched wrongly, anywhere
+    edge_outliers: float = 0.1  # fraction of those at an occlusion edge with the other side's range
+    moving_kept: float = 0.4  # fraction of the points on moving objects that SLAM does not drop
+    from_slam: float = 0.5  # of frames with points of SLAM itself, the fraction that uses them
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ class SparsePoints:
 def from_slam(
     frame: Frame, random: np.random.RandomState, model: NoiseModel = NoiseModel()
 ) -> SparsePoints:
-    """What SLAM has given for the frame, in a scale that is drawn."""
+    """The points that SLAM gave for the frame, in a random scale."""
     scale = float(_log_uniform(random, model.scale))
     rows, columns = frame.points[:, :2].astype(int).T
     metres, confidence = frame.points[:, 2:].T
@@ -83,7 +84,7 @@ def simulate(
     measured = np.where(at_edge, _beside(frame.range, rows, columns, random), measured)
     # Triangulation is regular in the inverse of the range.
     inverse = (1 + error * random.standard_normal(len(chosen))) / measured
-    measured = 1 / np.maximum(inverse, 1e-3)  # nothing beyond a kilometre
+    measured = 1 / np.maximum(inverse, 1e-3)  # at most a kilometre
     wrong = moving[chosen] | (random.uniform(size=len(chosen)) < model.outliers)
     measured *= np.where(wrong, np.exp(random.uniform(-1, 1, len(chosen))), 1)
 
@@ -107,7 +108,7 @@ def _range_errors(
     random: np.random.RandomState,
     model: NoiseModel,
 ) -> np.ndarray:
-    """Standard deviation of each range as a share of it: RangeError of slam/depth."""
+    """Relative standard deviation of each range, as RangeError of slam/depth computes it."""
     if not travel.any():  # it moved before
         travel = random.standard_normal(3)
         travel /= np.linalg.norm(travel)
@@ -126,7 +127,7 @@ def _choose(
     random: np.random.RandomState,
     model: NoiseModel,
 ) -> np.ndarray:
-    """Some of the points, in clusters: texture and tracking are good here and bad there."""
+    """Selects points in clusters, because the quality of texture and tracking varies locally."""
     count = min(int(_log_uniform(random, model.points)), len(usable))
     if count == 0:
         return usable[:0]
@@ -141,7 +142,7 @@ def _choose(
 def _beside(
     ranges: np.ndarray, rows: np.ndarray, columns: np.ndarray, random: np.random.RandomState
 ) -> np.ndarray:
-    """The range two pixels away, which differs at edges only; the same one where that is sky."""
+    """The range two pixels away, which differs at edges only; the own range where that is sky."""
     height, width = ranges.shape
     shift = random.randint(-2, 3, (2, len(rows)))
     there = ranges[np.clip(rows + shift[0], 0, height - 1), (columns + shift[1]) % width]
@@ -155,7 +156,7 @@ def _rasterise(
     depths: np.ndarray,
     confidences: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The nearest of several points at one pixel."""
+    """Draws the points into an image; the nearest of several at one pixel is kept."""
     depth, confidence = np.zeros(size, np.float32), np.zeros(size, np.float32)
     order = np.argsort(-depths, kind="stable")
     depth[rows[order], columns[order]] = depths[order]

@@ -1,4 +1,4 @@
-"""Equirectangular pictures as docs/design.md has them: camera -X forward, +Y right, +Z up."""
+"""Equirectangular images (docs/concepts/camera_model.md): camera -X forward, +Y right, +Z up."""
 
 import numpy as np
 
@@ -14,6 +14,6 @@ def bearings(u: np.ndarray, v: np.ndarray, height: int, width: int) -> np.ndarra
 
 
 def row_weights(height: int) -> np.ndarray:
-    """Solid angle of a pixel of each row as a share of the mean pixel's."""
+    """Solid angle of a pixel of each row as a fraction of the mean pixel's."""
     cosine = np.cos((0.5 - (np.arange(height) + 0.5) / height) * np.pi)
     return cosine / cosine.mean()

@@ -39,7 +39,7 @@ class Settings:
     decay: float = 1e-4  # of weights, per step and unit of the rate
     clip: float = 1.0  # norm of the gradient
     seed: int = 0
-    average: float = 0.999  # share of the mean of weights that a step keeps; the mean is exported
+    average: float = 0.999  # fraction that a step keeps of the weights' mean, which is exported
     bfloat16: bool = False  # convolutions in that type, for processors that are faster at it
     fixed_propagation: bool = False  # normalized convolutions stay as they start
     batch_normalization: bool = False  # while it is trained; it ends up in the weights
@@ -55,7 +55,7 @@ def learning_rate(settings: Settings, step: int) -> float:
 
 
 class Training:
-    """Network, optimizer and the number of steps done, as they stand in DIR/checkpoint.pt."""
+    """Network, optimizers and number of steps done, saved in DIR/checkpoint.pt."""
 
     def __init__(
         self,
@@ -90,7 +90,7 @@ class Training:
             self._resume()
 
     def _start_from(self, path: Path) -> None:
-        """Takes the layers that another training, or a network file, has in common with this one."""
+        """Loads the layers that this network shares with a checkpoint or a network file."""
         if path.suffix == ".h5":
             weights, stages = _read_network_file(path)
         else:
@@ -150,7 +150,7 @@ class Training:
         temporary.replace(self._path)
 
     def batches(self, end: int) -> Iterator[Batch]:
-        """Of the steps from now to `end`; the next one is made while one is used."""
+        """The batches of the steps up to `end`; the next one is prepared while one is used."""
 
         def make(step: int) -> Batch:
             return draw(self.frames, self.settings.seed, step, self.settings.batch, self._model)
@@ -175,7 +175,7 @@ class Training:
         for optimizer in self.optimizers:
             optimizer.step()
         self.step += 1
-        # Young means forget faster.
+        # The mean of few steps keeps less, so that it forgets the first weights sooner.
         keep = min(self.settings.average, self.step / (self.step + 10))
         with torch.no_grad():
             now = self.network.state_dict()
@@ -186,7 +186,7 @@ class Training:
 
 
 def _widened(values: torch.Tensor, like: torch.Tensor) -> torch.Tensor:
-    """Weights of a layer that had fewer inputs: the last ones, which are new, count nothing yet."""
+    """Weights of a layer that had fewer inputs, with zeros for the new inputs, which come last."""
     more = like.shape[1] - values.shape[1] if values.dim() > 1 else 0
     if more <= 0:
         return values
@@ -223,7 +223,7 @@ def checkpoint_network(state: dict[str, Any]) -> Network:
 
 
 def stage(state: dict[str, Any]) -> dict[str, Any]:
-    """Of the provenance of a network: what a checkpoint's training was."""
+    """The entry of a network's provenance that describes the training of a checkpoint."""
     return {"steps_done": state["step"], **state["settings"], "shards": state["shards"]}
 
 

@@ -1,4 +1,4 @@
-"""How good a network is on frames it was not trained on."""
+"""Errors of a network on frames that it was not trained on."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -12,7 +12,7 @@ from weights_tools.training.batches import Batch, Frames, collate, plain
 from weights_tools.training.loss import pixel_weights, predicted_depth
 from weights_tools.training.sparse_points import NoiseModel, simulate
 
-FARTHEST = 80.0  # metres that count
+FARTHEST = 80.0  # metres; farther pixels are ignored
 # Metres between the bins of range in which the least confident pixels are dropped.
 BINS = (0.0, 5.0, 10.0, 20.0, 40.0, 80.0)
 DROPPED = 0.2
@@ -70,12 +70,12 @@ def _sums(network: Network, tensors: Mapping[str, Tensor], batch: Batch) -> dict
 
 
 def error_cut(relative: Tensor, confidence: Tensor, truth: Tensor, weight: Tensor) -> float:
-    """By what share the relative error (RMS) falls where the least confident fifth of the pixels is
-    dropped, mean over the bins of range."""
+    """The fraction by which the RMS of the relative error falls when the least confident fifth of
+    the pixels is dropped; the mean over the bins of range."""
     cuts = []
     for low, high in zip(BINS, BINS[1:]):
         inside = (weight > 0) & (truth > low) & (truth <= high)
-        if inside.sum() < 100:  # pixels; nothing to draw a fifth from
+        if inside.sum() < 100:  # pixels; too few to drop a fifth of them
             continue
         squared, own, sure = relative[inside] ** 2, weight[inside], confidence[inside].float()
         order = sure.argsort(descending=True)

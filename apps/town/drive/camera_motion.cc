@@ -41,7 +41,7 @@ Rigid3 CameraPose(const Ride& ride, const CameraMotionOptions& options, double t
   const Random random(options.seed);
   const double speed = ride.SpeedAt(time);
   const RoadPose road = ride.PoseAt(time);
-  // The body leans by 0.006 rad for each m/s² of the mean acceleration over the last moments.
+  // The body leans by 0.006 rad for each m/s² of the acceleration, averaged over this time.
   constexpr double kMemory = 0.6;  // seconds
   constexpr double kLean = 0.006;  // radians per metre per second squared
   const double acceleration = (speed - ride.SpeedAt(time - kMemory)) / kMemory;

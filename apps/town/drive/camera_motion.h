@@ -16,10 +16,10 @@ struct CameraMotionOptions {
                        ///< braking and bends
 };
 
-/// The pose world_from_camera (camera -X forward, +Y right, +Z up) at a time, of a camera on the
-/// roof of a car that drives a lap.
+/// Returns the pose world_from_camera (camera -X forward, +Y right, +Z up), at a time, of a camera
+/// on the roof of a car that drives a lap.
 Rigid3 CameraPose(const Ride& ride, const CameraMotionOptions& options, double time);
-/// As above, on the lap's line.
+/// As above, for a car that keeps to the lap's line.
 inline Rigid3 CameraPose(const Lap& lap, const CameraMotionOptions& options, double time) {
   return CameraPose(Ride{.lap = &lap}, options, time);
 }

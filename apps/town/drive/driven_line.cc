@@ -9,14 +9,14 @@
 namespace orb360::town {
 namespace {
 
-/// A stretch of one street between two junctions, as driven.
+/// A stretch of one street between two junctions, in driving direction.
 struct Leg {
   size_t street;
   double from;
   double to;
 };
 
-/// The street that joins two junctions.
+/// Returns the street that joins two junctions.
 Leg FindLeg(const StreetPlan& plan, size_t from, size_t to) {
   for (const Junction::Arm& a : plan.junctions[from].arms) {
     for (const Junction::Arm& b : plan.junctions[to].arms) {
@@ -42,7 +42,7 @@ Vector2d LaneDirection(const StreetPlan& plan, const Leg& leg, double station) {
   return (leg.to > leg.from ? 1 : -1) * plan.streets[leg.street].At(station).tangent;
 }
 
-/// A cubic curve between two points with given directions (unit vectors), without its end.
+/// Adds a cubic curve between two points with given directions (unit vectors), without its end.
 void AddCurve(const LinePoint& from, const Vector2d& from_direction, const LinePoint& to,
               const Vector2d& to_direction, std::vector<LinePoint>* ring) {
   constexpr int kPieces = 40;
@@ -58,7 +58,8 @@ void AddCurve(const LinePoint& from, const Vector2d& from_direction, const LineP
   }
 }
 
-/// From one street round the island, counter-clockwise, into another, without the last point.
+/// Adds the way from one street round the island, counter-clockwise, into another, without the last
+/// point.
 void AddRound(const Roundabout& roundabout, const LinePoint& from, const Vector2d& from_direction,
               const LinePoint& to, const Vector2d& to_direction, std::vector<LinePoint>* ring) {
   constexpr double kFlare = 0.7;  // radians between a street and where it joins the circle, at most
@@ -95,7 +96,7 @@ std::vector<LinePoint> DrivenLine(const StreetPlan& plan, std::span<const size_t
   const size_t n = tour.size();
   std::vector<Leg> legs;
   for (size_t i = 0; i < n; ++i) legs.push_back(FindLeg(plan, tour[i], tour[(i + 1) % n]));
-  // Metres before and behind the junction where a leg begins that are driven on a curve.
+  // Length, before and behind the junction where a leg begins, that is driven on a curve, metres.
   const auto trim = [&](size_t i) {
     const Roundabout* roundabout = plan.RoundaboutAt(tour[i % n]);
     if (roundabout != nullptr) return roundabout->outer_radius + kRoundApproach;

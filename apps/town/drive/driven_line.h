@@ -8,13 +8,13 @@
 
 namespace orb360::town {
 
-/// A point of the driven line: its place in the plan, and as z the metres to the kerb on the right,
+/// A point of the driven line: x and y in the plan, and as z the metres to the kerb on the right,
 /// or to the cars parked there.
 using LinePoint = Eigen::Vector3d;
 
-/// The line that a closed tour (see Lap) is driven on, as a ring: the right-hand lanes, joined at
-/// junctions by curves, and round the islands of roundabouts. `junction_points` takes the indices
-/// of the points at which the curves begin.
+/// Returns the line on which a closed tour (see Lap) is driven, as a ring: the right-hand lanes,
+/// joined by curves at junctions, and round the islands of roundabouts. `junction_points` receives
+/// the indices of the points at which the curves begin.
 std::vector<LinePoint> DrivenLine(const StreetPlan& plan, std::span<const size_t> tour,
                                   std::vector<size_t>* junction_points);
 

@@ -14,7 +14,7 @@ constexpr double kLateralAcceleration = 4.0;  // metres per second squared, in b
 constexpr double kBraking = 2.8;              // metres per second squared
 constexpr double kAccelerating = 2.4;
 
-/// Points every kStep metres along a polyline, closed into a ring.
+/// Returns points every kStep metres along a polyline that is closed into a ring.
 std::vector<LinePoint> Resample(const std::vector<LinePoint>& ring) {
   std::vector<LinePoint> result;
   double carried = 0;  // metres since the last point
@@ -33,7 +33,7 @@ std::vector<LinePoint> Resample(const std::vector<LinePoint>& ring) {
   return result;
 }
 
-/// Circular moving average over 2 * radius + 1 values.
+/// Returns the circular moving average over 2 * radius + 1 values.
 template <typename T>
 std::vector<T> SmoothRing(const std::vector<T>& values, int radius) {
   const int n = static_cast<int>(values.size());
@@ -46,7 +46,8 @@ std::vector<T> SmoothRing(const std::vector<T>& values, int radius) {
   return result;
 }
 
-/// What drivers wish for, changing every 30 m or so, within what the bends allow.
+/// Returns the speeds that drivers want, which change every 30 m or so, within the limits of the
+/// bends.
 std::vector<double> WishedSpeeds(const std::vector<Vector2d>& points, const LapOptions& options,
                                  Random& random) {
   const size_t n = points.size();
@@ -97,8 +98,8 @@ Lap::Lap(const StreetPlan& plan, std::span<const size_t> tour, const LapOptions&
     speeds_[stop] = 0;
     dwell_[stop] = random.Uniform(0.8, 2.5);
   }
-  // What lies ahead bounds the speed by braking, what lies behind by accelerating; twice round so
-  // that it holds across the seam.
+  // Braking for what lies ahead and accelerating from what lies behind bound the speed. Two passes
+  // round the ring make this hold across its seam.
   for (size_t k = 2 * n; k-- > 0;) {
     const double ahead = speeds_[(k + 1) % n];
     speeds_[k % n] = std::min(speeds_[k % n], std::sqrt(ahead * ahead + 2 * kBraking * kStep));
@@ -154,7 +155,7 @@ Vector2d Lap::Point(double station, double left) const {
   const Vector2d& b = points_[(whole + 1) % n];
   Vector2d on_line = (1 - t) * a + t * b;
   if (left == 0) return on_line;
-  // The normal changes with the direction over a metre, so that it turns steadily.
+  // The normal follows the direction averaged over a metre, so that it turns steadily.
   const auto chord = [&](size_t i) -> Vector2d {
     return points_[(i + 2) % n] - points_[(i + n - 2) % n];
   };

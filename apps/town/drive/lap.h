@@ -15,32 +15,33 @@ struct LapOptions {
   double stop_share = 0.15;  ///< of the junctions, where the driver waits
 };
 
-/// Metres to the left of a line at three places along it.
+/// Distances to the left of a line at three places along it, metres.
 struct Lateral {
   double rear = 0;
   double middle = 0;
   double front = 0;
 };
 
-/// Where a car is in the plan.
+/// Position and direction of a car in the plan.
 struct RoadPlace {
   Vector2d position;
   Vector2d forward;  ///< unit
 };
 
-/// A car's standing on the road.
+/// Position and attitude of a car on the road.
 struct RoadPose : RoadPlace {
   double height = 0;  ///< of the road below
   double slope = 0;   ///< radians, nose up
   double bank = 0;    ///< radians, left side up
 };
 
-/// One round of a closed tour in the right-hand lanes, driven again and again: the line, and the
-/// speed at each point, slowing down for bends and stopping at some junctions. All cars of a
-/// stream drive the same lap at different times, so they keep their distances.
+/// One round of a closed tour in the right-hand lanes, driven repeatedly: the line, and the speed
+/// at each point, with slower bends and stops at some junctions. All cars of a stream drive the
+/// same lap at different times, so they keep their distances.
 class Lap {
  public:
-  /// `tour`: junctions in order, neighbours joined by a street, the last with the first.
+  /// `tour` lists junctions in order. A street joins each with the next one, and the last with the
+  /// first.
   Lap(const StreetPlan& plan, std::span<const size_t> tour, const LapOptions& options);
 
   struct State {
@@ -49,14 +50,15 @@ class Lap {
   };
   double length() const;                         ///< metres
   double duration() const { return duration_; }  ///< seconds
-  /// At any time, negative too, in seconds.
+  /// Returns the state at any time, in seconds, which may be negative.
   State At(double time) const;
-  /// Seconds after the lap's start at which the car leaves `station` (any number, it wraps).
+  /// Returns the time after the lap's start, in seconds, at which the car leaves `station` (any
+  /// number, it wraps).
   double TimeAt(double station) const;
-  /// Metres from the line to the kerb on the right, or to the cars parked there.
+  /// Returns the metres from the line to the kerb on the right, or to the cars parked there.
   double RoomOnRight(double station) const;
-  /// The car's place with its middle at `station` (any number, it wraps), beside the line by `left`
-  /// at its middle and at half a wheelbase behind and before.
+  /// Returns the car's place with its middle at `station` (any number, it wraps). `left` is its
+  /// distance from the line at its middle and at half a wheelbase behind and before.
   RoadPlace PlaceAt(double station, const Lateral& left = {}) const;
   /// As above, on the terrain.
   RoadPose PoseAt(double station, const Lateral& left = {}) const;

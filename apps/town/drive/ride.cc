@@ -6,10 +6,11 @@
 namespace orb360::town {
 namespace {
 
-/// Share of a pass's lateral shift at a distance: 0 outside the ramps, 1 between them.
+/// Returns the fraction of a pass's lateral shift at a distance: 0 outside the ramps, 1 between
+/// them.
 double ShareOf(const Pass& pass, double distance) {
-  // Metres over which the car changes sides: at 10 m/s it then accelerates by less than 5 m/s²
-  // sideways.
+  // Length over which the car changes sides, metres. At 10 m/s the lateral acceleration is then
+  // below 5 m/s².
   const double ramp = 8 + 4.5 * pass.left;
   const double outside = std::max({pass.begin - distance, distance - pass.end, 0.0});
   const double t = std::max(0.0, 1 - outside / ramp);

@@ -7,21 +7,21 @@
 
 namespace orb360::town {
 
-/// A stretch driven to the left of where the vehicle would keep, to pass something slower.
+/// A stretch on which a vehicle drives farther to the left to pass a slower one.
 struct Pass {
   double begin = 0;  ///< metres along the lap, as Ride::DistanceAt; ramps lie outside
   double end = 0;
   double left = 0;  ///< metres
 };
 
-/// Slowing down for others, perhaps to a stand.
+/// A vehicle slows down for others, perhaps to a stop.
 struct Delay {
   double begin = 0;  ///< seconds
   double end = 0;
   double lost = 0;  ///< seconds later than without it, at the end; less than 2/3 of the duration
 };
 
-/// One vehicle's way over a lap, a pure function of time.
+/// The motion of one vehicle over a lap, a pure function of time.
 struct Ride {
   const Lap* lap = nullptr;
   double ahead = 0;                        ///< seconds before the lap's own clock
@@ -31,10 +31,10 @@ struct Ride {
   std::vector<Pass> passes = {};
   std::vector<Delay> delays = {};  ///< one after the other
 
-  /// Metres along the lap, growing on from lap to lap.
+  /// Returns the metres along the lap, which keep growing from lap to lap.
   double DistanceAt(double time) const;
   double SpeedAt(double time) const;  ///< metres per second
-  /// Metres to the left of the lap's line.
+  /// Returns the metres to the left of the lap's line.
   double LeftAt(double distance) const;
   RoadPlace PlaceAt(double time) const;
   RoadPose PoseAt(double time) const;

@@ -10,7 +10,7 @@ Track EmptyTrack(const Footprint& footprint) {
   constexpr double kAir = 0.22;  // metres around the outline's sides
   Track track;
   track.radius = 0.5 * footprint.width + kAir;
-  // A disc covers the outline's sides for so many metres before and behind its middle.
+  // Length of the outline's sides before and behind its middle that a disc covers, metres.
   const double covered =
       std::sqrt(track.radius * track.radius - 0.25 * footprint.width * footprint.width);
   const double last = std::max(0.0, 0.5 * footprint.length - covered);

@@ -8,13 +8,13 @@
 
 namespace orb360::town {
 
-/// A vehicle's or a person's outline on the road, metres.
+/// The outline of a vehicle or a person on the road, metres.
 struct Footprint {
   double length = 0;
   double width = 0;
 };
 
-/// Moments at which moving things are compared.
+/// The moments at which moving objects are compared.
 struct Moments {
   double from = 0;  ///< seconds
   double until = 0;
@@ -24,34 +24,35 @@ struct Moments {
   double At(int i) const { return from + kStep * i; }
 };
 
-/// Where something is at each of the moments, as discs in a row with some air around them.
+/// The position of an object at each of the moments, as a row of discs with a margin around it.
 struct Track {
   std::vector<Vector2d> positions;
   std::vector<Vector2d> forwards;  ///< unit
   double radius = 0;               ///< of a disc
   std::vector<double> discs;       ///< their middles, metres along, from the rearmost
 
-  /// Metres from the middle to the outermost air.
+  /// Returns the metres from the middle to the outermost margin.
   double Reach() const { return discs.back() + radius; }
 };
 
 Track TrackOf(const Ride& ride, const Footprint& footprint, const Moments& moments);
-/// Follows a changed ride from one moment up to, not including, another.
+/// Updates the track for a changed ride from moment `first` up to, not including, moment `end`.
 void Retrack(const Ride& ride, const Moments& moments, int first, int end, Track* track);
-/// Of a person, who is one disc.
+/// Returns the track of a person, who is one disc.
 Track TrackOf(const std::function<Vector2d(double time)>& position, double radius,
               const Moments& moments);
 
-/// The first moment from `first` up to, not including, `end` at which the discs of two tracks
-/// touch.
+/// Returns the first moment from `first` up to, not including, `end` at which the discs of two
+/// tracks touch.
 std::optional<int> FirstMeeting(const Track& a, const Track& b, int first, int end);
 inline bool Meet(const Track& a, const Track& b) {
   return FirstMeeting(a, b, 0, static_cast<int>(a.positions.size())).has_value();
 }
 
-/// How `ride`, which has no passes yet, gets past those of `others` that it would catch up with on
-/// its lane; they stay as they are. Those that come up from behind, are oncoming or cross are not
-/// heeded. None where it would keep to the left for too long.
+/// Finds the passes by which `ride`, which has none yet, overtakes those of `others` that it would
+/// catch up with in its lane; the others keep their rides. Vehicles that come from behind, are
+/// oncoming or cross are ignored. Returns nullopt if the ride would have to keep to the left for
+/// too long.
 std::optional<std::vector<Pass>> FindPasses(const Ride& ride, const Footprint& footprint,
                                             const std::vector<const Track*>& others,
                                             const Moments& moments);

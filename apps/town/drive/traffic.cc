@@ -13,11 +13,11 @@
 namespace orb360::town {
 namespace {
 
-/// How often one tries to fit something in before leaving it out.
+/// Number of attempts to fit an object in before it is left out.
 constexpr int kTries = 12;
 constexpr int kFastTries = 40;  // who overtakes needs a clear road more often
 
-/// Whether a lap runs straight on, far from junctions, about a station.
+/// Returns true if a lap runs straight, far from junctions, around a station.
 bool IsOpenRoad(const StreetPlan& plan, const Lap& lap, double station) {
   constexpr double kAbout = 14;  // metres
   const RoadPose here = lap.PoseAt(station);
@@ -34,8 +34,8 @@ class Dispatcher {
   Dispatcher(const Town& town, const TrafficOptions& options, TrafficPlanner* planner)
       : town_(&town), density_(options.density), planner_(planner), random_(options.seed) {}
 
-  /// As many as `every` seconds of the drive and the density ask for, each at the camera's car at
-  /// some moment on an open road.
+  /// Adds as many vehicles as `every` seconds of the drive and the density require. Each meets the
+  /// camera's car at some moment on an open road.
   void Encounter(const Lap& lap, Pace pace, double every) {
     const double seconds = planner_->moments().until - planner_->moments().from;
     const int slots = static_cast<int>(std::lround(seconds / every + 0.5));
@@ -53,7 +53,7 @@ class Dispatcher {
     }
   }
 
-  /// A stream over the lap, one every `headway` seconds at density 1.
+  /// Adds a stream over the lap, one vehicle every `headway` seconds at density 1.
   void Stream(const Lap& lap, Pace pace, double headway) {
     const int slots = static_cast<int>(lap.duration() / headway);
     const double phase = random_.Uniform(0, headway);

@@ -19,7 +19,7 @@ struct TrafficOptions {
   double until = 0;
 };
 
-/// Who drives, the slower first: one passes those of a lower rank.
+/// Kinds of drivers, slower ones first. A driver passes those of a lower rank.
 enum class Pace : uint8_t { kStanding, kCycling, kSlow, kNormal, kFast };
 
 /// A vehicle in traffic.
@@ -31,21 +31,21 @@ struct Mover {
   Rgba tint;
 };
 
-/// What moves in a town besides the camera's car: cars and vans before and behind it, oncoming ones
-/// and ones on other streets, cyclists and slow vans that it passes, vans that stand in the lane,
-/// cars that overtake it; and pedestrians on the pavements. A pure function of time. Whatever would
-/// run into something else between `from` and `until` is left out.
+/// All that moves in a town besides the camera's car: cars and vans before and behind it, oncoming
+/// ones and ones on other streets, cyclists and slow vans that it passes, vans that stand in the
+/// lane, cars that overtake it, and pedestrians on the pavements. It is a pure function of time.
+/// Objects that would collide between `from` and `until` are left out.
 class Traffic {
  public:
-  /// `own_lap` is what the camera's car drives. It and the town are kept by reference.
+  /// `own_lap` is the lap of the camera's car. The lap and the town are kept by reference.
   Traffic(const Town& town, const Lap& own_lap, const TrafficOptions& options);
 
-  /// The way of the camera's car, with the passes that the others ask for.
+  /// The ride of the camera's car, with the passes that the others require.
   const Ride& own() const { return own_; }
   const std::vector<Mover>& movers() const { return movers_; }
   const std::vector<Walker>& walkers() const { return walkers_; }
 
-  /// Everything that moves, always in the same order, at a time in seconds.
+  /// Returns all moving objects, always in the same order, at a time in seconds.
   std::vector<Instance> At(double time) const;
 
  private:

@@ -46,7 +46,7 @@ bool TrafficPlanner::Wait(Mover* mover, const Track& track, const Tracks& heeded
                           int meeting) const {
   constexpr double kBefore = 0.4;  // seconds between the end of a delay and what it is for
   const double end = moments_.At(meeting) - kBefore;
-  // The first delay may have begun before anything is looked at.
+  // The first delay may begin before the moments that are compared.
   const double free_since = mover->ride.delays.empty() ? end - 1e3 : mover->ride.delays.back().end;
   Track changed = track;
   for (const int look_ahead : {70, 20}) {  // moments without a meeting after this one
@@ -94,7 +94,7 @@ bool TrafficPlanner::Add(Mover mover) {
   std::optional<Track> track = Plan(&mover, TracksBefore(mover.pace),
                                     TracksUpTo(mover.pace, nullptr), mover.pace != Pace::kStanding);
   if (!track) return false;
-  // Faster ones that meet it have to pass it.
+  // Faster vehicles that meet it have to pass it.
   struct Change {
     size_t index;
     Mover mover;

@@ -8,7 +8,7 @@ namespace orb360::town {
 Walker::State Walker::At(const StreetPlan& plan, double time) const {
   const Street& on = plan.streets[street];
   const double length = to - from;
-  // There and back again is once round a circle of twice the way's length.
+  // Walking there and back is one round of a circle of twice the way's length.
   State state;
   state.walked = speed * time;
   const double round = start + state.walked;
@@ -26,7 +26,7 @@ Walker DrawWalker(const StreetPlan& plan, size_t street, Random& random) {
   walker.street = street;
   walker.side = random.Chance(0.5) ? 1 : -1;
   walker.from_kerb = random.Uniform(1.0, std::max(1.1, plan.streets[street].pavement - 0.4));
-  // Up and down as far as no roundabout is in the way.
+  // The walk goes up and down as far as no roundabout is in the way.
   const Street& on = plan.streets[street];
   const auto is_open = [&](double station) {
     return station > 0 && station < on.Length() &&

@@ -31,7 +31,7 @@ CubePoint MeetCube(const Eigen::Vector3d& d) {
   const double ay = std::abs(d.y());
   const double az = std::abs(d.z());
   if (ax >= ay && ax >= az) {
-    // Turned by half a turn, right and left change places.
+    // For a face that is turned by half a turn, right and left are exchanged.
     return d.x() < 0 ? CubePoint{kFront, d.y() / ax, d.z() / ax}
                      : CubePoint{kBack, -d.y() / ax, d.z() / ax};
   }

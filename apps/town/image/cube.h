@@ -7,20 +7,20 @@
 
 namespace orb360::town {
 
-/// The six square pictures, 90 degrees wide and high, that together show the whole sphere. Each is
-/// taken by a camera that looks along -x, y to the right, z up, in its own frame; that of `front`
-/// is the frame of the panorama. `right`, `back` and `left` are turned about the vertical; `up` and
-/// `down` are pitched from `front`, so that the lower side of `up` and the upper side of `down`
-/// join it.
+/// The six square images, 90 degrees wide and high, that together show the whole sphere. Each is
+/// taken by a camera that looks along -x, with y to the right and z up, in its own frame; the frame
+/// of `front` is that of the panorama. `right`, `back` and `left` are turned about the vertical.
+/// `up` and `down` are pitched from `front`, so that the lower side of `up` and the upper side of
+/// `down` join it.
 enum CubeFace { kFront, kRight, kBack, kLeft, kUp, kDown };
 inline constexpr int kCubeFaces = 6;
 inline constexpr std::array<std::string_view, kCubeFaces> kCubeFaceNames = {
     "front", "right", "back", "left", "up", "down"};
 
-/// camera_from_face, between the frames of the panorama and of a face.
+/// Returns camera_from_face, between the frames of the panorama and of a face.
 Eigen::Quaterniond CameraFromFace(int face);
 
-/// A place on the cube: the face, and in its picture the distance from its middle to the right and
+/// A point on the cube: the face, and the distances from the middle of its image to the right and
 /// upward, in [-1, 1] at the borders.
 struct CubePoint {
   int face;
@@ -28,7 +28,8 @@ struct CubePoint {
   double up;
 };
 
-/// Where a direction in the panorama's frame, of any length but 0, meets the cube.
+/// Returns the point at which a direction in the panorama's frame, of any length but 0, meets the
+/// cube.
 CubePoint MeetCube(const Eigen::Vector3d& direction);
 
 }  // namespace orb360::town

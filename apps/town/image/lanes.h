@@ -6,13 +6,13 @@
 
 namespace orb360::town {
 
-/// Number of rays and samples that are worked on together: what Embree traces as one packet.
+/// Number of rays and samples that are processed together: one packet of Embree.
 inline constexpr int kLanes = 16;
 
-/// A number of each lane, aligned for vectors.
+/// One number per lane, aligned for vectors.
 struct alignas(64) Lanes : std::array<float, kLanes> {};
 
-/// A vector or a linear colour of each lane.
+/// A vector or a linear colour per lane.
 struct Lanes3 {
   Lanes x;  ///< or red
   Lanes y;

@@ -16,8 +16,8 @@ uint32_t LatticeHash(int x, int y, uint32_t seed) {
   return h ^ (h >> 15);
 }
 
-/// A random permutation, which scrambles lattice coordinates in one look-up each (Perlin 2002):
-/// painting spends most of its time in gradient noise.
+/// A random permutation that scrambles lattice coordinates with one look-up each (Perlin 2002),
+/// because most of the painting time is spent in gradient noise.
 class Permutation {
  public:
   static constexpr uint32_t kSize = 4096;  // 8 KiB: stays in the first-level cache

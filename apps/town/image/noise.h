@@ -4,8 +4,8 @@
 
 namespace orb360::town {
 
-/// Gradient noise in about [-1, 1] on a lattice of spacing 1, periodic with `period` cells in x
-/// and y: sampled over [0, period)² it tiles without a seam.
+/// Returns gradient noise in about [-1, 1] on a lattice of spacing 1. It is periodic with `period`
+/// cells in x and y: sampled over [0, period)² it tiles without a seam.
 float GradientNoise(float x, float y, int period, uint32_t seed);
 
 /// Sum of `octaves` of GradientNoise over the unit tile (x, y in [0, 1)), the first with
@@ -13,7 +13,7 @@ float GradientNoise(float x, float y, int period, uint32_t seed);
 /// `gain`. In about [-1, 1].
 float TiledFbm(float x, float y, int frequency, int octaves, uint32_t seed, float gain = 0.5F);
 
-/// What TiledCells finds: the distances, in cells, to the nearest and the second nearest of the
+/// The result of TiledCells: the distances, in cells, to the nearest and the second nearest of the
 /// points scattered one per cell, and a hash of the nearest.
 struct Cell {
   float nearest;

@@ -5,7 +5,7 @@
 #include "apps/town/image/texture.h"
 
 /// Painters of the town's textures. Each tiles without a seam; the physical size of a tile is
-/// stated in metres. Painters with a `variant` give a different picture for each value.
+/// stated in metres. Painters with a `variant` give a different texture for each value.
 namespace orb360::town {
 
 // --- ground ---
@@ -42,7 +42,7 @@ Texture PaintSlates(uint32_t seed);
 /// Gravel of a flat roof; 4 m.
 Texture PaintGravel(uint32_t seed);
 
-// --- openings: the unit tile is the whole picture ---
+// --- openings: the unit tile is the whole image ---
 /// A room behind a window pane: curtains, blinds, lamps or darkness.
 Texture PaintRoom(uint32_t seed);
 /// A shop window's display: shelves with goods under a bright ceiling.
@@ -51,17 +51,17 @@ Texture PaintShop(uint32_t seed);
 Texture PaintDoor(uint32_t seed);
 /// A louvred shutter, near white so that it can be tinted.
 Texture PaintLouvres(uint32_t seed);
-/// A closed shop's roller shutter with what has been sprayed on it.
+/// A closed shop's roller shutter with graffiti.
 Texture PaintRollerShutter(uint32_t seed);
 /// Vertical-bar railing, a cut-out; 1 m x 1 m.
 Texture PaintRailing(uint32_t seed);
 
-// --- signs: the unit tile is the whole picture ---
+// --- signs: the unit tile is the whole image ---
 /// A fascia board with a name on it; 4:1.
 Texture PaintSign(uint32_t seed);
 /// A car's number plate; 4:1.
 Texture PaintNumberPlate(uint32_t seed);
-/// A bill with a picture, a headline and small print; 1:2.
+/// A bill with an image, a headline and small print; 1:2.
 Texture PaintPoster(uint32_t seed);
 /// An enamel plate with one or two digits; square.
 Texture PaintHouseNumber(uint32_t seed);

@@ -7,8 +7,8 @@
 namespace orb360::town {
 namespace {
 
-/// 1 on the lines where two cells of a distorted cellular noise meet, falling to 0 at `width`
-/// cells from it: cracks.
+/// Returns 1 on the lines where two cells of a distorted cellular noise meet, falling to 0 at
+/// `width` cells from them: cracks.
 float Cracks(float x, float y, int frequency, float width, uint32_t seed) {
   const float bend = 0.35F / static_cast<float>(frequency);
   const float wx = x + bend * TiledFbm(x, y, frequency * 2, 4, seed + 1);
@@ -22,7 +22,7 @@ float Cracks(float x, float y, int frequency, float width, uint32_t seed) {
 Texture PaintAsphalt(uint32_t seed) {
   constexpr int kSize = 1024;
   return Texture::Paint(kSize, [seed](float x, float y) {
-    // Stones of the aggregate: a texel (8 mm) is about one of them.
+    // Stones of the aggregate; a texel (8 mm) is about one stone.
     const float stone =
         LatticeValue(static_cast<int>(x * kSize), static_cast<int>(y * kSize), seed);
     float value = 0.062F + 0.034F * stone * stone;
@@ -55,7 +55,7 @@ Texture PaintFreshAsphalt(uint32_t seed) {
 Texture PaintManhole(uint32_t seed) {
   return Texture::Paint(128, [seed](float x, float y) {
     const float radius = 2 * std::hypot(x - 0.5F, y - 0.5F);
-    // A chequer of raised studs inside a plain rim.
+    // A chequer pattern of raised studs inside a plain rim.
     const float stud = std::max(std::abs(std::sin(x * 50)), std::abs(std::sin(y * 50)));
     float value = radius > 0.86F ? 0.2F : 0.09F + 0.09F * SmoothStep(0.6F, 0.9F, stud);
     if (std::abs(radius - 0.84F) < 0.025F) value = 0.015F;
@@ -135,7 +135,7 @@ Texture PaintConcrete(uint32_t seed) {
 
 Texture PaintGrass(uint32_t seed) {
   return Texture::Paint(512, [seed](float x, float y) {
-    // Blades lie in all directions: noise stretched along x and along y.
+    // Blades lie in all directions, so noise is stretched along x and along y.
     const float blades = std::max(TiledFbm(x, 0.25F * y, 128, 2, seed, 0.9F),
                                   TiledFbm(0.25F * x, y, 128, 2, seed + 9, 0.9F));
     const float clumps = TiledFbm(x, y, 12, 5, seed + 1, 0.65F);

@@ -40,7 +40,7 @@ Texture PaintRoom(uint32_t seed) {
   const bool picture = random.Chance(0.4);
   const float folds = static_cast<float>(9 + random.Int(9));
   return Texture::Paint(128, [=](float x, float y) {
-    // The room darkens with depth; what stands at the far wall shows faintly.
+    // The room darkens with depth; objects at the far wall are faintly visible.
     const float far = 0.2F + 0.5F * y + 0.12F * TiledFbm(x, y, 3, 4, seed);
     Rgba colour = (0.35F * far) * wall;
     if (y > 0.86F) colour = (0.5F * (1.6F - y)) * Rgba{0.3F, 0.29F, 0.27F, 1};  // the ceiling
@@ -164,7 +164,7 @@ Texture PaintRollerShutter(uint32_t seed) {
     const float slat = y * 40 - std::floor(y * 40);
     Rgba colour = metal;
     if (sprayed && y < 0.75F) {
-      // Fat letters, roughly: bands between the level lines of a noise.
+      // Large letters are approximated by bands between the level lines of a noise.
       const float shape =
           TiledFbm(x, 0.6F * y, 5, 2, seed + 1) - 2.2F * std::abs(y - 0.36F) + 0.35F;
       if (shape > 0.12F) colour = Mix(spray, {0.7F, 0.7F, 0.65F, 1}, 0.6F * y);

@@ -25,7 +25,7 @@ Texture PaintLeaves(uint32_t seed) {
   Random random(seed);
   std::vector<Leaf> leaves;
   for (int i = 0; i < 70; ++i) {
-    // Leaves stand along five twigs that fan out from the bottom centre.
+    // Leaves grow along five twigs that fan out from the bottom centre.
     const int twig = i % 5;
     const float direction = kPi / 2 + 0.55F * static_cast<float>(twig - 2);
     const auto along = static_cast<float>(random.Uniform(0.12, 0.78));

@@ -17,7 +17,7 @@ constexpr std::array<const char*, 16> kTrades = {
     "",      "",      "BAR",   "CAFE",     "MODE",   "BANK",   "HOTEL",  "OPTIK",
     "PIZZA", "BOOKS", "SHOES", "APOTHEKE", "& SONS", "MARKET", "BAKERY", "CYCLES"};
 
-/// A made-up name of two to four syllables.
+/// Returns an invented name of two to four syllables.
 std::string RandomName(Random& random) {
   static constexpr std::array<const char*, 24> kSyllables = {
       "BA",  "LO", "MER", "TIN", "CA", "FE",  "RO",  "SA",  "VEN", "DO", "LI",  "KA",
@@ -28,7 +28,7 @@ std::string RandomName(Random& random) {
   return name;
 }
 
-/// A printer's colour as OpenCV takes it: about a grey in [low, high], none too loud.
+/// Returns a printer's colour in OpenCV's form, near a gray in [low, high] and not too saturated.
 cv::Scalar DrawColour(Random& random, double low, double high) {
   const double grey = random.Uniform(low, high);
   const double reach = std::min(0.45 * grey + 12, 70.0);
@@ -38,7 +38,7 @@ cv::Scalar DrawColour(Random& random, double low, double high) {
   return {b, g, r};
 }
 
-/// Writes `text` centred on `centre`, as large as fits in `box`.
+/// Writes `text` centred on `centre`, as large as it fits in `box`.
 void WriteCentred(cv::Mat& picture, const std::string& text, cv::Point centre, cv::Size box,
                   int font, int thickness, const cv::Scalar& ink) {
   int baseline = 0;
@@ -54,7 +54,7 @@ constexpr std::array<int, 5> kFonts = {cv::FONT_HERSHEY_DUPLEX, cv::FONT_HERSHEY
                                        cv::FONT_HERSHEY_COMPLEX, cv::FONT_HERSHEY_SIMPLEX,
                                        cv::FONT_HERSHEY_SCRIPT_COMPLEX};
 
-/// Blobs, bars and rings of a printed picture.
+/// Draws blobs, bars and rings, as a printed motif.
 void DrawMotif(cv::Mat& picture, Random& random, const cv::Rect& area) {
   const auto point = [&] {
     const int x = area.x + random.Int(area.width);
@@ -82,7 +82,7 @@ void DrawMotif(cv::Mat& picture, Random& random, const cv::Rect& area) {
   }
 }
 
-/// An 8-bit sRGB picture, its first row at the top, as a texture.
+/// Converts an 8-bit sRGB image, whose first row is at the top, to a texture.
 Texture FromPicture(const cv::Mat& picture) {
   std::vector<Rgba> texels;
   texels.reserve(picture.total());
@@ -168,7 +168,7 @@ Texture PaintMural(uint32_t seed) {
   WriteCentred(picture, "SINCE " + std::to_string(1880 + random.Int(90)), {kSize / 2, 450},
                {300, 34}, font, 5, ink);
   cv::rectangle(picture, {10, 10}, {kSize - 11, kSize - 11}, ink, 8);
-  // Paint flakes off, and what stays has faded.
+  // Paint flakes off, and the rest has faded.
   const Texture flat = FromPicture(picture);
   return Texture::Paint(kSize / 2, [&flat, seed](float x, float y) {
     Rgba c = flat.Sample(x, y, 1);

@@ -32,10 +32,10 @@ Texture PaintPlaster(uint32_t seed) {
   return Texture::Paint(512, [seed](float x, float y) {
     float value = 0.7F * (1 + 0.06F * TiledFbm(x, y, 120, 2, seed, 0.9F) +
                           0.08F * TiledFbm(x, y, 2, 7, seed + 1, 0.6F));
-    // Streaks that rain leaves: noise stretched along y.
+    // Streaks left by rain: noise stretched along y.
     const float streak = TiledFbm(x, 0.125F * y, 16, 4, seed + 2, 0.7F);
     value *= 1 - 0.14F * SmoothStep(0.1F, 1, streak);
-    // Where the finish was mended its edge shows as a faint ridge.
+    // The edge of a repaired area appears as a faint ridge.
     const float mend = TiledFbm(x, y, 3, 6, seed + 3, 0.55F);
     if (mend > 0.62F) value *= 0.94F;
     value *= 1 - 0.12F * (1 - SmoothStep(0.0F, 0.03F, std::abs(mend - 0.62F)));

@@ -15,7 +15,7 @@ inline uint64_t Hash(uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// Random numbers which are the same on every platform, unlike the standard library's
+/// Random numbers that are the same on every platform, unlike those of the standard library's
 /// distributions.
 class Random {
  public:
@@ -36,8 +36,8 @@ class Random {
   const T& Pick(std::span<const T> values) {
     return values[static_cast<size_t>(Int(static_cast<int>(values.size())))];
   }
-  /// An independent generator for one part of the work, so that a change in how many numbers
-  /// another part draws leaves this part as it was.
+  /// Returns an independent generator for one part of the work, so that a change in the number of
+  /// draws of another part does not affect this one.
   Random Fork(uint64_t part) const {
     return Random(Hash(state_) ^ Hash(part * 0x632be59bd9b4e019ULL));
   }

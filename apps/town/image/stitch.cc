@@ -22,19 +22,19 @@ int SizeOf(const CubeImages<Pixel>& faces) {
   return size;
 }
 
-/// Pixel coordinates on a face, continuous (first centre at 0.5).
+/// Returns pixel coordinates on a face, continuous (first centre at 0.5).
 cv::Point2d ToPixel(const CubePoint& point, int size) {
   return {0.5 * size * (1 + point.right), 0.5 * size * (1 - point.up)};
 }
 
-/// The pixel of a face that a point is in.
+/// Returns the pixel of a face that contains a point.
 cv::Point NearestPixel(const CubePoint& point, int size) {
   const cv::Point2d p = ToPixel(point, size);
   return {std::clamp(static_cast<int>(p.x), 0, size - 1),
           std::clamp(static_cast<int>(p.y), 0, size - 1)};
 }
 
-/// Faces with a border of what the neighbouring faces show there.
+/// Faces with a border that repeats the pixels of the neighbouring faces.
 template <typename Pixel>
 CubeImages<Pixel> AddBorders(const CubeImages<Pixel>& faces) {
   const int size = SizeOf(faces);
@@ -60,8 +60,8 @@ CubeImages<Pixel> AddBorders(const CubeImages<Pixel>& faces) {
   return result;
 }
 
-/// Where a bilinear sample lies on a face with borders: the upper left of its four pixels, and the
-/// way from there.
+/// Position of a bilinear sample on a face with borders: the upper left of its four pixels, and the
+/// offset from there.
 struct SamplePlace {
   int x;
   int y;
@@ -101,7 +101,7 @@ class RadianceMean {
   cv::Vec3f sum_;
 };
 
-/// The same for 8-bit colours, all channels in one integer and places to 1/256 of a pixel.
+/// The same for 8-bit colours, with all channels in one integer and positions in 1/256 of a pixel.
 class ColourMean {
  public:
   explicit ColourMean(const CubeImages<cv::Vec3b>& wide) {
@@ -135,7 +135,7 @@ class ColourMean {
   }
 
  private:
-  /// Blue, red and green in 16 bits each, from the lowest upward.
+  /// Returns blue, red and green in 16 bits each, from the lowest upward.
   static uint64_t Spread(int colour) {
     const auto c = static_cast<uint64_t>(colour);
     return (c & 0xff00ffU) | (c & 0xff00U) << 24;
@@ -146,9 +146,10 @@ class ColourMean {
   uint64_t red_ = 0;
 };
 
-/// Where the directions through a grid of `per_pixel` by `per_pixel` places in each pixel meet the
-/// cube (as MeetCube), from tables over the columns and the rows: on a side, the place to the right
-/// depends on the column alone, and the height above the horizon is a product.
+/// The points at which the directions through a grid of `per_pixel` by `per_pixel` positions in
+/// each pixel meet the cube (as MeetCube), from tables over columns and rows: on a side face, the
+/// coordinate to the right depends on the column only, and the height above the horizon is a
+/// product.
 class CubeGrid {
  public:
   CubeGrid(const EquirectangularCamera& camera, int per_pixel) {
@@ -187,14 +188,14 @@ class CubeGrid {
   std::vector<Row> rows_;
 };
 
-/// z at a point of a face: see StitchRange.
+/// Returns z at a point of a face (see StitchRange).
 double SampleDepth(const cv::Mat1f& depth, const CubePoint& point) {
   const int size = depth.rows;
   const cv::Point pixel = NearestPixel(point, size);
   const float nearest = depth(pixel);
   if (nearest <= 0) return 0;
-  // The slope of 1/z to that side on which it changes less; 0 where it bends both ways. At the
-  // border of the face both sides are taken one pixel further in.
+  // The slope of 1/z towards the side on which it changes less, or 0 if it bends both ways. At the
+  // border of the face both neighbours are taken one pixel further inside.
   const auto slope = [&](const cv::Point& middle, const cv::Point& step) {
     const float before = depth(middle - step);
     const float here = depth(middle);
@@ -211,8 +212,9 @@ double SampleDepth(const cv::Mat1f& depth, const CubePoint& point) {
   return 1 / (1.0 / nearest + across * (p.x - 0.5 - pixel.x) + down * (p.y - 0.5 - pixel.y));
 }
 
-/// How many samples along each side of a pixel leave no gaps: they may lie 2 pixels of a face
-/// apart, the width of a bilinear sample, at the face's corners, where its pixels are smallest.
+/// Returns the number of samples along each side of a pixel that leave no gaps. Samples may be 2
+/// pixels of a face apart, the width of a bilinear sample, at the face's corners, where its pixels
+/// are smallest.
 int SamplesAcross(int face_size, const EquirectangularCamera& camera) {
   constexpr double kStretch = 2.12;  // pixels a radian at a corner, over those at the centre
   const double footprint = kStretch * 0.5 * face_size * camera.AngleOfPixels(1);

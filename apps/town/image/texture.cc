@@ -17,8 +17,8 @@ uint32_t Encode(const Rgba& c) {
          channel(std::sqrt(std::max(c.b, 0.0F))) << 16 | channel(c.a) << 24;
 }
 
-/// Half the size by 2x2 means, colours weighted by coverage so that what lies outside a cut-out
-/// does not bleed into it.
+/// Halves the size by 2x2 means. Colours are weighted by coverage, so that colours outside a
+/// cut-out do not bleed into it.
 std::vector<Rgba> Halve(const std::vector<Rgba>& source, int width, int height) {
   const int half_width = std::max(width / 2, 1);
   const int half_height = std::max(height / 2, 1);

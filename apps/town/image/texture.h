@@ -23,7 +23,7 @@ inline Rgba Mix(const Rgba& x, const Rgba& y, float t) {
 }
 inline Rgba operator*(float s, const Rgba& c) { return {s * c.r, s * c.g, s * c.b, c.a}; }
 
-/// Colour from 8-bit sRGB values, as a colour picker shows them.
+/// Returns the colour of 8-bit sRGB values, as a colour picker shows them.
 Rgba Srgb(int r, int g, int b);
 
 /// A tiling image with its mip chain. Texels hold the square root of the linear value in 8 bits
@@ -38,33 +38,34 @@ class Texture {
 
   int width() const { return levels_.front().width; }
   int height() const { return levels_.front().height; }
-  /// Texels along the side of a square of as many.
+  /// The side, in texels, of a square with as many texels.
   float mean_side() const { return mean_side_; }
   size_t bytes() const { return texels_.size() * sizeof(uint32_t); }
 
-  /// A mip level: row-major texels, and beyond its last row and column once more the first ones, so
-  /// that the four around any place lie beside each other.
+  /// A mip level: row-major texels. The first row and column are repeated behind the last ones, so
+  /// that the four texels around any position are adjacent.
   struct Level {
     int width;
     int height;
     size_t offset;
   };
-  /// The level for a footprint of 2^`level` texels, rounded down.
+  /// Returns the level for a footprint of 2^`level` texels, rounded down.
   const Level& LevelAt(float level) const {
     const int last = static_cast<int>(levels_.size()) - 1;
     const float clamped = std::min(std::max(0.0F, level), static_cast<float>(last));
     return levels_[static_cast<size_t>(clamped)];
   }
-  /// Its texels: red, green, blue and coverage from the lowest byte upward, the colours as square
-  /// roots of what is linear.
+  /// Returns its texels: red, green, blue and coverage from the lowest byte upward. Colours are
+  /// square roots of linear values.
   const uint32_t* TexelsOf(const Level& level) const { return texels_.data() + level.offset; }
 
-  /// Bilinear sample of one mip level; (u, v) in tiles, wrapping. `level` is the base-2 logarithm
-  /// of the footprint in texels, and is rounded down: a caller that takes several samples a pixel
-  /// gets trilinear filtering by adding evenly spread offsets in [0, 1) to it.
+  /// Returns a bilinear sample of one mip level; (u, v) are in tiles and wrap. `level` is the
+  /// base-2 logarithm of the footprint in texels and is rounded down. A caller that takes several
+  /// samples per pixel gets trilinear filtering by adding evenly distributed offsets in [0, 1) to
+  /// it.
   Rgba Sample(float u, float v, float level) const;
 
-  /// Whether the nearest texel of level 0 covers at least half.
+  /// Returns true if the nearest texel of level 0 has a coverage of at least a half.
   bool Covers(float u, float v) const {
     const Level& l = levels_.front();
     const auto x = static_cast<size_t>(FloorToInt(u * static_cast<float>(l.width)) & (l.width - 1));

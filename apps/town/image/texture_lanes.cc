@@ -19,8 +19,8 @@ using DI = hn::RebindToSigned<D>;
 using V = hn::Vec<D>;
 using VI = hn::Vec<DI>;
 
-/// A channel of four texels between which a sample lies, blended; 8 bits of the square root of what
-/// is linear.
+/// Blends a channel of the four texels around a sample; 8 bits of the square root of the linear
+/// value.
 template <int kShift>
 HWY_INLINE V Blend(VI t00, VI t01, VI t10, VI t11, V x, V y) {
   const D d;
@@ -56,7 +56,7 @@ void AddSamplesKernel(const std::array<const Texture*, kLanes>& textures, const 
     width[i] = l.width;
     height[i] = l.height;
   }
-  // Places with 8 fractional bits; texel centres are at halves.
+  // Positions with 8 fractional bits; texel centres are at halves.
   Lanes wx;
   Lanes wy;
   Integers first;

@@ -77,13 +77,13 @@ class Reader {
     if (!(line >> value)) Refuse(std::string("expected ") + what);
     return value;
   }
-  /// How many of something follow.
+  /// Reads the number of elements that follow.
   int Count(std::istringstream& line, const char* what) const {
     const int count = Number<int>(line, what);
     if (count < 0) Refuse(std::string("expected ") + what + ", found " + std::to_string(count));
     return count;
   }
-  /// A word, or several between quotation marks.
+  /// Reads a word, or several words between quotation marks.
   static std::string Text(std::istringstream& line) {
     std::string text;
     line >> std::ws;
@@ -106,7 +106,7 @@ class Reader {
       Eigen::Vector3f& colour = word == "rgb" ? diffuse : emitted;
       for (int i = 0; i < 3; ++i) colour[i] = Number<float>(line, "three numbers of a colour");
     }
-    // What only shines by itself counts as reflecting instead.
+    // A surface that only emits light is treated as reflecting instead.
     const Eigen::Vector3f colour = diffuse.isZero() ? emitted : diffuse;
     colours_.push_back(colour.cwiseMin(1.0F).cwiseMax(0.0F));
   }
@@ -142,11 +142,11 @@ class Reader {
     if (word == "name") {
       object->name = Text(line);
     } else if (word == "data") {
-      // So many characters of comment follow, and the end of a line.
+      // This many characters of comment follow, and an end of line.
       file_.ignore(Count(line, "a length") + 1);
       ++line_number_;
     } else if (word == "texture") {
-      // Several in .acc files, with what each is for: the base is the first.
+      // .acc files have several textures with their purpose; the base is the first one.
       const std::string file = Text(line);
       if (object->texture.empty() && file != "empty_texture_no_mapping") object->texture = file;
     } else if (word == "texrep") {
@@ -157,7 +157,7 @@ class Reader {
       for (int i = 0; i < 3; ++i)
         object->parent_from_object.translation()[i] = Number<float>(line, "three numbers");
     } else if (word == "rot") {
-      // Row by row, but for row vectors: so column by column.
+      // The matrix is stored row by row for row vectors, so it is read column by column.
       for (int i = 0; i < 9; ++i)
         object->parent_from_object.linear()(i % 3, i / 3) = Number<float>(line, "nine numbers");
     } else if (word == "numvert") {
@@ -167,7 +167,7 @@ class Reader {
       for (int i = 0; i < count; ++i)
         ReadSurface(*object, world_from_parent * object->parent_from_object);
     }
-    // Others (crease, url, hidden, ...) do not change what is seen here.
+    // Other keys (crease, url, hidden, ...) do not affect the appearance here.
   }
 
   void ReadVertices(int count, Object* object) {
@@ -223,8 +223,8 @@ class Reader {
     mesh.name = object.name;
     mesh.material = FindMaterial(material, object.texture);
     const bool has_normals = object.normals.size() == object.positions.size();
-    // Corners alike are one vertex; they stay in the order of the object's vertices, which tells
-    // something of roads (see torcs_track.h).
+    // Equal corners become one vertex. They keep the order of the object's vertices, on which the
+    // search for roads depends (see torcs_track.h).
     std::map<std::tuple<uint32_t, float, float>, uint32_t> indices;
     const auto key = [](const Corner& corner) {
       return std::tuple(corner.vertex, corner.uv.x(), corner.uv.y());

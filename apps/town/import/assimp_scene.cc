@@ -17,7 +17,7 @@ namespace {
 
 Eigen::Vector3f ToEigen(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-/// An image that is inside the file; empty if it cannot be read.
+/// Decodes an image inside the file; empty if it cannot be read.
 cv::Mat ToImage(const aiTexture& texture) {
   if (texture.mHeight == 0) {  // as an image file of mWidth bytes
     return cv::imdecode(cv::Mat(1, static_cast<int>(texture.mWidth), CV_8U, texture.pcData),
@@ -34,7 +34,7 @@ SourceMaterial ToMaterial(const aiScene& scene, const aiMaterial& material) {
   if (material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS)
     result.colour = {colour.r, colour.g, colour.b};
   aiString texture;
-  // glTF's base colour, then what older formats call the diffuse texture.
+  // glTF's base colour has priority over what older formats call the diffuse texture.
   if (material.GetTexture(aiTextureType_BASE_COLOR, 0, &texture) == aiReturn_SUCCESS ||
       material.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == aiReturn_SUCCESS)
     result.texture = texture.C_Str();
@@ -44,7 +44,7 @@ SourceMaterial ToMaterial(const aiScene& scene, const aiMaterial& material) {
   aiString mode;
   result.is_opaque = material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == aiReturn_SUCCESS &&
                      std::string_view(mode.C_Str()) == "OPAQUE";
-  // Some programs write black beside a texture.
+  // Some programs write a black colour beside a texture.
   if (result.colour.isZero()) result.colour.setOnes();
   return result;
 }

@@ -13,7 +13,7 @@
 namespace orb360::town {
 namespace {
 
-/// Whether the first line that says something has four numbers.
+/// Returns true if the first line with data has four numbers.
 bool HasPositionsOnly(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string text;
@@ -27,13 +27,13 @@ bool HasPositionsOnly(const std::filesystem::path& file) {
   return false;
 }
 
-/// The distance to the nearest surface in a direction of any length, in units of that length; at
-/// most `far`.
+/// Returns the distance to the nearest surface in a direction of any length, in units of that
+/// length; at most `far`.
 float DistanceAlong(const RayScene& scene, const Vector3f& origin, const Vector3f& direction,
                     float far) {
   RTCRayHit16 rays{};
-  // Where vectors are shorter than a packet, Embree traces all lanes in which tnear <= tfar,
-  // whatever `valid` says.
+  // Where vectors are shorter than a packet, Embree traces all lanes with tnear <= tfar, whatever
+  // `valid` says.
   std::ranges::fill(rays.ray.tfar, -1.0F);
   alignas(64) std::array<int, kPacket> valid{};
   valid[0] = -1;
@@ -142,7 +142,7 @@ void RequireFreePath(const RayScene& scene, const CameraPath& path, double end) 
   while (time < end) {
     const Vector3f to = path.At(std::min(time + kStep, end)).translation.cast<float>();
     const Vector3f step = to - from;
-    // A little farther, so that a surface right where a step ends is met.
+    // The ray is slightly longer, so that a surface exactly at the end of a step is hit.
     constexpr float kFar = 1.01F;
     if (step.norm() >= 1e-6F && DistanceAlong(scene, from, step, kFar) < kFar) {
       std::ostringstream message;

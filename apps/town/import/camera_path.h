@@ -9,17 +9,18 @@
 
 namespace orb360::town {
 
-/// A camera's way through a scene, smooth between the poses it is given by.
+/// A camera's path through a scene, smooth between the given poses.
 class CameraPath {
  public:
-  /// Poses with increasing times, at least two.
+  /// Takes at least two poses with increasing times.
   explicit CameraPath(std::vector<StampedPose> knots);
 
   double begin() const { return knots_.front().timestamp; }  ///< seconds
   double end() const { return knots_.back().timestamp; }
-  /// world_from_camera at a time, clamped to the path: positions on cubics through the knots
-  /// (Hermite; the velocity at a knot is that of the parabola through it and its neighbours, so
-  /// Catmull and Rom's for any spacing in time), rotations by spherical interpolation.
+  /// Returns world_from_camera at a time, clamped to the path. Positions lie on cubic Hermite
+  /// curves through the knots; the velocity at a knot is that of the parabola through it and its
+  /// neighbours (Catmull and Rom's for any spacing in time). Rotations are interpolated
+  /// spherically.
   Rigid3 At(double time) const;
 
  private:
@@ -33,17 +34,17 @@ class CameraPath {
 /// '#' begins a comment. Throws UserError with file and line.
 CameraPath ReadCameraPath(const std::filesystem::path& file);
 
-/// Level poses that look along the way from each place to the next; where the camera stands, where
-/// it looked before, and before it first moves, where it goes then.
+/// Returns level poses that look from each place to the next one. Where the camera stands it keeps
+/// its direction; before it first moves it looks where it will go.
 std::vector<StampedPose> LookAhead(const std::vector<double>& times,
                                    const std::vector<Eigen::Vector3d>& positions);
 
-/// Makes sure that a path meets no surface until `end`, in seconds of its own time, looking ahead
-/// in steps so short that bends are followed however rare the frames are. Throws UserError that
-/// names the time and the place where it does.
+/// Checks that a path meets no surface until `end`, in seconds of its own time. It looks ahead in
+/// steps so short that bends are followed however rare the frames are. Throws UserError that names
+/// the time and the place of a collision.
 void RequireFreePath(const RayScene& scene, const CameraPath& path, double end);
 
-/// Median distance to the surface below, if it is nearly the same all along.
+/// Returns the median distance to the surface below if it is nearly constant along the path.
 std::optional<double> HeightAboveGround(const RayScene& scene,
                                         const std::vector<Rigid3>& world_from_camera);
 

@@ -14,8 +14,8 @@
 namespace orb360::town {
 namespace {
 
-/// The file of a texture: by the path that the mesh gives, or, where that is of its author's
-/// computer, by the name alone. Throws UserError if it is in none of the folders.
+/// Finds the file of a texture: by the path that the mesh gives, or, if that belongs to its
+/// author's computer, by the name only. Throws UserError if it is in none of the folders.
 std::filesystem::path FindTexture(std::string name,
                                   const std::vector<std::filesystem::path>& folders) {
   std::replace(name.begin(), name.end(), '\\', '/');
@@ -28,7 +28,7 @@ std::filesystem::path FindTexture(std::string name,
   throw UserError((folders.front() / path).string() + ": no such file");
 }
 
-/// Adds the materials to the palette, in their order.
+/// Adds the materials to the palette in their order.
 void AddMaterials(const SourceScene& source, const std::vector<std::filesystem::path>& folders,
                   std::vector<std::string>* missing, Palette* palette) {
   struct Loaded {
@@ -60,12 +60,12 @@ void AddMaterials(const SourceScene& source, const std::vector<std::filesystem::
     Material& added = palette->all.emplace_back();
     added.texture = entry->second.texture;
     added.cutout = entry->second.has_holes && !material.is_opaque;
-    // Leaves and nets, on flat faces: light comes through from either side.
+    // Leaves and nets on flat faces transmit light from both sides.
     if (added.cutout) added.finish = Finish::kFoliage;
   }
 }
 
-/// Area-weighted means of the normals of the faces that share a vertex.
+/// Returns area-weighted means of the normals of the faces that share a vertex.
 std::vector<Vector3f> SmoothNormals(const std::vector<Vector3f>& positions,
                                     const std::vector<std::array<uint32_t, 3>>& triangles) {
   std::vector<Vector3f> normals(positions.size(), Vector3f::Zero());
@@ -80,7 +80,7 @@ std::vector<Vector3f> SmoothNormals(const std::vector<Vector3f>& positions,
   return normals;
 }
 
-/// Tiles of texture per metre of a triangle.
+/// Returns the tiles of texture per metre of a triangle.
 float TilesPerMetre(const std::array<Vector3f, 3>& p, const std::array<Vector2f, 3>& uv) {
   const float area = (p[1] - p[0]).cross(p[2] - p[0]).norm();
   const Vector2f u = uv[1] - uv[0];
@@ -107,7 +107,8 @@ void AddMesh(const SourceMesh& source, const Eigen::Vector3f& colour, const Impo
   const auto uv_of = [&](uint32_t i) -> Vector2f {
     return has_uv ? source.texture_coordinates[i] : Vector2f::Zero();
   };
-  // Texture keeps a texel's place in 32 bits: count tiles from those of the first vertex.
+  // Texture stores a texel's position in 32 bits, so tiles are counted from those of the first
+  // vertex.
   Vector2f whole_tiles = Vector2f::Zero();
   if (!positions.empty()) whole_tiles = uv_of(0).array().floor();
   const auto first = static_cast<uint32_t>(mesh->vertices.size());
@@ -150,7 +151,7 @@ Scenery MakeScenery(const SourceScene& source, const std::filesystem::path& fold
                     const ImportOptions& options, std::vector<std::string>* missing) {
   std::vector<std::filesystem::path> folders = {folder};
   folders.insert(folders.end(), options.texture_folders.begin(), options.texture_folders.end());
-  // Beside tracks/CATEGORY/NAME, the folder of a circuit of TORCS.
+  // This folder of a TORCS circuit lies beside tracks/CATEGORY/NAME.
   folders.push_back(std::filesystem::absolute(folder) / "../../../data/textures");
   Scenery scenery;
   AddMaterials(source, folders, missing, &scenery.palette);

@@ -17,14 +17,15 @@ struct ImportOptions {
   std::vector<std::filesystem::path> texture_folders = {};  ///< to look in besides the file's own
 };
 
-/// Reads a file of meshes: AC3D with an own reader, all else with Assimp. Throws UserError.
+/// Reads a file of meshes: AC3D with its own reader, all other formats with Assimp. Throws
+/// UserError.
 SourceScene ReadMeshFile(const std::filesystem::path& path);
 
-/// The meshes as a scenery, z up, in metres. Textures (PNG, JPEG, SGI and what else OpenCV reads)
-/// are looked for in `folder`, in the options' folders, and where circuits of TORCS keep what they
-/// share, by the path that the file gives and by the name alone; where one is transparent the
-/// surface is absent. Grey stands for those that cannot be read, which `missing` names, each once,
-/// with the reason.
+/// Converts the meshes to a scenery, z up, in metres. Textures (PNG, JPEG, SGI and other formats
+/// that OpenCV reads) are searched in `folder`, in the options' folders, and where circuits of
+/// TORCS keep shared ones, by the path that the file gives and by the name only. A surface is
+/// absent where its texture is transparent. Textures that cannot be read are replaced by grey;
+/// `missing` names each of them once, with the reason.
 Scenery MakeScenery(const SourceScene& source, const std::filesystem::path& folder,
                     const ImportOptions& options, std::vector<std::string>* missing);
 

@@ -15,7 +15,7 @@ namespace {
 constexpr size_t kHeaderSize = 512;
 constexpr size_t kLargestSide = 16384;  // pixels; a damaged size must not take all memory
 
-/// A file's bytes; numbers are big-endian. Reading beyond the end throws.
+/// The bytes of a file; numbers are big-endian. Reading beyond the end throws.
 class Bytes {
  public:
   explicit Bytes(const std::filesystem::path& path) : name_(path.string()) {
@@ -43,8 +43,9 @@ class Bytes {
   std::vector<char> bytes_;
 };
 
-/// One row of one channel from its runs: a byte with a count in its lower seven bits, then so many
-/// bytes to copy (highest bit set) or one to repeat; a count of 0 ends the row.
+/// Decodes one row of one channel from its runs: a byte with a count in its lower seven bits,
+/// followed by that many bytes to copy (highest bit set) or by one to repeat. A count of 0 ends the
+/// row.
 void DecodeRow(const Bytes& file, size_t offset, size_t length, std::span<uint8_t> row) {
   const std::span<const uint8_t> packed = file.From(offset, length);
   size_t in = 0;
@@ -77,7 +78,8 @@ cv::Mat4b ReadSgiImage(const std::filesystem::path& path) {
       channels > 4)
     file.Refuse("has a size or a number of channels that is not read");
 
-  // The bytes that the rows, or the tables of where they are, must have: before memory is taken.
+  // Checks that the file contains the rows, or the tables of their positions, before memory is
+  // allocated.
   file.From(kHeaderSize, channels * height * (is_packed ? 8 : width));
   std::vector<std::vector<uint8_t>> planes(channels, std::vector<uint8_t>(width * height));
   for (size_t channel = 0; channel < channels; ++channel) {
@@ -85,7 +87,7 @@ cv::Mat4b ReadSgiImage(const std::filesystem::path& path) {
       const size_t index = channel * height + y;
       const std::span<uint8_t> row(planes[channel].data() + y * width, width);
       if (is_packed) {
-        // Tables of where the rows begin, then of how long they are.
+        // The tables contain the offsets of the rows, then their lengths.
         DecodeRow(file, file.Number(kHeaderSize + 4 * index, 4),
                   file.Number(kHeaderSize + 4 * (channels * height + index), 4), row);
       } else {
@@ -101,7 +103,7 @@ cv::Mat4b ReadSgiImage(const std::filesystem::path& path) {
   for (size_t y = 0; y < height; ++y) {
     for (size_t x = 0; x < width; ++x) {
       const size_t i = y * width + x;
-      // The first row is the lowest.
+      // The first row is the lowest one.
       image(static_cast<int>(height - 1 - y), static_cast<int>(x)) = {
           planes[blue][i], planes[green][i], planes[0][i],
           has_alpha ? planes[channels - 1][i] : uint8_t{255}};

@@ -10,7 +10,7 @@
 
 namespace orb360::town {
 
-/// What a file of meshes says of a surface.
+/// The description of a surface in a file of meshes.
 struct SourceMaterial {
   Eigen::Vector3f colour = Eigen::Vector3f::Ones();  ///< linear factor on the texture
   std::string texture;     ///< file, relative to the mesh's folder; empty for none
@@ -24,7 +24,7 @@ struct SourceMesh {
   size_t material = 0;
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;  ///< unit, one for each position, or none
-  /// One for each position, or none; v upward, in tiles.
+  /// One entry per position, or none; v points upward, in tiles.
   std::vector<Eigen::Vector2f> texture_coordinates;
   std::vector<Eigen::Vector3f> colours;  ///< linear factors, one for each position, or none
   std::vector<std::array<uint32_t, 3>> triangles;

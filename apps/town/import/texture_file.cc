@@ -34,7 +34,7 @@ cv::Mat4b ToBgra(cv::Mat image, const std::string& name) {
   return result;
 }
 
-/// Linear red, green and blue, and coverage.
+/// Returns linear red, green and blue, and coverage.
 cv::Mat4f ToLinear(const cv::Mat4b& bgra) {
   std::array<float, 256> linear;
   for (int i = 0; i < 256; ++i) linear[static_cast<size_t>(i)] = Srgb(i, i, i).r;
@@ -48,7 +48,7 @@ cv::Mat4f ToLinear(const cv::Mat4b& bgra) {
   return result;
 }
 
-/// Gives what is not there the mean colour of what is there around it, or in the whole image.
+/// Gives uncovered pixels the mean colour of the covered ones around them, or of the whole image.
 void FillHoles(cv::Mat4f* image) {
   cv::Mat4f weighted(image->size());
   for (int y = 0; y < image->rows; ++y) {

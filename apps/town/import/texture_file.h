@@ -14,16 +14,17 @@ struct ImageTexture {
   bool has_holes;  ///< the coverage is below one half somewhere
 };
 
-/// From an 8 or 16-bit image as OpenCV reads it (grey, BGR or BGRA in sRGB, first row at the top).
-/// Sides become powers of two, at most 4096. What lies in a hole takes the colour of what is around
-/// it, so that no fringe of the hidden colour shows. Throws UserError, beginning with `name`, for
-/// other kinds of image.
+/// Converts an 8 or 16-bit image as OpenCV reads it (gray, BGR or BGRA in sRGB, first row at the
+/// top). Sides become powers of two, at most 4096. Pixels in a hole take the colour of their
+/// surroundings, so that no fringe of the hidden colour appears. Throws UserError, whose message
+/// begins with `name`, for other kinds of image.
 ImageTexture MakeTexture(const cv::Mat& image, const std::string& name);
 
-/// Reads a PNG, JPEG, SGI (.rgb, .rgba, .sgi, .bw) or what else OpenCV knows. Throws UserError.
+/// Reads PNG, JPEG, SGI (.rgb, .rgba, .sgi, .bw) or another format that OpenCV knows. Throws
+/// UserError.
 ImageTexture ReadTexture(const std::filesystem::path& path);
 
-/// ".png" for "A/B.PNG".
+/// Returns ".png" for "A/B.PNG".
 std::string LowerExtension(const std::filesystem::path& path);
 
 }  // namespace orb360::town

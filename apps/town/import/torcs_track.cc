@@ -12,8 +12,8 @@ namespace {
 
 using Line = std::vector<Eigen::Vector3f>;
 
-/// Metres between the ends of pieces that join, and between points of the result. Some circuits
-/// have a piece of a metre at the starting line.
+/// Largest distance between the ends of pieces that join, and between points of the result, metres.
+/// Some circuits have a piece of a metre at the starting line.
 constexpr float kJoint = 2;
 
 struct Piece {
@@ -27,7 +27,7 @@ std::optional<int> PieceNumber(std::string_view name) {
   return ParseNumber<int>(name.substr(kPrefix.size()));
 }
 
-/// Middles of the pairs of vertices.
+/// Returns the middles of the pairs of vertices.
 Line Middles(const SourceMesh& mesh) {
   Line middles;
   for (size_t i = 0; i + 1 < mesh.positions.size(); i += 2)
@@ -35,7 +35,8 @@ Line Middles(const SourceMesh& mesh) {
   return middles;
 }
 
-/// Takes the piece that begins or ends nearest to `end`, turned to begin there; none within kJoint.
+/// Removes the piece that begins or ends nearest to `end`, reversed if necessary to begin there.
+/// Returns nullopt if none is within kJoint.
 std::optional<Piece> TakeNext(const Eigen::Vector3f& end, std::vector<Piece>* pieces) {
   float nearest = kJoint;
   auto best = pieces->end();

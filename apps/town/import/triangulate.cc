@@ -17,7 +17,7 @@ double Area(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// The corners in the polygon's plane, in which it turns counter-clockwise.
+/// Returns the corners in the polygon's plane, in which it turns counter-clockwise.
 std::vector<Vector2d> Flatten(std::span<const Eigen::Vector3f> corners) {
   const Vector3d origin = corners[0].cast<double>();
   Vector3d normal = Vector3d::Zero();  // Newell's: of any polygon, flat or not

@@ -9,7 +9,7 @@
 
 namespace orb360::town {
 
-/// What the rays through the pixels' centres meet.
+/// The surfaces that the rays through the pixels' centres meet.
 struct GeometryImage {
   cv::Mat1f range;   ///< metres along the ray, 0 where it meets nothing
   cv::Mat1w object;  ///< FrameScene::ObjectId
@@ -17,8 +17,8 @@ struct GeometryImage {
 GeometryImage RenderGeometry(const FrameScene& scene, const EquirectangularCamera& camera,
                              const Rigid3& world_from_camera);
 
-/// As above by the six faces of a cube, `size` pixels wide and high: metres along each face's
-/// optical axis, 0 where nothing is met.
+/// The same for the six faces of a cube, `size` pixels wide and high: metres along each face's
+/// optical axis, 0 where nothing is hit.
 CubeImages<float> RenderCubeDepth(const FrameScene& scene, int size,
                                   const Rigid3& world_from_camera);
 

@@ -13,8 +13,8 @@ namespace {
 constexpr int kDirections = 2 * kPacket;
 constexpr float kFar = 120;  // metres; what is farther away takes next to nothing of the sky
 
-/// Directions over the hemisphere about +z, dense in proportion to the cosine (a Fibonacci
-/// spiral on the disc, lifted).
+/// Directions over the hemisphere about +z with a density proportional to the cosine (a Fibonacci
+/// spiral on the disc, projected upward).
 std::array<Vector3f, kDirections> CosineDirections() {
   std::array<Vector3f, kDirections> directions;
   for (size_t i = 0; i < directions.size(); ++i) {
@@ -26,7 +26,7 @@ std::array<Vector3f, kDirections> CosineDirections() {
   return directions;
 }
 
-/// Share of the directions about `normal` in which `occluded` finds nothing.
+/// Returns the fraction of the directions about `normal` in which `occluded` finds nothing.
 template <typename Occluded>
 float Openness(const Vector3f& point, const Vector3f& normal, const Occluded& occluded) {
   static const std::array<Vector3f, kDirections> kPattern = CosineDirections();
@@ -47,8 +47,8 @@ float Openness(const Vector3f& point, const Vector3f& normal, const Occluded& oc
   return static_cast<float>(open) / kDirections;
 }
 
-/// Where a vertex looks from: a little off the surface and towards the inside of a triangle, so
-/// that it does not stand in the wall next to it.
+/// Returns the point from which a vertex looks: slightly off the surface and towards the inside of
+/// a triangle, so that it does not lie in the wall next to it.
 std::vector<Vector3f> LookoutPoints(const Mesh& mesh) {
   std::vector<Vector3f> points = mesh.positions;
   for (const Triangle& triangle : mesh.triangles) {
@@ -69,7 +69,8 @@ std::vector<Vector3f> LookoutPoints(const Mesh& mesh) {
 template <typename Occluded>
 void BakeMesh(const Occluded& occluded, Mesh* mesh) {
   const std::vector<Vector3f> points = LookoutPoints(*mesh);
-  // Neighbouring faces repeat their corners: look once for each place, to a quarter of a metre.
+  // Neighbouring faces repeat their corners, so each place is examined once, to a quarter of a
+  // metre.
   using Key = std::array<int, 6>;
   const auto key = [&](uint32_t i) -> Key {
     const Eigen::Vector3i place = (points[i] * 4).array().round().cast<int>();
@@ -115,7 +116,7 @@ void BakeOpenness(const RayScene& scene, Scenery* scenery) {
 #pragma omp parallel for schedule(dynamic, 16)
   for (size_t i = 0; i < scenery->instances.size(); ++i) {
     Instance& instance = scenery->instances[i];
-    // From above the thing itself, so that it does not shade itself twice.
+    // The point is above the instance itself, so that it does not shade itself twice.
     const Vector3f top = instance.world_from_model.translation() + Vector3f(0, 0, instance.lookout);
     instance.openness = Openness(top, Vector3f::UnitZ(), [&](const int* valid, RTCRay16* rays) {
       scene.Occluded(valid, rays, Coherence::kSpread);

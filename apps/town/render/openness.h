@@ -5,10 +5,10 @@
 
 namespace orb360::town {
 
-/// Finds for every vertex of a scenery how much of the sky it sees (Vertex::openness): rays over
-/// the hemisphere above the surface, weighted by the cosine (ambient occlusion). Vertices of
-/// models see their own model standing on level ground; each instance is then dimmed as a whole by
-/// what it sees from its place. `scene` must be made from `scenery`.
+/// Computes for every vertex of a scenery the fraction of the sky that it sees (Vertex::openness):
+/// rays over the hemisphere above the surface, weighted by the cosine (ambient occlusion). Vertices
+/// of models see their own model on level ground; each instance is then dimmed as a whole by what
+/// it sees from its place. `scene` must be made from `scenery`.
 void BakeOpenness(const RayScene& scene, Scenery* scenery);
 
 }  // namespace orb360::town

@@ -23,8 +23,8 @@ void RayDirections::AddSample(const std::function<Eigen::Vector3d(int)>& column,
 RayDirections RayDirections::OfPanorama(const EquirectangularCamera& camera,
                                         const Eigen::Quaterniond& world_from_camera,
                                         Pattern pattern) {
-  // A bearing is cos(latitude) times the one at its longitude on the horizon, plus
-  // sin(latitude) times the upward axis; that holds beyond the poles as well.
+  // A bearing is cos(latitude) times the bearing at its longitude on the horizon, plus
+  // sin(latitude) times the upward axis. This also holds beyond the poles.
   RayDirections rays(camera.width(), camera.height(), false);
   rays.upward_ = (world_from_camera * Eigen::Vector3d::UnitZ()).cast<float>();
   for (const auto& [x, y] : pattern) {

@@ -12,28 +12,28 @@
 
 namespace orb360::town {
 
-/// The rays through the pixels of a picture, several to a pixel: their directions are built from a
+/// The rays through the pixels of an image, several per pixel. Their directions are computed from a
 /// table over the columns and one over the rows.
 class RayDirections {
  public:
-  /// Positions in a pixel, [0, 1) from its left and upper side.
+  /// Positions in a pixel, in [0, 1) from its left and upper side.
   using Pattern = std::span<const std::array<double, 2>>;
 
   static RayDirections OfPanorama(const EquirectangularCamera& camera,
                                   const Eigen::Quaterniond& world_from_camera, Pattern pattern);
-  /// A square picture with a field of view of 90 degrees; its camera looks along -x, y to the
-  /// right, z up.
+  /// A square image with a field of view of 90 degrees; its camera looks along -x, with y to the
+  /// right and z up.
   static RayDirections OfCubeFace(int size, const Eigen::Quaterniond& world_from_face,
                                   Pattern pattern);
 
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// Pixels along the side of the squares that packets of rays are made of.
+  /// Side, in pixels, of the squares of which packets of rays consist.
   static constexpr int kSquare = 4;
 
-  /// The unit direction through a sample of a pixel, which may also lie up to kSquare columns right
-  /// of the picture, in the row above it, or up to kSquare rows below.
+  /// Returns the unit direction through a sample of a pixel, which may also lie up to kSquare
+  /// columns to the right of the image, in the row above it, or up to kSquare rows below it.
   Vector3f At(int column, int row, size_t sample) const {
     const Row& weights = rows_[sample][static_cast<size_t>(row + 1)];
     const auto i = static_cast<size_t>(column);
@@ -43,8 +43,8 @@ class RayDirections {
     return normalizes_ ? direction.normalized() : direction;
   }
 
-  /// Those through one sample of each pixel of a square, row by row; it may reach as far beyond the
-  /// picture.
+  /// Returns the directions through one sample of each pixel of a square, row by row. The square
+  /// may extend beyond the image by as much.
   void OfSquare(int left, int top, size_t sample, Lanes3* directions) const;
 
  private:

@@ -9,12 +9,12 @@ namespace orb360::town {
 
 inline constexpr float kFar = 3000.0F;  ///< metres; rays end there
 
-/// Rays from one eye, and what they meet.
+/// Rays from one eye, and the surfaces that they meet.
 class EyePacket {
  public:
   EyePacket();
 
-  /// Traces rays into unit directions.
+  /// Traces rays in unit directions.
   void Trace(const FrameScene& scene, const Vector3f& eye, const Lanes3& directions);
 
   bool Hits(int lane) const { return rays_.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID; }
@@ -44,7 +44,7 @@ class ShadowPacket {
   void Trace(const FrameScene& scene) {
     if (any_) scene.Occluded(valid_.data(), &rays_);
   }
-  /// Whether a ray was set in a lane and met nothing.
+  /// Returns true if a ray was set in a lane and hit nothing.
   bool IsLit(int lane) const {
     return valid_[static_cast<size_t>(lane)] != 0 && rays_.tfar[lane] >= 0;
   }

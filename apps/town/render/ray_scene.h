@@ -12,7 +12,7 @@
 
 namespace orb360::town {
 
-/// Whether the rays of a packet keep together (from one eye, towards the sun) or spread out.
+/// Whether the rays of a packet stay together (from one eye, or towards the sun) or diverge.
 enum class Coherence { kTogether, kSpread };
 
 /// Number of rays traced together.
@@ -35,7 +35,7 @@ inline void SetRay(RTCRay16& rays, int lane, const Vector3f& origin, const Vecto
   rays.flags[lane] = 0;
 }
 
-/// A handle of Embree's, released with its owner.
+/// A handle of Embree that is released with its owner.
 template <typename T, void (*Release)(T)>
 class EmbreeHandle {
  public:
@@ -64,34 +64,34 @@ struct SurfaceHit {
   const Triangle* triangle;
 };
 
-/// A scenery as ray-tracing structures: what stands still as one plain scene, which Embree
-/// traverses by the packet (through instances it goes ray by ray, twice as slowly), and a scene for
-/// each model, for instances that move. Keeps pointers to what it was made from. Building uses one
+/// A scenery as ray-tracing structures. What stands still is one plain scene, which Embree
+/// traverses by the packet (through instances it traverses ray by ray, half as fast). Each model
+/// has a scene of its own, for instances that move. Keeps pointers to its input. Building uses one
 /// thread, so that the structure (and the order in which surfaces at equal distances are found) is
 /// always the same.
 class RayScene {
  public:
   explicit RayScene(const Scenery& scenery);
 
-  /// Nearest hits of a packet; lanes with valid[i] == 0 are left alone.
+  /// Finds the nearest hits of a packet; lanes with valid[i] == 0 are not changed.
   void Intersect(const int* valid, RTCRayHit16* rays) const;
-  /// tfar becomes -infinity in the lanes whose ray meets anything.
+  /// Sets tfar to -infinity in the lanes whose ray hits anything.
   void Occluded(const int* valid, RTCRay16* rays, Coherence coherence = Coherence::kTogether) const;
-  /// As Occluded, for spread rays in a model's own frame and with the model alone.
+  /// As Occluded, for diverging rays in a model's own frame and with that model only.
   void OccludedByModel(uint32_t model, const int* valid, RTCRay16* rays) const;
 
  private:
   friend class FrameScene;
 
-  /// A triangle that is there only where its texture is: texture coordinates of the first corner,
-  /// and the ways from there to the second and the third.
+  /// A triangle that exists only where its texture does: the texture coordinates of the first
+  /// corner, and the differences from there to the second and the third.
   struct Cutout {
     Vector2f uv;
     Vector2f to_second;
     Vector2f to_third;
     const Texture* texture;
   };
-  /// A mesh that stands somewhere. Its opaque part and its part with cut-outs are two geometries.
+  /// A mesh at a place. Its opaque part and its part with cut-outs are two geometries.
   struct Placed {
     const Mesh* mesh;
     const Instance* instance;  // null for the fixed mesh, and for models in their own frame
@@ -100,7 +100,7 @@ class RayScene {
   Scene NewScene(RTCBuildQuality quality) const;
   /// Attaches the two parts as geometries 2 * index and 2 * index + 1.
   void Attach(RTCScene scene, size_t index, const Placed& placed) const;
-  /// A committed scene of instances.
+  /// Returns a committed scene of instances.
   Scene MakeInstanceScene(std::span<const Instance> instances) const;
   static void RejectCutouts(const RTCFilterFunctionNArguments* arguments);
 
@@ -112,25 +112,26 @@ class RayScene {
   Scene fixed_scene_;
 };
 
-/// The scenery together with what moves through it at one moment. The RayScene must outlive it.
+/// The scenery together with the objects that move through it at one moment. The RayScene must
+/// outlive it.
 class FrameScene {
  public:
   FrameScene(const RayScene& fixed, std::vector<Instance> moving);
 
-  /// As RayScene's.
+  /// See RayScene::Intersect.
   void Intersect(const int* valid, RTCRayHit16* rays) const;
   void Occluded(const int* valid, RTCRay16* rays) const;
 
-  /// The surface in one lane of a packet which hit (geomID is not invalid).
+  /// Returns the surface in one lane of a packet that has a hit (geomID is not invalid).
   SurfaceHit Resolve(const RTCHit16& hit, int lane) const;
-  /// Its normal in the world, of any length.
+  /// Returns its normal in the world, of any length.
   Vector3f GeometricNormal(const RTCHit16& hit, int lane) const;
 
-  /// Numbers for masks: nothing, the fixed mesh, then the scenery's instances, then what moves.
+  /// Numbers for masks: nothing, the fixed mesh, the scenery's instances, then the moving objects.
   static constexpr uint16_t kNothing = 0;
   static constexpr uint16_t kFixed = 1;
   uint16_t ObjectId(const RTCHit16& hit, int lane) const;
-  /// The first number of a moving object.
+  /// Returns the first number of a moving object.
   uint16_t first_moving_id() const;
 
  private:

@@ -9,7 +9,7 @@
 namespace orb360::town {
 namespace {
 
-/// A picture made of the pixels that `encode` makes of radiance.
+/// Builds an image of the pixels that `encode` makes of radiance.
 template <typename Encode>
 auto Picture(const FrameScene& scene, const Shader& shader, const RayDirections& directions,
              const Vector3f& eye, double pixel_angle, Sampling sampling, const Encode& encode) {

@@ -11,18 +11,18 @@
 
 namespace orb360::town {
 
-/// The panorama from a pose, 8-bit BGR. The same bytes for any number of threads (OpenMP's current
-/// maximum).
+/// Renders the panorama from a pose, 8-bit BGR. The bytes are the same for any number of threads
+/// (OpenMP's current maximum).
 cv::Mat3b RenderColour(const FrameScene& scene, const Shader& shader,
                        const EquirectangularCamera& camera, const Rigid3& world_from_camera,
                        Sampling sampling = Sampling::kAdaptive);
 
-/// The same before the tone curve: linear radiance, blue, green, red.
+/// Renders the same before the tone curve: linear radiance, blue, green, red.
 cv::Mat3f RenderRadiance(const FrameScene& scene, const Shader& shader,
                          const EquirectangularCamera& camera, const Rigid3& world_from_camera,
                          Sampling sampling = Sampling::kAdaptive);
 
-/// As above by the six faces of a cube, `size` pixels wide and high.
+/// Renders the same for the six faces of a cube, `size` pixels wide and high.
 CubeImages<cv::Vec3b> RenderCubeColour(const FrameScene& scene, const Shader& shader, int size,
                                        const Rigid3& world_from_camera,
                                        Sampling sampling = Sampling::kAdaptive);

@@ -10,10 +10,10 @@
 
 namespace orb360::town {
 
-/// Keeps one bright sample from outshining a pixel.
+/// Upper limit that keeps one bright sample from dominating a pixel.
 inline constexpr float kMaximumRadiance = 5.0F;
 
-/// Turns hits into light.
+/// Computes the light from hits.
 class Shader {
  public:
   Shader(const Palette& palette, const Light& light, const Sky& sky);
@@ -21,9 +21,10 @@ class Shader {
   const Light& light() const { return *light_; }
   const Sky& sky() const { return *sky_; }
 
-  /// Light from where the rays of a packet end, as the mean of `samples` (1 to kMaximumSamples):
-  /// the first are the rays themselves, the others lie on the plane through the triangle that a ray
-  /// meets. One sample is `sample_angle` wide, in radians. `met` is room to work in.
+  /// Returns the light from where the rays of a packet end, as the mean of `samples` (1 to
+  /// kMaximumSamples). The first ones are the rays themselves; the others lie on the plane through
+  /// the triangle that a ray hits. One sample is `sample_angle` wide, in radians. `met` is working
+  /// memory.
   void Shade(const FrameScene& scene, const EyePacket& rays, std::span<const SampleLanes> samples,
              float sample_angle, SurfaceLanes* met, SightLanes* sight) const;
 

@@ -19,7 +19,7 @@ constexpr auto kGlass = static_cast<int32_t>(Finish::kGlass);
 constexpr auto kPaint = static_cast<int32_t>(Finish::kPaint);
 constexpr auto kLamp = static_cast<int32_t>(Finish::kLamp);
 
-/// What is interpolated over a triangle, at one of its corners.
+/// The values that are interpolated over a triangle, at one of its corners.
 struct Corner {
   V u;
   V v;
@@ -61,7 +61,7 @@ HWY_INLINE V3 LoadPosition(const std::array<float, 4>* positions) {
   return {x, y, z};
 }
 
-/// log2(x) for positive x, within 0.09: enough to choose a mip level.
+/// log2(x) for positive x, within 0.09, which is sufficient to choose a mip level.
 HWY_INLINE V FastLog2(V x) {
   return hn::MulAdd(hn::ConvertTo(D(), hn::BitCast(DI(), x)), Constant(0x1p-23F), Constant(-127));
 }
@@ -123,7 +123,8 @@ void DescribeKernel(const SurfaceLanes& met, std::span<const SampleLanes> sample
     hn::Store(hn::IfThenElse(is_leaf, through_leaf, hn::Max(sun_cosine, Constant(0))), d,
               sight->sun_cosine.data() + i);
 
-    // A tilted surface stretches the footprint one way by 1/cos: the geometric mean of both ways.
+    // A tilted surface stretches the footprint in one direction by 1/cos; the geometric mean of
+    // both directions is used.
     const V footprint =
         hn::Div(hn::Mul(range, Constant(sample_angle)), hn::Sqrt(hn::Max(cosine, Constant(0.04F))));
     const V level = FastLog2(
@@ -166,7 +167,7 @@ void DescribeKernel(const SurfaceLanes& met, std::span<const SampleLanes> sample
     for (size_t sample = 1; sample < samples.size(); ++sample) {
       const V3 towards = Load3(samples[sample].direction, i);
       const V on_plane = hn::Div(height, Dot(plane, towards));
-      // A curved surface's plane may be met elsewhere, or nowhere.
+      // The plane of a curved surface may be met elsewhere, or nowhere.
       const auto is_near = hn::And(hn::Gt(on_plane, hn::Mul(range, Constant(0.5F))),
                                    hn::Lt(on_plane, hn::Mul(range, Constant(2))));
       const V3 step = hn::IfThenElse(is_near, on_plane, range) * towards - way;

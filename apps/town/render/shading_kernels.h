@@ -12,10 +12,10 @@ namespace orb360::town {
 
 inline constexpr size_t kMaximumSamples = 4;  ///< of a pixel
 
-/// A sample of a pixel in each lane.
+/// One sample of a pixel per lane.
 struct SampleLanes {
   Lanes3 direction;  ///< unit
-  /// In [0, 1): spread evenly over a pixel's samples, they blend two mip levels.
+  /// In [0, 1). Distributed evenly over a pixel's samples, the offsets blend two mip levels.
   Lanes level_offset;
 };
 
@@ -30,7 +30,8 @@ struct SightLanes {
   Lanes3 sun;                            ///< radiance that the sun adds; 0 for the sky
 };
 
-/// Surfaces with what is the same all over a pixel, and the places of its samples on them.
+/// Surfaces with the properties that are constant over a pixel, and the positions of the pixel's
+/// samples on them.
 struct DescribedLanes {
   struct Place {
     Lanes u;
@@ -46,14 +47,15 @@ struct DescribedLanes {
   Lanes3 mirrored;  ///< where a mirror would show
 };
 
-/// Describes what is met: fills `described`, and of `sight` all but the light. The first of the
-/// samples are the rays themselves, the others lie on the planes of the triangles that those meet;
-/// one is `sample_angle` wide, in radians. `blotch_side`: texels along the texture of the blotches.
+/// Describes the surfaces that are hit: fills `described`, and all of `sight` except the light. The
+/// first samples are the rays themselves; the others lie on the planes of the triangles that the
+/// rays hit. One sample is `sample_angle` wide, in radians. `blotch_side` is the side of the
+/// texture of the blotches, in texels.
 void Describe(const SurfaceLanes& met, std::span<const SampleLanes> samples, float sample_angle,
               const Light& light, float blotch_side, DescribedLanes* described, SightLanes* sight);
 
-/// Fills the light of `sight`. `albedo` and `blotches` are textures' colours, `reflected` the
-/// radiance that mirrors show.
+/// Computes the light of `sight`. `albedo` and `blotches` are colours of textures; `reflected` is
+/// the radiance that mirrors show.
 void Illuminate(const SurfaceLanes& met, const DescribedLanes& described, const Lanes3& albedo,
                 const Lanes3& blotches, const Lanes3& reflected, const Light& light,
                 const Vector3f& sky_mean, SightLanes* sight);

@@ -15,7 +15,7 @@ constexpr int kSize = 1024;            // texels along a side of the map: 0.1 to
 constexpr float kSunRadius = 0.0047F;  // radians
 constexpr float kPi = std::numbers::pi_v<float>;
 
-/// Direction of a point of the map, (x, y) in [-1, 1]²: the hemisphere's octahedron seen from
+/// Direction of a point of the map, (x, y) in [-1, 1]²: the octahedron of the hemisphere seen from
 /// above, turned by 45 degrees to fill the square.
 Vector3f DirectionOf(float x, float y) {
   const float px = 0.5F * (x + y);
@@ -107,7 +107,7 @@ Vector3f Sky::Compute(const Vector3f& direction, const Light& light, uint32_t se
     colour += sun_colour * (0.45F * std::exp(-angle * 3.0F) + 0.9F * std::exp(-angle * 14.0F) +
                             4.0F * std::exp(-angle * 70.0F));
   }
-  // Clouds on a curved layer above: noise over the point where the ray meets it.
+  // Clouds lie on a curved layer: noise at the point where the ray meets it.
   const float distance = 1 / (height + 0.12F);
   const float x = 0.075F * direction.x() * distance + 0.5F;
   const float y = 0.075F * direction.y() * distance + 0.5F;
@@ -118,7 +118,7 @@ Vector3f Sky::Compute(const Vector3f& direction, const Light& light, uint32_t se
   };
   const float thickness = thickness_at(x, y, 8);
   const float density = SmoothStep(0.0F, 0.45F, thickness);
-  // Bright where the layer thins out towards the sun, grey where it is thick.
+  // Clouds are bright where the layer becomes thinner towards the sun, and grey where it is thick.
   const float ahead = thickness_at(x + 0.02F * light.to_sun.x(), y + 0.02F * light.to_sun.y(), 5);
   const float lit = std::clamp(1.02F - 0.32F * SmoothStep(0.1F, 1.3F, thickness) +
                                    0.45F * std::clamp(thickness - ahead, -0.8F, 0.8F),

@@ -13,7 +13,7 @@ namespace orb360::town {
 /// A scenery under a sky, ready to be rendered.
 class Stage {
  public:
-  /// Keeps a pointer to the scenery and bakes its openness, which takes seconds. The clouds are
+  /// Keeps a pointer to the scenery and computes its openness, which takes seconds. The clouds are
   /// drawn from the seed.
   Stage(Scenery* scenery, const Light& light, uint64_t seed);
   Stage(const Stage&) = delete;

@@ -12,8 +12,8 @@ namespace orb360::town {
 
 inline constexpr float kBlotchMetres = 31.0F;  ///< across which the large-scale variation repeats
 
-/// What the rays of a packet meet, gathered from meshes and materials. Lanes without a hit repeat
-/// one that has, so that all can be calculated with.
+/// The surfaces that the rays of a packet hit, gathered from meshes and materials. Lanes without a
+/// hit repeat one with a hit, so that computations are valid in all lanes.
 struct SurfaceLanes {
   Lanes b;                  ///< barycentric weights of the second corner
   Lanes c;                  ///< and of the third
@@ -22,8 +22,8 @@ struct SurfaceLanes {
 
   alignas(64) std::array<std::array<Vertex, kLanes>, 3> vertices;                 ///< by corner
   alignas(64) std::array<std::array<std::array<float, 4>, kLanes>, 3> positions;  ///< likewise
-  /// From the frame of vertices and positions to the world, by row and column; only where
-  /// `any_turned`.
+  /// Rotation from the frame of vertices and positions to the world, by row and column; valid only
+  /// if `any_turned`.
   std::array<Lanes, 9> rotation;
 
   Lanes texels_per_metre;  ///< of level 0, the geometric mean of both directions
@@ -41,7 +41,7 @@ struct SurfaceLanes {
   bool any_mirror;
 };
 
-/// Whether any ray met something; `met` is left alone otherwise.
+/// Returns whether any ray hit a surface; otherwise `met` is not changed.
 bool Gather(const FrameScene& scene, const Palette& palette, const EyePacket& rays,
             SurfaceLanes* met);
 

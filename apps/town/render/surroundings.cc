@@ -11,8 +11,8 @@ namespace {
 constexpr float kBrightest = 3.0F;  // of the mirrored sky: the sun's disc is no use in a mirror
 constexpr float kEdge = 0.03F;      // sine of elevation over which the eaves blur
 
-/// A stand-in for the azimuth without trigonometry, in [0, 4): once round the diamond
-/// |x| + |y| = 1.
+/// A substitute for the azimuth without trigonometry, in [0, 4): once round the diamond |x| + |y| =
+/// 1.
 float Turn(float x, float y) {
   const float t = y / (std::abs(x) + std::abs(y) + 1e-9F);
   return x >= 0 ? 1 + t : 3 - t;
@@ -47,7 +47,7 @@ Vector3f Surroundings::Radiance(const Vector3f& direction) const {
   const float turn = Turn(direction.x(), direction.y()) * (kColumns / 4.0F);
   const House& house = houses_[static_cast<size_t>(turn) % kColumns];
   const float sky = std::clamp((direction.z() - house.height) / kEdge, 0.0F, 1.0F);
-  // Towards the street a wall is darker: shops, cars, shade.
+  // The lower part of a wall at the street is darker, because of shops, cars and shade.
   const float lower = 0.55F + 0.45F * std::min(1.0F, direction.z() * 4);
   const Vector3f wall = lower * house.radiance;
   if (sky <= 0) return wall;

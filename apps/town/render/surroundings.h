@@ -7,14 +7,14 @@
 
 namespace orb360::town {
 
-/// What panes and car bodies mirror: the sky above a made-up row of houses all around, and the
-/// street below. It is the same wherever the mirror stands, which is not noticed, and costs a
-/// look-up instead of a ray.
+/// The surroundings that panes and car bodies mirror: the sky above an invented row of houses all
+/// around, and the street below. They are the same for every mirror, which is not noticeable, and
+/// cost a look-up in place of a ray.
 class Surroundings {
  public:
   Surroundings(const Light& light, const Sky& sky, uint64_t seed);
 
-  /// Radiance from a unit direction.
+  /// Returns the radiance from a unit direction.
   Vector3f Radiance(const Vector3f& direction) const;
 
  private:

@@ -7,7 +7,8 @@ namespace orb360::town {
 namespace {
 
 constexpr float kSunRadius = 0.0047F;  // radians
-/// Spread over a mip level, so that the mean of a pixel's samples is filtered trilinearly.
+/// Offsets distributed over a mip level, so that the mean of a pixel's samples is filtered
+/// trilinearly.
 constexpr std::array<float, kSamples> kLevelOffset = {0.125F, 0.625F, 0.875F, 0.375F};
 constexpr size_t kBatch = kPacket / kSamples;  // pixels whose samples fill a packet
 
@@ -54,7 +55,7 @@ void TileRenderer::TraceShadows(const SunOf& sun_of) {
     if (sight_.surface[i] == 0 || sight_.sun_cosine[i] <= 0) continue;
     const Vector3f way = sight_.way.At(i);
     const Vector3f normal = sight_.geometric_normal.At(i);
-    // From a little before the surface, in metres: well above the rounding of coordinates.
+    // The ray begins slightly before the surface, metres: well above the rounding of coordinates.
     const float lift = 2e-3F + 1e-5F * sight_.range[i];
     const float side = normal.dot(way) > 0 ? -lift : lift;
     shadows_.Set(static_cast<int>(i), eye_ + way + side * normal, sun_of(i));
@@ -107,9 +108,9 @@ void TileRenderer::JoinCorners() {
   constexpr float kCosine = 0.99F;  // of 8 degrees
   const Corners& c = corners_;
   const float step = 0.5F * sample_angle_;  // a quarter of a pixel
-  // Whether neighbours meet one material of one object, with normals within 8 degrees, and one lies
-  // on the other's plane: a step of a quarter of a pixel, or 5 mm, is the curvature that those
-  // normals allow.
+  // Returns true if neighbours show one material of one object, their normals differ by at most 8
+  // degrees, and one lies on the other's plane. A step of a quarter of a pixel, or 5 mm, is the
+  // curvature that those normals allow.
   const auto join = [&](size_t a, size_t b) -> uint8_t {
     const float alike = c.normal[0][a] * c.normal[0][b] + c.normal[1][a] * c.normal[1][b] +
                         c.normal[2][a] * c.normal[2][b];
@@ -125,7 +126,7 @@ void TileRenderer::JoinCorners() {
 }
 
 void TileRenderer::RenderPixels() {
-  // By small squares, so that the rays of a packet of edges keep together.
+  // Pixels are grouped by small squares, so that the rays of a packet at edges stay together.
   const int bottom = tile_.y + tile_.height;
   const int right = tile_.x + tile_.width;
   for (int top = tile_.y; top < bottom; top += kSide) {
@@ -136,7 +137,8 @@ void TileRenderer::RenderPixels() {
             edges_.emplace_back(column, row);
             continue;
           }
-          // The six first samples around the further ones: those of the rows above and below too.
+          // The six first samples around the further ones, including those of the rows above and
+          // below.
           const Corners& c = corners_;
           const size_t here = IndexOf(column, row);
           const size_t above = here - kStride;

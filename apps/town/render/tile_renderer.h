@@ -14,35 +14,38 @@
 namespace orb360::town {
 
 inline constexpr size_t kSamples = 4;  ///< of a pixel
-/// Positions of the samples in a pixel: a rotated grid, so that edges near the horizontal and
-/// the vertical take all four shades.
+/// Positions of the samples in a pixel: a rotated grid, so that edges near the horizontal and the
+/// vertical take all four shades.
 inline constexpr std::array<std::array<double, 2>, kSamples> kSamplePattern = {
     {{0.125, 0.375}, {0.375, 0.875}, {0.625, 0.125}, {0.875, 0.625}}};
 
-/// For which of a pixel's four samples rays are traced, to the surface and from there to the sun.
+/// The samples, of the four of a pixel, for which rays are traced to the surface and from there to
+/// the sun.
 enum class Sampling {
-  /// For one; for all where this one and those of the pixels around meet different surfaces, or
-  /// some of them the sun and others not. Elsewhere they lie on one plane, so that the others can
-  /// be placed by calculation: nothing is lost but what is smaller than a pixel.
+  /// One sample is traced. All four are traced where this sample and those of the neighbouring
+  /// pixels meet different surfaces, or where some of them see the sun and others do not. Elsewhere
+  /// they lie on one plane, so that the positions of the others can be computed; only details
+  /// smaller than a pixel are lost.
   kAdaptive,
   kFull,  ///< for all
 };
 
-/// Renders a picture piece by piece.
+/// Renders an image tile by tile.
 class TileRenderer {
  public:
-  /// Pixels of a tile, so that with the samples around it it is a whole number of packets.
+  /// Size of a tile, pixels. With the samples around it, it is a whole number of packets.
   static constexpr int kWidth = 63;
   static constexpr int kHeight = 30;
 
-  /// `directions` are those of kSamplePattern, `sample_angle` what one sample is wide, in radians.
+  /// `directions` are those of kSamplePattern; `sample_angle` is the width of one sample, in
+  /// radians.
   TileRenderer(const FrameScene& scene, const Shader& shader, const RayDirections& directions,
                const Vector3f& eye, float sample_angle, Sampling sampling);
 
-  /// Renders the pixels of a rectangle of at most kWidth x kHeight. What it gives depends on the
-  /// rectangle alone.
+  /// Renders the pixels of a rectangle of at most kWidth x kHeight. The result depends on the
+  /// rectangle only.
   void Render(const cv::Rect& tile);
-  /// Radiance of a pixel of the picture that lies in the last tile.
+  /// Returns the radiance of a pixel of the image that lies in the last tile.
   const Vector3f& At(int column, int row) const { return pixels_[IndexOf(column, row)]; }
 
  private:
@@ -50,10 +53,10 @@ class TileRenderer {
   static constexpr size_t kPixels = kStride * (kHeight + 2);
   static constexpr int kSide = RayDirections::kSquare;
 
-  /// A number of each pixel of the tile, of the column to its right and of the rows above and
-  /// below, by IndexOf.
+  /// One number for each pixel of the tile, of the column to its right and of the rows above and
+  /// below, indexed by IndexOf.
   using Plane = std::array<float, kPixels>;
-  /// What the first sample of a pixel tells.
+  /// The data of the first sample of a pixel.
   struct Corners {
     std::array<uint32_t, kPixels> surface;
     Plane range;
@@ -69,12 +72,13 @@ class TileRenderer {
   size_t IndexOf(int column, int row) const {
     return static_cast<size_t>(row - tile_.y + 1) * kStride + static_cast<size_t>(column - tile_.x);
   }
-  /// The point of the sun's disc that a sample looks at: each pixel's samples take turns, so that
-  /// the first samples of neighbours together see whether a part of the disc is hidden.
+  /// Returns the point of the sun's disc at which a sample looks. The points are permuted from
+  /// pixel to pixel, so that the first samples of neighbours together reveal whether a part of the
+  /// disc is hidden.
   const Vector3f& ToSun(int column, int row, size_t sample) const {
     return to_sun_[(sample + static_cast<size_t>(column + 2 * row + 2)) % kSamples];
   }
-  /// Traces a ray to a point of the sun, `sun_of(lane)`, from each surface that is seen.
+  /// Traces a ray to a point of the sun, `sun_of(lane)`, from each visible surface.
   template <typename SunOf>
   void TraceShadows(const SunOf& sun_of);
   void TraceCorners();

@@ -10,7 +10,7 @@
 
 namespace orb360::town {
 
-/// From radiance to 8-bit sRGB: a filmic curve (Hable's form fitted by Narkowicz 2015, with a
+/// Converts radiance to 8-bit sRGB: a filmic curve (Hable's form fitted by Narkowicz 2015, with a
 /// longer toe so that shade keeps its detail), then the sRGB transfer function.
 class ToneCurve {
  public:
@@ -25,7 +25,7 @@ class ToneCurve {
       table_[i] = static_cast<uint8_t>(std::lround(255 * srgb));
     }
   }
-  /// Blue, green, red from linear red, green, blue.
+  /// Returns blue, green, red from linear red, green, blue.
   cv::Vec3b Encode(const Eigen::Vector3f& radiance) const {
     return {Encode(radiance.z()), Encode(radiance.y()), Encode(radiance.x())};
   }

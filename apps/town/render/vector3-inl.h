@@ -1,4 +1,4 @@
-// Per-target include guard: foreach_target includes this once for each instruction set.
+// Per-target include guard: foreach_target includes this file once for each instruction set.
 #if defined(ORB360_TOWN_RENDER_VECTOR3_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ORB360_TOWN_RENDER_VECTOR3_INL_H_
 #undef ORB360_TOWN_RENDER_VECTOR3_INL_H_
@@ -11,7 +11,7 @@
 #include "apps/town/image/lanes.h"
 #include "apps/town/world/mesh.h"
 
-// Vectors in space, one in each lane.
+// Three-dimensional vectors, one in each lane.
 HWY_BEFORE_NAMESPACE();
 namespace orb360::town {
 namespace HWY_NAMESPACE {
@@ -57,7 +57,7 @@ HWY_INLINE V3 operator*(V s, const V3& a) {
   namespace hn = hwy::HWY_NAMESPACE;
   return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
 }
-/// Channel by channel.
+/// The product channel by channel.
 HWY_INLINE V3 Product(const V3& a, const V3& b) {
   namespace hn = hwy::HWY_NAMESPACE;
   return {hn::Mul(a.x, b.x), hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)};

@@ -11,7 +11,7 @@
 namespace orb360::town {
 namespace {
 
-/// Bilinear sample; u wraps, v ends with the outermost rows.
+/// Bilinear sample; u wraps, and v is clamped to the outermost rows.
 cv::Vec3f Sample(const cv::Mat3f& image, const Eigen::Vector2d& pixel) {
   const double x = std::floor(pixel.x() - 0.5);
   const double y = std::clamp(pixel.y() - 0.5, 0.0, image.rows - 1.0);
@@ -35,7 +35,7 @@ struct Lens {
 Eigen::Vector3d SeenThroughLens(const Eigen::Vector3d& lens, const Eigen::Vector3d& bearing) {
   constexpr double kHeight = 1.9;  // metres, of the camera above the road
   constexpr double kWalls = 10;    // metres
-  // The inverse of the distance, so that nothing is divided by zero.
+  // The inverse of the distance is used, so that nothing is divided by zero.
   const double to_wall = std::hypot(bearing.x(), bearing.y()) / kWalls;
   const double to_road = std::max(0.0, -bearing.z()) / kHeight;
   return (bearing + std::max(to_wall, to_road) * lens).normalized();
@@ -54,7 +54,7 @@ cv::Mat3f StitchedFromTwoLenses(const DualLens& options, const cv::Mat3f& panora
       const Eigen::Vector3d bearing = camera.Bearing({column + 0.5, row + 0.5});
       cv::Vec3f sum(0, 0, 0);
       for (const Lens& lens : lenses) {
-        // Radians from the seam towards the lens's axis.
+        // Angle from the seam towards the lens's axis, radians.
         const double inside = std::asin(std::clamp(-lens.ahead * bearing.x(), -1.0, 1.0));
         const float weight = SmoothStep(-half_overlap, half_overlap, static_cast<float>(inside));
         if (weight == 0) continue;

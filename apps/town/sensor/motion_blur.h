@@ -7,9 +7,9 @@
 
 namespace orb360::town {
 
-/// The mean of the pictures at the middles of equal parts of the time in which the shutter is
-/// open: what moves or turns, near or far, is smeared as it should be. Averages light, not grey
-/// levels.
+/// Returns the mean of the images at the middles of equal parts of the time in which the shutter is
+/// open, so that moving and turning objects are smeared according to their motion. Light is
+/// averaged, not gray levels.
 cv::Mat3f Blurred(const MotionBlur& options, double seconds, const RadianceAt& picture);
 
 }  // namespace orb360::town

@@ -8,9 +8,9 @@
 
 namespace orb360::town {
 
-/// Adds noise to each channel of exposed radiance: radiance L frees full_well * L electrons, whose
-/// number has a variance of full_well * L (photon noise) + read_noise^2. The result may be
-/// negative. The same for a seed and frame, whatever was made before.
+/// Adds noise to each channel of exposed radiance. Radiance L frees full_well * L electrons, whose
+/// number has the variance full_well * L (photon noise) + read_noise^2. The result may be negative.
+/// It depends only on seed and frame.
 void AddNoise(const SensorNoise& options, uint64_t seed, int frame, cv::Mat3f* image);
 
 }  // namespace orb360::town

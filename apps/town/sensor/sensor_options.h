@@ -14,14 +14,14 @@ struct AutoExposure {
   double key = 0.29;      ///< metered radiance (see MeteredRadiance) that needs no correction
 };
 
-/// What moves while the shutter is open is smeared.
+/// Objects that move while the shutter is open are smeared.
 struct MotionBlur {
   double shutter = 0.01;  ///< seconds, half before and half after the frame's time
   int moments = 4;        ///< renderings that are averaged
 };
 
-/// What is left in a panorama of the two fisheye lenses, back to back, that it was stitched from.
-/// One looks forward, the other backward; the seam is the circle between them.
+/// Traces, in a panorama, of the two fisheye lenses back to back from which it was stitched. One
+/// looks forward, the other backward; the seam is the circle between them.
 struct DualLens {
   double baseline = 0.03;             ///< metres between the lenses: things at the seam are doubled
   double exposure_difference = 0.15;  ///< stops by which the front picture is brighter
@@ -29,13 +29,13 @@ struct DualLens {
   double overlap = 0.07;              ///< radians over which one picture blends into the other
 };
 
-/// Noise of the light itself and of reading it out.
+/// Photon noise and read noise.
 struct SensorNoise {
   double full_well = 4000;  ///< electrons that radiance 1 (a white wall in the sun) sets free
   double read_noise = 5;    ///< electrons, standard deviation
 };
 
-/// What a camera does to a picture. Everything is off by default.
+/// The effects of a camera on an image. All are off by default.
 struct SensorOptions {
   std::optional<AutoExposure> auto_exposure;
   std::optional<MotionBlur> motion_blur;
@@ -49,7 +49,7 @@ struct SensorOptions {
   }
 };
 
-/// The effects that are on with all their parameters, as lines of YAML; empty without any.
+/// Returns the active effects with all their parameters as lines of YAML; empty without any.
 std::string Describe(const SensorOptions& options);
 
 }  // namespace orb360::town

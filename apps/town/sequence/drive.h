@@ -13,7 +13,7 @@
 
 namespace orb360::town {
 
-/// How a drive is recorded.
+/// Settings of a recording of a drive.
 struct Recording {
   EquirectangularCamera camera;
   double fps = 20;
@@ -23,7 +23,7 @@ struct Recording {
   Sampling sampling = Sampling::kAdaptive;
 };
 
-/// A camera's way through a scenery that can be rendered at any frame, in any order.
+/// A camera's drive through a scenery. Any frame can be rendered, in any order.
 class Drive {
  public:
   explicit Drive(const Recording& recording) : recording_(recording) {}
@@ -39,27 +39,27 @@ class Drive {
   const SensorOptions& sensor() const { return recording_.sensor; }
 
   Rigid3 WorldFromCamera(int frame) const { return PoseAt(frame / fps()); }
-  /// Metres above the road, where there is a road.
+  /// Returns the height above the road, metres, if there is a road.
   virtual std::optional<double> camera_height() const = 0;
-  /// What it was made from: lines of YAML.
+  /// Returns what the drive was made from, as lines of YAML.
   virtual std::string Origin() const = 0;
 
   FrameScene SceneAt(int frame) const { return stage().With(MovingAt(frame / fps())); }
-  /// What the camera takes of the scene at a frame.
+  /// Returns the image that the camera takes of the scene at a frame.
   cv::Mat3b Colour(const FrameScene& scene, int frame) const;
-  /// Along the rays of the panorama, however its colours are made.
+  /// Returns what the rays of the panorama meet, independent of how its colours are made.
   GeometryImage Geometry(const FrameScene& scene, int frame) const;
 
  protected:
   virtual const Stage& stage() const = 0;
-  /// Seconds from the first frame; the shutter may open shortly before it and close shortly after
-  /// the last.
+  /// Returns the pose at a time in seconds from the first frame. The shutter may open shortly
+  /// before the first frame and close shortly after the last one.
   virtual Rigid3 PoseAt(double seconds) const = 0;
   virtual std::vector<Instance> MovingAt(double seconds) const = 0;
 
  private:
   cv::Mat3f RadianceAt(double seconds) const;
-  /// A small panorama to expose for.
+  /// Returns a small panorama for the exposure metering.
   cv::Mat3f MeteredAt(double seconds) const;
 
   Recording recording_;

@@ -12,7 +12,7 @@ namespace {
 
 using std::string_view_literals::operator""sv;
 
-/// The numbers of the format, lowest byte first.
+/// Writes the numbers of the format, lowest byte first.
 class ByteWriter {
  public:
   void Add(std::string_view bytes) { bytes_ += bytes; }
@@ -62,7 +62,7 @@ void WriteExrImage(const std::filesystem::path& path, const cv::Mat1f& image) {
   file.Add(1.0F);
   file.Add("\0"sv);
 
-  // Where each line is, then the lines: their number, their size in bytes, their pixels.
+  // The offset of each line, then the lines: their number, their size in bytes, their pixels.
   const auto line_size = static_cast<uint64_t>(image.cols) * 4;
   const uint64_t first = file.bytes().size() + 8 * static_cast<uint64_t>(image.rows);
   for (int row = 0; row < image.rows; ++row)

@@ -6,7 +6,7 @@
 
 namespace orb360::town {
 
-/// Writes numbers as an OpenEXR image, exactly: one channel, Y, of 32-bit floats, not compressed
+/// Writes numbers exactly, as an OpenEXR image of one channel, Y, of 32-bit floats, not compressed
 /// ("OpenEXR File Layout", version 2, scan lines). Throws UserError if the file cannot be written.
 void WriteExrImage(const std::filesystem::path& path, const cv::Mat1f& image);
 

@@ -18,16 +18,16 @@ struct ImportedSpec {
   ImportOptions options;
 };
 
-/// A camera's way through an imported scene, in which nothing moves.
+/// A camera's path through an imported scene, in which nothing moves.
 class ImportedDrive : public Drive {
  public:
-  /// Without a number of frames, those of the whole path at the given rate. Throws UserError for
-  /// files that cannot be used and a path that goes through a wall.
+  /// Without a number of frames, the whole path is recorded at the given rate. Throws UserError for
+  /// files that cannot be used and for a path through a wall.
   ImportedDrive(const ImportedSpec& spec, const CameraPath& path, const Recording& recording);
 
   std::optional<double> camera_height() const override { return camera_height_; }
   std::string Origin() const override;
-  /// Textures that could not be read, and why.
+  /// Returns the textures that could not be read, with the reasons.
   const std::vector<std::string>& missing_textures() const { return missing_; }
 
  protected:

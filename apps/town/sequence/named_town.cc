@@ -10,7 +10,7 @@ namespace {
 
 constexpr size_t kMaximumDigits = 18;  // 10^18 < 2^63
 
-/// Lengths, light and pictures as in the paper: 2048 x 1024 from six faces of 768 x 768.
+/// Lengths, light and images as in the paper: 2048 x 1024 from six faces of 768 x 768.
 struct Named {
   std::string_view name;
   uint64_t number;

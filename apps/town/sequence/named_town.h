@@ -9,7 +9,7 @@
 
 namespace orb360::town {
 
-/// How the camera is mounted on the car's roof.
+/// The mounting of the camera on the car's roof.
 struct Mount {
   std::optional<double> height;  ///< metres above the road; without it, the town's own
   double pitch = 0;              ///< radians, nose up
@@ -17,7 +17,7 @@ struct Mount {
   double shaking = 1;            ///< factor on vibration and on leaning in bends
 };
 
-/// What is to be rendered.
+/// The town to be rendered and its settings.
 struct TownSpec {
   std::string name;  ///< as the user gave it
   uint64_t seed = 0;
@@ -30,9 +30,9 @@ struct TownSpec {
   PlanOptions plan;  ///< its seed is drawn from `seed`
 };
 
-/// The evaluation towns Town1 ... Town5 and Loop (once round a block) by name, or the training town
-/// of a seed (a whole number of at most 18 digits). The seeds of evaluation towns lie above 2^63
-/// and so can never be a training town's. Throws UserError for anything else.
+/// Returns the evaluation towns Town1 ... Town5 and Loop (once round a block) by name, or the
+/// training town of a seed (an integer of at most 18 digits). The seeds of evaluation towns lie
+/// above 2^63, so they cannot be those of training towns. Throws UserError for any other name.
 TownSpec FindTown(std::string_view name);
 
 }  // namespace orb360::town

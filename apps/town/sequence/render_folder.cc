@@ -43,7 +43,7 @@ std::string Description(const Drive& drive) {
   return text.str();
 }
 
-/// What a folder holds of a frame; empty where there is nothing to write.
+/// The images of a frame that are to be written; empty ones are not.
 struct Pictures {
   cv::Mat3b colour;
   cv::Mat1f range;
@@ -56,7 +56,7 @@ struct Pictures {
   }
 };
 
-/// Renders what is not there yet.
+/// Renders the images of a frame that do not exist yet.
 Pictures RenderMissing(const Drive& drive, const SequenceWriter& writer,
                        const FolderOptions& options, int frame) {
   const bool has_geometry = frame % options.depth_every == 0;

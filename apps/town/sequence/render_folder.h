@@ -14,10 +14,10 @@ struct FolderOptions {
 };
 
 /// Renders a drive into a sequence folder: rgb/000000.jpg, depth/000000.png, groundtruth.txt,
-/// sequence.yaml, and a contact sheet.jpg. Files appear under their names only when complete, and
-/// frames that are already there are kept, so an interrupted rendering is resumed by repeating it;
-/// a folder that holds another sequence is refused. `progress` is called after each frame with the
-/// number of frames done and the number of those rendered now. Throws UserError.
+/// sequence.yaml, and contact_sheet.jpg. Files appear under their names only when complete, and
+/// existing frames are kept, so repeating the call resumes an interrupted rendering. A folder with
+/// another sequence is refused. `progress` is called after each frame with the number of frames
+/// done and the number of those rendered now. Throws UserError.
 void RenderIntoFolder(const Drive& drive, const std::filesystem::path& folder,
                       const FolderOptions& options,
                       const std::function<void(int done, int rendered)>& progress);

@@ -19,7 +19,7 @@ Eigen::Vector3d Forward(const Rigid3& world_from_camera) {
   return world_from_camera.rotation * -Eigen::Vector3d::UnitX();
 }
 
-/// The angle between the horizontal directions of two cameras, radians, with its sign.
+/// Returns the signed angle between the horizontal directions of two cameras, radians.
 double Turn(const Rigid3& from, const Rigid3& to) {
   const Eigen::Vector3d a = Forward(from);
   const Eigen::Vector3d b = Forward(to);
@@ -56,7 +56,7 @@ void MeasurePath(const Drive& drive, DriveStatistics* s) {
   s->revisits = FindRevisits(poses);
 }
 
-/// Adds the solid angle of a frame's ranges to the bins, as shares of the sphere.
+/// Adds the solid angle of a frame's ranges to the bins, as fractions of the sphere.
 void AddRanges(const GeometryImage& geometry, uint16_t first_moving_id, DriveStatistics* s) {
   double sphere = 0;
   for (int row = 0; row < geometry.range.rows; ++row)

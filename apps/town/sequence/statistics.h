@@ -9,17 +9,18 @@
 
 namespace orb360::town {
 
-/// How a path comes back to where it was: within 5 m of a place, after more than 50 m of travel.
+/// The revisits of a path: within 5 m of a place, after more than 50 m of travel.
 struct Revisits {
   double same_share = 0;      ///< of the path, heading within 45 degrees of the earlier one
   double opposite_share = 0;  ///< of the path, heading within 45 degrees of the reverse
 };
 Revisits FindRevisits(std::span<const Rigid3> world_from_camera);
 
-/// Upper ends of the bins of range, metres; one more bin holds what is farther, one the sky.
+/// Upper ends of the bins of range, metres. There is one more bin for farther points and one for
+/// the sky.
 inline constexpr std::array<double, 6> kRangeBins = {2.5, 5, 10, 20, 40, 80};
 
-/// What a drive is like.
+/// Statistics of a drive.
 struct DriveStatistics {
   int frames = 0;
   double seconds = 0;
@@ -38,11 +39,11 @@ struct DriveStatistics {
   double minimum_corners = 0;  ///< in the poorest of the pictures looked at
 };
 
-/// Measures a drive from its poses, and ranges and corners (ORB, `sought` of them) in every
-/// `every`-th frame.
+/// Measures a drive: its poses, and ranges and corners (ORB, `sought` of them) in every `every`-th
+/// frame.
 DriveStatistics MeasureDrive(const Drive& drive, int every, int sought);
 
-/// A Markdown table with a column for each drive.
+/// Returns a Markdown table with a column for each drive.
 std::string StatisticsTable(std::span<const std::string> names,
                             std::span<const DriveStatistics> statistics);
 

@@ -42,7 +42,7 @@ std::filesystem::path FaceFolder(const std::filesystem::path& recording, const s
   return recording / (prefix + std::string(kCubeFaceNames[face]));
 }
 
-/// The images in the folders prefix + face name. Every face must have the same.
+/// Lists the images in the folders prefix + face name. Every face must have the same names.
 FrameFiles ListFrames(const std::filesystem::path& recording, const std::string& prefix) {
   FrameFiles frames;
   for (size_t face = 0; face < kCubeFaces; ++face) {
@@ -68,13 +68,13 @@ FrameFiles ListFrames(const std::filesystem::path& recording, const std::string&
   return frames;
 }
 
-/// The number that a name ends in.
+/// Returns the number in which a name ends.
 std::optional<int64_t> NumberOf(const std::string& name) {
   return ParseNumber<int64_t>(
       std::string_view(name).substr(name.find_last_not_of("0123456789") + 1));
 }
 
-/// Frames have no times but those of their order, so none may be left out.
+/// The times of frames follow from their order only, so none may be missing.
 void RequireEvenNumbers(const std::filesystem::path& recording, const FrameFiles& frames) {
   std::optional<int64_t> step;
   for (auto last = frames.begin(), next = std::next(last); next != frames.end(); ++last, ++next) {
@@ -90,7 +90,7 @@ void RequireEvenNumbers(const std::filesystem::path& recording, const FrameFiles
   }
 }
 
-/// Checks that the ground truth is of the frames' times and copies it.
+/// Checks that the ground truth has the frames' times and copies it.
 void CopyGroundTruth(const std::filesystem::path& from, const std::filesystem::path& to,
                      double duration) {
   const std::vector<StampedPose> poses = ReadTrajectory(from);
@@ -126,7 +126,8 @@ cv::Mat3b StitchColourFiles(const FaceFiles& files, const EquirectangularCamera&
   return StitchColour(faces, camera);
 }
 
-/// True for a picture in more than one shade of grey: depth for the eye, not 24-bit numbers.
+/// Returns true for an image with several shades of gray only: depth for the eye, not 24-bit
+/// numbers.
 bool IsGrey(const cv::Mat& image) {
   std::vector<cv::Mat> channels;
   cv::split(image, channels);
@@ -178,8 +179,8 @@ cv::Mat1w StitchObjectFiles(const FaceFiles& files, const EquirectangularCamera&
   return StitchObjects(faces, camera);
 }
 
-/// The files in the folders with a prefix, where there is such a folder: of frames that have
-/// pictures.
+/// Lists the files in the folders with a prefix if there are such folders; every frame must have
+/// images.
 FrameFiles ListOptionalFrames(const std::filesystem::path& recording, const std::string& prefix,
                               const FrameFiles& pictures) {
   bool is_there = false;

@@ -13,14 +13,14 @@ struct StitchOptions {
   double farthest_depth = 1000;  ///< metres that the largest number of the 24-bit encoding means
 };
 
-/// Turns a recording by six cameras (see CubeFace) into a sequence folder of panoramas. `recording`
-/// holds a folder of images for each face (front/, right/, back/, left/, up/, down/) with the same
-/// names in each; for all or some of the frames, depth along the optical axis under the same names
-/// in depth_front/ ... depth_down/: 16-bit PNG of metres * 256, or 8-bit colour PNG in the 24-bit
-/// encoding (see DecodeDepth24); likewise numbers of objects, 8 or 16-bit images of one channel in
-/// objects_front/ ... objects_down/; and groundtruth.txt (TUM, time 0 at the first frame), which is
-/// copied. Frames are in the order of the numbers in their names. Panoramas that are there already
-/// are kept. `progress` is called after each frame with the number done and the number in all.
+/// Converts a recording by six cameras (see CubeFace) into a sequence folder of panoramas.
+/// `recording` contains a folder of images for each face (front/, right/, back/, left/, up/, down/)
+/// with the same names in each. For all or some frames it may contain depth along the optical axis
+/// under the same names in depth_front/ ... depth_down/ (16-bit PNG of metres * 256, or 8-bit
+/// colour PNG in the 24-bit encoding, see DecodeDepth24), numbers of objects (8 or 16-bit images of
+/// one channel) in objects_front/ ... objects_down/, and groundtruth.txt (TUM, time 0 at the first
+/// frame), which is copied. Frames have the order of the numbers in their names. Existing panoramas
+/// are kept. `progress` is called after each frame with the number done and the total number.
 /// Throws UserError.
 void StitchFolder(const std::filesystem::path& recording, const std::filesystem::path& folder,
                   const StitchOptions& options,

@@ -7,7 +7,7 @@
 namespace orb360::town {
 namespace {
 
-/// Parts of a seed, so that what one part draws leaves the others as they are.
+/// Parts of a seed, so that the draws of one part do not affect the others.
 enum SeedPart : uint64_t { kCameraHeight = 50, kLap, kTraffic = 53, kShaking };
 
 uint64_t SeedOf(const TownSpec& spec, SeedPart part) { return Random(spec.seed).Fork(part).Next(); }

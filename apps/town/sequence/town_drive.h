@@ -9,7 +9,7 @@
 
 namespace orb360::town {
 
-/// How the camera's car drives its lap of a town.
+/// Returns the options of the lap that the camera's car drives in a town.
 LapOptions LapOf(const TownSpec& spec);
 
 /// A car's drive through a procedural town.
@@ -30,7 +30,7 @@ class TownDrive : public Drive {
   std::vector<Instance> MovingAt(double seconds) const override;
 
  private:
-  /// An unknown light is refused before the town is built.
+  /// Takes a light, so that an unknown one is refused before the town is built.
   TownDrive(const TownSpec& spec, const Light& light, const Recording& recording);
 
   TownSpec spec_;

@@ -5,11 +5,11 @@
 
 namespace orb360::town {
 
-/// The pictures of a drive, rendered when they are asked for: nothing is stored.
+/// The images of a drive, rendered when they are requested; nothing is stored.
 class TownSource : public FrameSource {
  public:
-  /// `name`: how messages call it. Building the town takes seconds. Throws UserError for an unknown
-  /// light.
+  /// Messages call the source `name`. Building the town takes seconds. Throws UserError for an
+  /// unknown light.
   TownSource(const std::string& name, const TownSpec& spec, const Recording& recording);
 
   const SourceInfo& info() const override { return info_; }

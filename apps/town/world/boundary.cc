@@ -9,7 +9,7 @@
 namespace orb360::town {
 namespace {
 
-/// A wall with a coping, `length` along the panel, seen from both sides.
+/// Adds a wall with a coping, `length` along the panel, visible from both sides.
 void AddGardenWall(MeshBuilder& b, const Panel& p, float length, float height, Random& random) {
   const Materials& m = b.materials();
   constexpr float kThickness = 0.24F;  // metres

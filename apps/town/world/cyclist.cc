@@ -37,7 +37,7 @@ void AddWheel(MeshBuilder& b, const Vector3f& hub) {
     b.AddTube(metal, hub, rim(i, kSpokes, kWheelRadius - kTyre), 0.004F, 0.003F, 3);
 }
 
-/// Wheels, frame, fork, handlebar and saddle.
+/// Adds wheels, frame, fork, handlebar and saddle.
 void AddBicycle(MeshBuilder& b) {
   const Materials& m = b.materials();
   AddWheel(b, kFrontHub);
@@ -66,7 +66,7 @@ void AddBicycle(MeshBuilder& b) {
   b.AddEllipsoid(m.rubber, kSaddle, {0.13F, 0.07F, 0.035F});
 }
 
-/// Where two limbs of the given lengths from `from` to `to` meet, bent towards `outward`.
+/// Returns the joint of two limbs of the given lengths from `from` to `to`, bent towards `outward`.
 Vector3f Joint(const Vector3f& from, const Vector3f& to, float first, float second,
                const Vector3f& outward) {
   const Vector3f along = to - from;

@@ -16,11 +16,11 @@ MaterialId PickFrom(Random& random, const std::vector<MaterialId>& values) {
   return random.Pick(std::span<const MaterialId>(values));
 }
 
-/// Factor on the tint at a wall's foot, where the street splashes it.
+/// Factor on the tint at the foot of a wall, which the street splashes.
 constexpr float kSplash = 0.68F;
 
-/// A bay that stands out by `out` from the wall between `left` and `right`, with a window in front
-/// and cheeks; `lowest` and `highest` close it below and above.
+/// Adds a bay that protrudes by `out` from the wall between `left` and `right`, with a window in
+/// front and side walls; `lowest` and `highest` close it below and above.
 void AddOriel(MeshBuilder& b, const FacadeStyle& style, const Panel& p, const WallPiece& piece,
               const Opening& opening, bool lowest, bool highest, Random& random) {
   constexpr float kOut = 0.55F;  // metres
@@ -224,7 +224,7 @@ void AddSide(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float wid
   AddWeatheredRectangle(b, style.ground_wall, p, {0, width, 0, style.ground_height}, kSplash, 1);
   b.set_tint(style.wall_tint);
   AddWeatheredRectangle(b, style.wall, p, {0, width, style.ground_height, eaves}, 1, 0.85F);
-  // A stair's or bathrooms' small windows, one above the other.
+  // Small windows of a staircase or of bathrooms, one above the other.
   const bool mural = random.Chance(0.45) && eaves > 7;
   const int columns = mural ? 0 : random.Int(3);
   for (int column = 0; column < columns; ++column) {

@@ -8,7 +8,7 @@ namespace orb360::town {
 enum class BalconyKind { kRailing, kSolid, kFrench };
 enum class RoofKind { kFlat, kGable, kHip, kMansard };
 
-/// What a building's facades share.
+/// Properties that all facades of a building have in common.
 struct FacadeStyle {
   MaterialId wall = 0;
   Rgba wall_tint{1, 1, 1, 1};
@@ -37,25 +37,26 @@ struct FacadeStyle {
   RoofKind roof = RoofKind::kGable;
 };
 
-/// A style for a building `width` metres wide.
+/// Draws a style for a building `width` metres wide.
 FacadeStyle DrawFacadeStyle(Random& random, const Materials& materials, float width);
 
-/// Height of the eaves above the ground, metres.
+/// Returns the height of the eaves above the ground, metres.
 inline float EavesHeight(const FacadeStyle& style) {
   return style.ground_height + style.floor_height * static_cast<float>(style.floors - 1);
 }
 
-/// The wall towards the street, from `drop` below the panel's origin up to the eaves, with door or
-/// shops and the ornaments.
+/// Adds the wall towards the street, from `drop` below the panel's origin up to the eaves, with
+/// door or shops and the ornaments.
 void AddFront(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width, float drop,
               Random& random);
 
-/// A wall towards a neighbour, with windows where there is room for them; else blank but for what
-/// climbs it or is painted on it.
+/// Adds a wall towards a neighbour, with windows if there is room for them; otherwise it is blank
+/// except for climbing plants and paintings.
 void AddSide(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width, float drop,
              bool has_windows, Random& random);
 
-/// The back of a building, which is only seen through gaps: pictures of windows on a flat wall.
+/// Adds the back of a building, which is visible only through gaps: images of windows on a flat
+/// wall.
 void AddBack(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float width, float drop,
              Random& random);
 

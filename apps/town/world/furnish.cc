@@ -67,13 +67,13 @@ Models MakeModels(const Random& random, const Materials& m, Town* town) {
   return models;
 }
 
-/// Places things along one side of a street.
+/// Places objects along one side of a street.
 class Side {
  public:
   Side(const Street& street, size_t index, double side, Town* town)
       : street_(&street), index_(index), side_(side), town_(town) {}
 
-  /// Whether the place is at least `margin` metres from any other carriageway.
+  /// Returns true if the place is at least `margin` metres from any other carriageway.
   bool Clear(double station, double margin) const {
     return station > 1 && station < street_->Length() - 1 &&
            town_->plan.DistanceToOtherRoads(street_->At(station).position, index_) > margin &&
@@ -114,14 +114,14 @@ void ParkCars(Side& side, const Street& street, const Models& models, const Town
       s += 3;
       continue;
     }
-    // Along the street, in the direction of the traffic on this side (which keeps right).
+    // Along the street in the direction of the traffic on this side, which keeps right.
     constexpr double kAlong = -0.5 * std::numbers::pi;
     Instance& car =
         side.Place(models.vehicles[static_cast<size_t>(kind)], s + 0.5 * length,
                    -1.05 + random.Uniform(-0.12, 0.12), kAlong + random.Uniform(-0.03, 0.03));
     car.tint = DrawPaint(random);
     car.lookout = 2.4F;
-    // Tilted with the road.
+    // The car is tilted with the road.
     const Vector3f forward = car.world_from_model.linear().col(0);
     const Vector3f place = car.world_from_model.translation();
     const auto height_at = [&](float along) {
@@ -203,7 +203,7 @@ void FurnishStreets(const Random& random, const Materials& materials, Town* town
                town->plan.DistanceToOtherRoads(street.At(s).position, arm.street) < 4.5)
           s += 0.5 * direction;
         if (s < 2 || s > street.Length() - 2) continue;
-        // Seen by those who drive towards the junction on the right.
+        // The light is visible to those who drive towards the junction on the right.
         Side side(street, arm.street, direction > 0 ? 1.0 : -1.0, town);
         side.Place(models.traffic_light, s, 0.5, 0);
       }

@@ -10,7 +10,7 @@ namespace {
 
 const Vector3f kUp(0, 0, 1);
 
-/// A whole box, sides along the axes.
+/// Adds a whole box with sides along the axes.
 void AddBlock(MeshBuilder& b, MaterialId material, const Vector3f& low, const Vector3f& high) {
   const Vector3f size = high - low;
   const Panel front{{high.x(), low.y(), low.z()}, {0, 1, 0}, kUp, {1, 0, 0}};
@@ -19,7 +19,7 @@ void AddBlock(MeshBuilder& b, MaterialId material, const Vector3f& low, const Ve
   b.AddRectangle(material, back, 0, size.y(), 0, size.z());
 }
 
-/// A flat disc of `radius` facing +y and -y.
+/// Adds a flat disc of `radius` that faces +y and -y.
 void AddDisc(MeshBuilder& b, MaterialId material, const Vector3f& centre, float radius) {
   constexpr int kSides = 20;
   for (int i = 0; i < kSides; ++i) {
@@ -228,7 +228,7 @@ Mesh MakeBusShelter(const Materials& materials, Random random) {
     AddBlock(b, materials.metal, {kBack - 0.02F, -kHalf, z}, {kBack + 0.02F, kHalf, z + 0.05F});
   b.set_tint({0.3F, 0.17F, 0.09F, 1});
   AddBlock(b, materials.trim, {kBack + 0.1F, -1.2F, 0.44F}, {kBack + 0.42F, 0.4F, 0.48F});
-  // The poster case at one end, lit on both sides, and the stop's sign.
+  // The poster case at one end, lit on both sides, and the sign of the stop.
   b.set_tint({0.08F, 0.085F, 0.09F, 1});
   AddBlock(b, materials.metal, {kBack, kHalf - 0.06F, 0.2F}, {-0.05F, kHalf + 0.06F, 2.2F});
   b.set_tint({1, 1, 1, 1});

@@ -5,7 +5,7 @@
 
 namespace orb360::town {
 
-/// Street furniture standing at the origin, x towards the carriageway.
+/// Street furniture at the origin, x towards the carriageway.
 Mesh MakeLampPost(const Materials& materials, Random random);
 Mesh MakeTrafficLight(const Materials& materials);
 Mesh MakeRoadSign(const Materials& materials, Random random);

@@ -11,13 +11,13 @@ constexpr double kCell = 1.0;        // metres; the grid the distance to the roa
 constexpr double kReach = 40.0;      // metres from the road to which the ground is built
 constexpr double kKerbWidth = 0.18;  // metres
 
-/// A corner of a ground polygon: position in the plan and the distance to the road there.
+/// A corner of a ground polygon: its position in the plan and its distance to the road.
 struct Corner {
   Vector2d position;
   double distance;
 };
 
-/// The part of a convex polygon where low <= distance < high.
+/// Returns the part of a convex polygon where low <= distance < high.
 std::vector<Corner> ClipToBand(std::vector<Corner> polygon, double low, double high) {
   const auto clip = [](const std::vector<Corner>& source, double limit, double sign) {
     std::vector<Corner> result;
@@ -56,7 +56,7 @@ void AddBand(const StreetPlan& plan, const Band& band, const std::vector<Corner>
   builder.AddGroundPolygon(band.material, corners);
 }
 
-/// The kerb's face: the vertical strip over the edge of the road in this triangle.
+/// Adds the face of the kerb: the vertical strip over the edge of the road in this triangle.
 void AddKerbFace(const StreetPlan& plan, const std::vector<Corner>& triangle,
                  MeshBuilder& builder) {
   std::vector<Vector2d> ends;
@@ -66,7 +66,7 @@ void AddKerbFace(const StreetPlan& plan, const std::vector<Corner>& triangle,
     if ((a.distance >= 0) == (b.distance >= 0)) continue;
     const double t = a.distance / (a.distance - b.distance);
     const Vector2d p = a.position + t * (b.position - a.position);
-    // Counter-clockwise round the road side: enters where the distance falls below zero.
+    // Counter-clockwise around the road side: enters where the distance falls below zero.
     if (a.distance >= 0)
       ends.insert(ends.begin(), p);
     else
@@ -80,7 +80,8 @@ void AddKerbFace(const StreetPlan& plan, const std::vector<Corner>& triangle,
                   lift(ends[0], kKerbHeight), lift(ends[1], kKerbHeight));
 }
 
-/// A strip of paint between stations s0 and s1, lateral offsets y0 < y1 (positive to the left).
+/// Adds a strip of paint between stations s0 and s1, lateral offsets y0 < y1 (positive to the
+/// left).
 void AddStrip(const StreetPlan& plan, const Street& street, double s0, double s1, double y0,
               double y1, MeshBuilder& builder) {
   constexpr double kThickness = 0.002;  // metres; the triangles of a slope are up to 0.4 mm off it
@@ -164,7 +165,7 @@ void AddRoadMarkings(const StreetPlan& plan, MeshBuilder& builder) {
   builder.set_tint({1, 1, 1, 1});
   for (size_t index = 0; index < plan.streets.size(); ++index) {
     const Street& street = plan.streets[index];
-    // Lines end a little before another road's carriageway.
+    // Lines end shortly before another road's carriageway.
     const auto clear = [&](double s, double margin) {
       return plan.DistanceToOtherRoads(street.At(s).position, index) > margin;
     };
@@ -185,7 +186,7 @@ void AddRoadMarkings(const StreetPlan& plan, MeshBuilder& builder) {
     for (const Junction::Arm& arm : junction.arms) {
       const Street& street = plan.streets[arm.street];
       for (const double direction : {-1.0, 1.0}) {
-        // The zebra starts where the street is clear of the others' carriageways.
+        // The zebra crossing starts where the street is clear of the others' carriageways.
         double s = arm.station;
         while (s > 0 && s < street.Length() &&
                plan.DistanceToOtherRoads(street.At(s).position, arm.street) < 3.0)
@@ -195,7 +196,7 @@ void AddRoadMarkings(const StreetPlan& plan, MeshBuilder& builder) {
         const double edge = street.At(start).half_width - 0.5;
         for (double y = -edge; y + 0.5 <= edge; y += 1.0)
           AddStrip(plan, street, start, start + 3, y, y + 0.5, builder);
-        // Stop line across the lane that leads to the junction (traffic keeps right).
+        // The stop line crosses the lane that leads to the junction (traffic keeps right).
         const double stop = direction > 0 ? start + 4 : start - 1.4;
         if (stop < 1 || stop + 1 > street.Length()) continue;
         if (direction > 0)

@@ -11,7 +11,7 @@ namespace orb360::town {
 
 void AddParkPaths(const StreetPlan& plan, const Park& park, MeshBuilder& builder) {
   constexpr double kPiece = 1.0;  // metres
-  // Millimetres above the lawn, so that it lies above the triangles of a slope.
+  // The height is millimetres above the lawn, so that the path lies above the triangles of a slope.
   const auto lift = [&](const Vector2d& p, double above) -> Vector3f {
     return Eigen::Vector3d(p.x(), p.y(), plan.Height(p) + kKerbHeight + above).cast<float>();
   };
@@ -76,13 +76,13 @@ void AddBridge(const StreetPlan& plan, const Bridge& bridge, MeshBuilder& builde
   const Vector3f up = Vector3f::UnitZ();
   const MaterialId brick = m.bricks[2];
   for (const float side : {1.0F, -1.0F}) {
-    // The walls, solid; seen from the street their right is along or against it.
+    // The walls are solid. Seen from the street their right is along it or against it.
     const Panel wall{centre + side * opening * left, side * along, up, -side * left};
     builder.set_tint({0.8F, 0.78F, 0.75F, 1});
     builder.AddBox(brick, wall, -w, w, -kBelowGround, deck + kGirder, -(reach - opening), 0);
     const Panel end{centre + side * reach * left, -side * along, up, side * left};
     builder.AddRectangle(brick, end, -w, w, -kBelowGround, deck + kGirder);
-    // Stone under the girders.
+    // Stone blocks under the girders.
     builder.set_tint({1, 1, 1, 1});
     builder.AddBox(m.ashlar, wall, -w - 0.08F, w + 0.08F, deck - 0.45F, deck, -0.5F, 0.12F);
     // A girder on this side of the bridge, and the parapet along all of it.

@@ -21,7 +21,7 @@ struct Rectangle {
   Vector2d At(double x, double y) const { return corner + x * right + y * back; }
 };
 
-/// Whether two rectangles overlap by more than `slack` metres (separating axes).
+/// Returns true if two rectangles overlap by more than `slack` metres (separating axes).
 bool Overlap(const Rectangle& a, const Rectangle& b, double slack) {
   const auto separated = [slack](const Rectangle& r, const Rectangle& other) {
     for (const auto& [axis, length] : {std::pair(r.right, r.width), std::pair(r.back, r.depth)}) {
@@ -42,7 +42,7 @@ bool Overlap(const Rectangle& a, const Rectangle& b, double slack) {
   return !separated(a, b) && !separated(b, a);
 }
 
-/// Whether the whole outline keeps `margin` metres from the carriageways, and out of parks.
+/// Returns true if the whole outline keeps `margin` metres from the carriageways, and out of parks.
 bool ClearOfRoads(const StreetPlan& plan, const Rectangle& r, double margin) {
   const auto is_in_park = [&](const Vector2d& p) {
     return std::any_of(plan.parks.begin(), plan.parks.end(),
@@ -57,7 +57,7 @@ bool ClearOfRoads(const StreetPlan& plan, const Rectangle& r, double margin) {
   return true;
 }
 
-/// The lot on a rectangle: its base at the highest point of the terrain below.
+/// Returns the lot on a rectangle; its base is at the highest point of the terrain below.
 Lot OnTerrain(const StreetPlan& plan, const Rectangle& r) {
   double highest = -1e30;
   double lowest = 1e30;
@@ -71,7 +71,7 @@ Lot OnTerrain(const StreetPlan& plan, const Rectangle& r) {
           static_cast<float>(r.depth), static_cast<float>(highest - lowest)};
 }
 
-/// The rectangle across the end of a street, facing it.
+/// Returns the rectangle across the end of a street that faces the street.
 Rectangle AcrossTheEnd(const Street& street, bool at_start, Random& random) {
   const StreetPoint& end = at_start ? street.points.front() : street.points.back();
   Rectangle r;
@@ -84,8 +84,8 @@ Rectangle AcrossTheEnd(const Street& street, bool at_start, Random& random) {
   return r;
 }
 
-/// The rectangle behind the pavement on one side of a street (1: left of increasing station, -1:
-/// right), its front a chord between two stations.
+/// Returns the rectangle behind the pavement on one side of a street (1: left of increasing
+/// station, -1: right). Its front is a chord between two stations.
 Rectangle AlongKerb(const Street& street, double side, double from, double to, double setback,
                     double depth) {
   const auto kerb_side = [&](double station) -> Vector2d {
@@ -95,7 +95,7 @@ Rectangle AlongKerb(const Street& street, double side, double from, double to, d
   };
   const Vector2d a = kerb_side(from);
   const Vector2d b = kerb_side(to);
-  // Seen from the street, a building on the left of it has its left end at the lower station.
+  // Seen from the street, a building on its left has its left end at the lower station.
   Rectangle r;
   r.corner = side > 0 ? a : b;
   r.right = (side > 0 ? Vector2d(b - a) : Vector2d(a - b)).normalized();
@@ -134,8 +134,8 @@ std::vector<Lot> LayOutLots(const StreetPlan& plan, Random& random) {
         const double width = random.Uniform(7, 19);
         const double depth = random.Uniform(9, 14);
         const double setback = random.Chance(0.15) ? random.Uniform(0.5, 3) : 0.0;
-        // A smaller house where there is no room for the one that was drawn: at corners, and where
-        // streets lie near together.
+        // A smaller house is tried where there is no room for the drawn one: at corners, and where
+        // streets are close together.
         std::optional<Rectangle> lot;
         double end = s;
         for (const double share : {1.0, 0.8, 0.62}) {

@@ -8,7 +8,7 @@
 
 namespace orb360::town {
 
-/// Building lots along both sides of every street, disjoint and clear of the carriageways and
+/// Returns building lots along both sides of every street, disjoint and clear of carriageways and
 /// pavements.
 std::vector<Lot> LayOutLots(const StreetPlan& plan, Random& random);
 

@@ -21,7 +21,7 @@ class Library {
     materials_->all.push_back(material);
     return static_cast<MaterialId>(materials_->all.size() - 1);
   }
-  /// A matte material with a texture `tile_metres` wide.
+  /// Adds a matte material with a texture `tile_metres` wide.
   MaterialId AddMatte(Texture texture, float tile_metres, float blotches) {
     return Add({AddTexture(std::move(texture)), Finish::kMatte, false, 1 / tile_metres, blotches});
   }

@@ -9,7 +9,7 @@ namespace orb360::town {
 
 using MaterialId = uint16_t;
 
-/// How a surface answers light.
+/// The reflection model of a surface.
 enum class Finish : uint8_t {
   kMatte,
   kPaint,    ///< clear coat over the colour; takes the instance's tint
@@ -35,7 +35,7 @@ struct Palette {
   const Material& operator[](MaterialId id) const { return all[id]; }
 };
 
-/// A procedural town's palette, with the names the builders use.
+/// The palette of a procedural town, with the names that the builders use.
 struct Materials : Palette {
   MaterialId asphalt, fresh_asphalt, manhole, drain, setts, paving, kerb, grass, road_paint;
   MaterialId plaster, ashlar, concrete, roof_tiles, slates, gravel;
@@ -48,7 +48,7 @@ struct Materials : Palette {
   std::vector<MaterialId> posters, house_numbers, murals, roller_shutters;
 };
 
-/// Paints every texture; the same materials for the same seed.
+/// Paints every texture. The same seed gives the same materials.
 Materials PaintMaterials(uint64_t seed);
 
 }  // namespace orb360::town

@@ -7,7 +7,7 @@
 namespace orb360::town {
 namespace {
 
-// Square metres. Smaller faces are left out: they have no direction and are not seen.
+// Square metres. Smaller faces are left out, because they have no direction and are invisible.
 constexpr float kSmallestArea = 1e-8F;
 
 }  // namespace

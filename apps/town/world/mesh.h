@@ -14,7 +14,7 @@ namespace orb360::town {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-/// What is interpolated over a triangle besides its position.
+/// The values besides the position that are interpolated over a triangle.
 struct Vertex {
   float u = 0;  ///< in tiles of the texture
   float v = 0;
@@ -37,15 +37,15 @@ struct Mesh {
   std::vector<Triangle> triangles;
   size_t opaque_count = 0;  ///< triangles before this one have no cut-outs; set by PartitionCutouts
 
-  /// Brings the triangles of materials with cut-outs to the end.
+  /// Moves the triangles of materials with cut-outs to the end.
   void PartitionCutouts(const Palette& palette);
   void Append(const Mesh& other, const Eigen::Affine3f& mesh_from_other);
 };
 
-/// A linear tint as stored in Vertex.
+/// Returns a linear tint as stored in Vertex.
 std::array<uint8_t, 4> EncodeTint(const Rgba& tint);
 
-/// A plane piece to draw on: x to the right, z up along it, depth outward, all in metres.
+/// A plane on which to draw: x to the right, z up along it, depth outward, all in metres.
 struct Panel {
   Vector3f origin;
   Vector3f right;
@@ -57,44 +57,45 @@ struct Panel {
   }
 };
 
-/// Adds faces to a mesh, with flat normals. Texture coordinates are in metres times the
-/// material's tiles per metre unless stated.
+/// Adds faces with flat normals to a mesh. Texture coordinates are in metres times the material's
+/// tiles per metre unless stated otherwise.
 class MeshBuilder {
  public:
   explicit MeshBuilder(const Materials& materials) : materials_(&materials) {}
 
   Mesh& mesh() { return mesh_; }
   const Materials& materials() const { return *materials_; }
-  /// The linear factor on the material's colour of the faces that follow.
+  /// Sets the linear factor on the colour of the material for the faces that follow.
   void set_tint(const Rgba& tint) { tint_ = EncodeTint(tint); }
-  /// Shifts the texture of the metre-scaled faces that follow.
+  /// Shifts the texture of the faces that follow if they are scaled in metres.
   void set_texture_origin(const Vector2f& origin) { texture_origin_ = origin; }
 
-  /// Corners counter-clockwise seen from the front; `uv` in tiles.
+  /// Adds a quad. Corners are counter-clockwise seen from the front; `uv` is in tiles.
   void AddQuad(MaterialId material, const std::array<Vector3f, 4>& corners,
                const std::array<Vector2f, 4>& uv);
-  /// The rectangle [x0, x1] x [z0, z1] of a panel at `depth`, with a texture in metres.
+  /// Adds the rectangle [x0, x1] x [z0, z1] of a panel at `depth`, with a texture in metres.
   void AddRectangle(MaterialId material, const Panel& panel, float x0, float x1, float z0, float z1,
                     float depth = 0);
-  /// As above, the unit tile of the texture spanning the rectangle.
+  /// As above, but the unit tile of the texture spans the rectangle.
   void AddPicture(MaterialId material, const Panel& panel, float x0, float x1, float z0, float z1,
                   float depth = 0);
-  /// A quad of any orientation, textured in metres along its first edge and across it.
+  /// Adds a quad of any orientation, textured in metres along its first edge and across it.
   void AddFace(MaterialId material, const Vector3f& a, const Vector3f& b, const Vector3f& c,
                const Vector3f& d);
-  /// Convex polygon, fan-triangulated, with the texture laid in metres along x and y.
+  /// Adds a convex polygon as a fan of triangles, textured in metres along x and y.
   void AddGroundPolygon(MaterialId material, const std::vector<Vector3f>& corners);
-  /// A box on a panel without its back: [x0, x1] x [z0, z1] x [depth0, depth1].
+  /// Adds a box without back on a panel: [x0, x1] x [z0, z1] x [depth0, depth1].
   void AddBox(MaterialId material, const Panel& panel, float x0, float x1, float z0, float z1,
               float depth0, float depth1);
-  /// A cylinder or cone stump around the segment from `a` to `b` with smooth normals, no caps.
+  /// Adds a cylinder or a truncated cone around the segment from `a` to `b`, with smooth normals
+  /// and without caps.
   void AddTube(MaterialId material, const Vector3f& a, const Vector3f& b, float radius_a,
                float radius_b, int sides);
 
-  /// An ellipsoid along the axes with smooth normals.
+  /// Adds an ellipsoid along the axes with smooth normals.
   void AddEllipsoid(MaterialId material, const Vector3f& centre, const Vector3f& radii);
 
-  /// Adds a vertex; `normal` must have unit length.
+  /// Adds a vertex; `normal` must be a unit vector.
   uint32_t AddVertex(const Vector3f& position, const Vector3f& normal, float u, float v);
   void AddTriangle(MaterialId material, uint32_t a, uint32_t b, uint32_t c);
 

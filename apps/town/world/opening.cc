@@ -8,9 +8,9 @@
 namespace orb360::town {
 namespace {
 
-/// How far a pane stands behind the face of its frame, metres.
+/// Distance of a pane behind the face of its frame, metres.
 constexpr float kPaneDepth = 0.03F;
-/// Factor on the tint right below a sill, where dirty rain drips from it.
+/// Factor on the tint directly below a sill, from which dirty rain drips.
 constexpr float kSillStain = 0.76F;
 
 Rgba Shaded(const Rgba& tint, float factor) { return factor * tint; }
@@ -37,7 +37,7 @@ void AddWallWithOpening(MeshBuilder& b, MaterialId wall, const Rgba& tint, const
   AddWeatheredRectangle(b, wall, p, {o.x1, piece.right, piece.bottom, piece.top}, base, 1);
   AddWeatheredRectangle(b, wall, p, {o.x0, o.x1, piece.bottom, o.z0}, base, kSillStain);
   AddWeatheredRectangle(b, wall, p, {o.x0, o.x1, o.z1, piece.top}, 1, 1);
-  // The pane reaches behind the frame as far as the reveals do, so that no gap is left.
+  // The pane is as deep behind the frame as the reveals, so that no gap is left.
   reveal += kPaneDepth;
   b.set_tint(Shaded(tint, 0.9F));
   b.AddFace(wall, p.At(o.x0, o.z0), p.At(o.x0, o.z0, -reveal), p.At(o.x0, o.z1, -reveal),

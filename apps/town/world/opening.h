@@ -14,37 +14,38 @@ struct WallPiece {
   float left, right, bottom, top;
 };
 
-/// A rectangle of wall whose tint is multiplied by `low` at its bottom and `high` at its top:
-/// dirt that splashes up, rain that runs down.
+/// Adds a rectangle of wall whose tint is multiplied by `low` at its bottom and `high` at its top,
+/// for splashed dirt and for rain.
 void AddWeatheredRectangle(MeshBuilder& b, MaterialId wall, const Panel& p, const WallPiece& piece,
                            float low, float high);
 
-/// Wall around an opening and the opening's four reveals, with the stain below its sill. `base` is
-/// the factor on the tint at the piece's foot.
+/// Adds the wall around an opening and the opening's four reveals, with the stain below its sill.
+/// `base` is the factor on the tint at the piece's foot.
 void AddWallWithOpening(MeshBuilder& b, MaterialId wall, const Rgba& tint, const Panel& p,
                         const WallPiece& piece, const Opening& opening, float reveal,
                         float base = 1);
 
-/// A pane `depth` behind the panel which, as panes do, is not quite in line with its neighbours.
+/// Adds a pane `depth` behind the panel which, like real panes, is slightly out of line with its
+/// neighbours.
 void AddPane(MeshBuilder& b, MaterialId pane, const Panel& p, const Opening& opening, float depth,
              Random& random);
 
-/// Frame with a mullion and a transom (if `divided`) in front of a pane of `room`, `reveal` behind
-/// the panel.
+/// Adds a frame with a mullion and a transom (if `divided`) in front of a pane of `room`, `reveal`
+/// behind the panel.
 void AddWindow(MeshBuilder& b, const Rgba& frame, const Panel& p, const Opening& opening,
                float reveal, bool divided, MaterialId room, Random& random);
 
-/// Sill and, in styles that have them, jambs and lintel.
+/// Adds a sill and, in styles that have them, jambs and a lintel.
 void AddSurround(MeshBuilder& b, const FacadeStyle& style, const Panel& p, const Opening& opening);
 
-/// A balcony in the style's kind with its slab's top at `z`.
+/// Adds a balcony of the style's kind, with the top of its slab at `z`.
 void AddBalcony(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float x0, float x1,
                 float z, Random& random);
 
-/// A box of flowers or ivy hanging from a sill.
+/// Adds a box of flowers or ivy that hangs from a sill.
 void AddFlowerBox(MeshBuilder& b, const Panel& p, const Opening& opening, Random& random);
 
-/// Steps in front of a door at height `z` down to `drop` below the panel's origin.
+/// Adds steps in front of a door at height `z`, down to `drop` below the panel's origin.
 void AddSteps(MeshBuilder& b, const Panel& p, float x0, float x1, float z, float drop);
 
 }  // namespace orb360::town

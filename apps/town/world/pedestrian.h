@@ -8,8 +8,8 @@ namespace orb360::town {
 inline constexpr uint32_t kWalkPhases = 12;    ///< still pictures of one stride
 inline constexpr double kStrideLength = 1.45;  ///< metres, two steps
 
-/// A walking person in one of kWalkPhases: x forward, the origin between the feet. The same person
-/// for the same state of `random`.
+/// Makes a walking person in one of kWalkPhases: x forward, the origin between the feet. The same
+/// state of `random` gives the same person.
 Mesh MakePedestrian(uint32_t phase, const Materials& materials, Random random);
 
 }  // namespace orb360::town

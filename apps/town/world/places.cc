@@ -43,7 +43,7 @@ void AddRoundabout(Random random, StreetPlan* plan) {
   plan->islands.push_back({{centre}, 0, roundabout.island_radius});
 }
 
-/// Medians from shortly behind one junction to shortly before the next.
+/// Adds medians from shortly behind one junction to shortly before the next one.
 void AddMedians(StreetPlan* plan) {
   constexpr double kClearance = 6;  // metres from other carriageways, for those who turn
   constexpr double kShortest = 6;
@@ -125,7 +125,7 @@ void AddBridge(Random random, StreetPlan* plan) {
     const double room = plan->DistanceToOtherRoads(p.position, stretch.street) - kRamp;
     bridge.half_width = std::min(room, 5.5);
     if (bridge.half_width < 2.5) continue;
-    // As far to either side as the streets behind leave room.
+    // Extends as far to either side as the streets behind leave room.
     const Vector2d across(-p.tangent.y(), p.tangent.x());
     bridge.reach = bridge.half_opening;
     const auto is_free = [&](double reach) {

@@ -10,7 +10,7 @@
 namespace orb360::town {
 namespace {
 
-/// Stands a model on the ground, `above` the terrain, facing along `direction`.
+/// Places a model on the ground, `above` the terrain, facing along `direction`.
 Instance& Stand(uint32_t model, const Vector2d& p, double above, const Vector2d& direction,
                 Town* town) {
   Instance instance;
@@ -70,8 +70,8 @@ void PlantParks(const Plants& plants, Random random, Town* town) {
         distance = std::min(distance, Island{{park.centre, gate}, 0, kPathHalfWidth}.Distance(p));
       return distance;
     };
-    // A hedge about every metre where the lawn begins: what lies on the line between cells whose
-    // corners are on either side of it.
+    // A hedge about every metre where the lawn begins: on the lines between cells whose corners are
+    // on either side of it.
     constexpr double kSpacing = 0.9;
     constexpr double kHedge = 0.8;  // metres behind the pavement
     const auto behind = [&](const Vector2d& p) {

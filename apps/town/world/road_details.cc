@@ -8,17 +8,17 @@
 namespace orb360::town {
 namespace {
 
-// Heights above the asphalt in metres: enough to lie above the triangles of a slope, which are up to
-// 0.4 mm off it, and below the road paint.
+// Heights above the asphalt, metres: above the triangles of a slope, which deviate by up to 0.4 mm,
+// and below the road paint.
 constexpr double kPatchHeight = 0.0008;
 constexpr double kIronHeight = 0.0014;
 
-/// A place on a street: station and offset to the left, metres.
+/// A coordinate frame on a street: station and offset to the left, metres.
 class StreetFrame {
  public:
   StreetFrame(const StreetPlan& plan, const Street& street) : plan_(&plan), street_(&street) {}
 
-  /// Whether the edges of a piece lie on the carriageway, not on an island in it.
+  /// Returns true if the edges of a piece lie on the carriageway and not on an island in it.
   bool IsRoad(double s0, double s1, double y0, double y1) const {
     for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
       const double s = std::lerp(s0, s1, share);
@@ -45,7 +45,7 @@ class StreetFrame {
   const Street* street_;
 };
 
-/// A rectangle along the street in pieces that follow the slope.
+/// Adds a rectangle along the street in pieces that follow the slope.
 void AddPatch(const StreetFrame& frame, MaterialId material, double s0, double s1, double y0,
               double y1, double height, MeshBuilder& b) {
   const int along = std::max(1, static_cast<int>(std::ceil(s1 - s0)));
@@ -62,7 +62,7 @@ void AddPatch(const StreetFrame& frame, MaterialId material, double s0, double s
   }
 }
 
-/// A piece of new asphalt with the tar of its seam around it.
+/// Adds a piece of new asphalt with the tar of its seam around it.
 void AddMendedPiece(const StreetFrame& frame, double s0, double s1, double y0, double y1,
                     Random& random, MeshBuilder& b) {
   if (!frame.IsRoad(s0, s1, y0, y1)) return;
@@ -78,7 +78,7 @@ void AddMendedPiece(const StreetFrame& frame, double s0, double s1, double y0, d
   AddPatch(frame, asphalt, s1 - kSeam, s1, y0 + kSeam, y1 - kSeam, kPatchHeight, b);
 }
 
-/// A round cover, the picture's inscribed disc.
+/// Adds a round cover: the inscribed disc of the texture.
 void AddManhole(const StreetFrame& frame, double station, double offset, MeshBuilder& b) {
   constexpr double kRadius = 0.33;  // metres
   constexpr int kSides = 20;
@@ -123,7 +123,7 @@ void AddRoadDetails(const StreetPlan& plan, Random random, MeshBuilder& b) {
     const Street& street = plan.streets[index];
     const StreetFrame frame(plan, street);
     const double length = street.Length();
-    // Nothing where streets meet: pieces of two streets would lie in each other.
+    // Nothing is placed where streets meet, because pieces of two streets would overlap.
     const auto clear = [&](double s) {
       return plan.DistanceToOtherRoads(street.At(s).position, index) >
              1.5 + street.At(s).half_width;

@@ -6,8 +6,8 @@
 
 namespace orb360::town {
 
-/// What lies flat on the carriageways besides the lines: manhole covers, drains along the kerbs,
-/// mended pieces and trenches.
+/// Adds what lies flat on the carriageways besides the lines: manhole covers, drains along the
+/// kerbs, mended pieces and trenches.
 void AddRoadDetails(const StreetPlan& plan, Random random, MeshBuilder& builder);
 
 }  // namespace orb360::town

@@ -18,7 +18,7 @@ void AddGutter(MeshBuilder& b, const Vector3f& from, const Vector3f& to) {
   b.AddTube(b.materials().metal, from, to, 0.075F, 0.075F, 6);
 }
 
-/// Slopes along the front with walls below them at the sides.
+/// Adds slopes along the front with walls below them at the sides.
 void AddProfileRoof(MeshBuilder& b, const FacadeStyle& style, const RoofFrame& f, MaterialId tiles,
                     const Rgba& tint, const Profile& profile) {
   b.set_tint(tint);
@@ -95,7 +95,7 @@ void AddFlatRoof(MeshBuilder& b, const FacadeStyle& style, const RoofFrame& f, R
     AddBlock(b, m.concrete, f, x0 - 0.03F, x1 + 0.03F, y0 - 0.05F, y1 + 0.05F, parapet,
              parapet + 0.07F);
   }
-  // The head of the stairs, ventilators and a tank.
+  // The top of the stairs, ventilators and a tank.
   if (w > 7) {
     const auto x = static_cast<float>(random.Uniform(0.2, 0.6)) * w;
     b.set_tint(0.9F * style.wall_tint);

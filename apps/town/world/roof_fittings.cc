@@ -67,7 +67,7 @@ void AddDormer(MeshBuilder& b, const RoofFrame& f, const FacadeStyle& style, Mat
   constexpr float kWidth = 1.25F;  // metres
   const float foot = HeightOver(profile, y);
   const float top = foot + height;
-  // Where the slope comes up to the dormer's eaves, or nearly at the ridge.
+  // The position where the slope reaches the dormer's eaves, or almost the ridge.
   float end = y;
   while (end < 0.5F * f.depth - 0.1F && HeightOver(profile, end) < top) end += 0.05F;
   const Panel front = f.Front(x, y, foot);
@@ -81,7 +81,7 @@ void AddDormer(MeshBuilder& b, const RoofFrame& f, const FacadeStyle& style, Mat
   b.AddFace(tiles, at(0, end, slope), at(0, y, foot - 0.3F), at(0, y, top), at(0, end, top));
   b.AddFace(tiles, at(kWidth, y, foot - 0.3F), at(kWidth, end, slope), at(kWidth, end, top),
             at(kWidth, y, top));
-  // A small gable of its own, its ridge running back into the slope.
+  // A small gable of its own, whose ridge runs back into the slope.
   constexpr float kRise = 0.45F;
   constexpr float kEave = 0.12F;
   float back = end;

@@ -17,7 +17,7 @@ struct Instance {
   float openness = 1;  ///< share of the sky seen from there
 };
 
-/// What can be rendered: everything that stands still, and the models that things are made from.
+/// The scenery that is rendered: everything that stands still, and the models of instances.
 struct Scenery {
   Palette palette;
   Mesh fixed;                ///< ground and buildings

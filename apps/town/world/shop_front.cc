@@ -65,7 +65,7 @@ void AddAwning(MeshBuilder& b, const Panel& p, float x0, float x1, float z, Rand
   }
 }
 
-/// A sign that hangs over the pavement, written on both sides.
+/// Adds a sign that hangs over the pavement, with text on both sides.
 void AddHangingSign(MeshBuilder& b, const Panel& p, float x, float z, MaterialId sign) {
   const Materials& m = b.materials();
   b.set_tint({0.03F, 0.03F, 0.03F, 1});

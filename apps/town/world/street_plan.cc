@@ -16,24 +16,24 @@ constexpr double kAvenueSpacing = 45;     // metres between streets from which o
 constexpr double kAvenueHalfWidth = 8.4;  // metres: median, lane and parked cars
 constexpr double kMedian = 1.6;           // metres, half of the avenue's median
 
-/// Metres between which widths of streets are drawn.
+/// Range from which widths of streets are drawn, metres.
 struct Widths {
   double least_half_width, most_half_width;  // of the carriageway
   double least_pavement, most_pavement;
 };
 constexpr Widths kUsualWidths = {3.3, 6.9, 2.2, 4.2};
-/// Of an old town, whose streets lie nearer together than kAvenueSpacing: there wide ones would
-/// leave no blocks to build on.
+/// Widths in an old town, whose streets are closer together than kAvenueSpacing. Wide streets would
+/// leave no blocks to build on there.
 constexpr Widths kNarrowWidths = {3.2, 4.1, 1.6, 2.3};
 
-/// Centripetal-free uniform Catmull-Rom: passes through p1 at t = 0 and p2 at t = 1.
+/// Uniform Catmull-Rom curve, which passes through p1 at t = 0 and through p2 at t = 1.
 Vector2d CatmullRom(const Vector2d& p0, const Vector2d& p1, const Vector2d& p2, const Vector2d& p3,
                     double t) {
   return 0.5 * (2 * p1 + (p2 - p0) * t + (2 * p0 - 5 * p1 + 4 * p2 - p3) * t * t +
                 (3 * p1 - p0 - 3 * p2 + p3) * t * t * t);
 }
 
-/// The street through `knots`, and the station of each knot.
+/// Returns the street through `knots`, and the station of each knot.
 Street MakeStreet(const std::vector<Vector2d>& knots, double half_width, double width_change,
                   double phase, std::vector<double>* knot_stations) {
   Street street;
@@ -65,10 +65,11 @@ Street MakeStreet(const std::vector<Vector2d>& knots, double half_width, double 
   return street;
 }
 
-/// Signed distance to one street's carriageway edge, or `bound` if that is less.
+/// Returns the signed distance to the edge of one street's carriageway, or `bound` if that is less.
 double DistanceToStreet(const Street& street, const Vector2d& p, double bound) {
   double best = bound;
-  // Each point's distance bounds the distance to its neighbourhood, so far stretches are skipped.
+  // The distance of each point bounds the distance to its neighbourhood, so far stretches are
+  // skipped.
   for (size_t i = 0; i + 1 < street.points.size();) {
     const StreetPoint& a = street.points[i];
     const double to_point = (p - a.position).norm() - a.half_width;
@@ -86,7 +87,7 @@ double DistanceToStreet(const Street& street, const Vector2d& p, double bound) {
   return best;
 }
 
-/// Minimum rounded where the two are closer than `radius`.
+/// Returns the minimum, rounded where the two values are closer than `radius`.
 double SmoothMinimum(double a, double b, double radius) {
   const double h = std::max(radius - std::abs(a - b), 0.0) / radius;
   return std::min(a, b) - 0.25 * h * h * radius;
@@ -152,7 +153,7 @@ double StreetPlan::DistanceToRoad(const Vector2d& p) const {
   double distance = DistanceToOtherRoads(p, streets.size());
   if (distance > 0) return distance;
   for (const Island& island : islands) {
-    // The spine's ends bound the distance to all of it.
+    // The distances of the spine's ends bound the distance to all of it.
     const double bound = 0.5 * ((p - island.spine.front()).norm() +
                                 (p - island.spine.back()).norm() - island.length) -
                          island.radius;
@@ -215,7 +216,7 @@ StreetPlan PlanStreets(const PlanOptions& options) {
                             : static_cast<size_t>(rows + columns);
   const Widths& widths = options.spacing >= kAvenueSpacing ? kUsualWidths : kNarrowWidths;
   const auto add_street = [&](const std::vector<size_t>& nodes) {
-    // Streets run on beyond the outer junctions, and bend between junctions.
+    // Streets continue beyond the outer junctions, and bend between junctions.
     std::vector<Vector2d> knots;
     std::vector<size_t> knot_of_node;
     const auto at = [&](size_t i) { return plan.junctions[nodes[i]].position; };

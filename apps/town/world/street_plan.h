@@ -20,7 +20,8 @@ struct StreetPoint {
 
 inline constexpr double kParkingWidth = 2.1;  // metres
 
-/// A street: a smooth centreline sampled every metre or so, carriageway width varying along it.
+/// A street: a smooth centreline, sampled about every metre, with a varying width of the
+/// carriageway.
 struct Street {
   std::vector<StreetPoint> points;
   double pavement = 3;  ///< width of the pavement on either side
@@ -28,14 +29,14 @@ struct Street {
   bool parking = false;  ///< a row of parked cars on either side, kParkingWidth wide
   double median = 0;     ///< half the width of the planted strip between the directions; 0: none
 
-  /// Metres from the centreline to the middle of what is driven on either side: of the lane, but
-  /// where it is very wide, nearer to the centre.
+  /// Returns the distance from the centreline to the middle of the driven strip on either side,
+  /// metres. This is the middle of the lane, or nearer to the centre if the lane is very wide.
   double LaneOffset(double half_width) const {
     return median + std::min(0.5 * (half_width - median - (parking ? kParkingWidth : 0.0)), 2.1);
   }
 
   double Length() const { return points.back().station; }
-  /// Interpolated at `station`, clamped to the street.
+  /// Returns the point at `station`, interpolated and clamped to the street.
   StreetPoint At(double station) const;
 };
 
@@ -49,13 +50,14 @@ struct Junction {
   std::vector<Arm> arms;  ///< each street that passes through, once
 };
 
-/// Raised ground within the carriageway: all within `radius` of a line (or a single point).
+/// Raised ground within the carriageway: all points within `radius` of a line (or of a single
+/// point).
 struct Island {
   std::vector<Vector2d> spine;
   double length = 0;  ///< of the spine, metres
   double radius = 0;
 
-  /// Signed distance in metres to its kerb, negative on it.
+  /// Returns the signed distance to its kerb, metres, negative on it.
   double Distance(const Vector2d& p) const;
 };
 
@@ -67,7 +69,7 @@ struct Roundabout {
   double outer_radius = 0;  ///< of the carriageway
 };
 
-/// A block without buildings, within the centrelines of the streets around it.
+/// A block without buildings, bounded by the centrelines of the streets around it.
 struct Park {
   std::vector<Vector2d> outline;  ///< counter-clockwise
   std::vector<Vector2d> gates;    ///< points of the centrelines opposite its entrances
@@ -87,12 +89,13 @@ struct Bridge {
   double reach = 0;         ///< metres from the street's centreline to the ends of its walls
 };
 
-/// A town's streets and the tour of the camera over them. The z-axis is up; the plan lies in x, y.
+/// The streets of a town and the tour of the camera over them. The z axis points up; the plan lies
+/// in x, y.
 struct StreetPlan {
   std::vector<Street> streets;
   std::vector<Junction> junctions;
   std::vector<size_t> tour;  ///< junctions in order, a closed cycle; neighbours share a street
-  /// Further closed cycles, each over some street that the tour does not use: cross traffic.
+  /// Further closed cycles for cross traffic, each over some street that the tour does not use.
   std::vector<std::vector<size_t>> other_tours;
   std::vector<Roundabout> roundabouts;
   std::vector<Island> islands;  ///< of roundabouts, and medians of avenues
@@ -100,18 +103,20 @@ struct StreetPlan {
   std::vector<Bridge> bridges;
   double hill_phase = 0;  ///< shifts the terrain
 
-  /// Height of the terrain in metres.
+  /// Returns the height of the terrain, metres.
   double Height(const Vector2d& p) const;
-  /// Signed distance in metres to the edge of the carriageways, negative on them; streets that
-  /// meet are blended so that kerbs go round corners in an arc.
+  /// Returns the signed distance to the edge of the carriageways, metres, negative on them. Streets
+  /// that meet are blended, so that kerbs are rounded at corners.
   double DistanceToRoad(const Vector2d& p) const;
-  /// As above without islands, and without one street: whether that street's markings end here.
+  /// As above without islands and without one street: tells whether that street's markings end
+  /// here.
   double DistanceToOtherRoads(const Vector2d& p, size_t except) const;
-  /// Width of the pavement of the street nearest to p, or of an island's paved edge on it.
+  /// Returns the width of the pavement of the street nearest to p, or of the paved edge of an
+  /// island at p.
   double PavementAt(const Vector2d& p) const;
-  /// The roundabout at a junction, or null.
+  /// Returns the roundabout at a junction, or null.
   const Roundabout* RoundaboutAt(size_t junction) const;
-  /// Whether a place of a street lies under a bridge or less than `margin` metres from one.
+  /// Returns true if a place of a street lies under a bridge or less than `margin` metres from one.
   bool IsUnderBridge(size_t street, double station, double margin) const;
 };
 
@@ -123,8 +128,8 @@ struct PlanOptions {
   int tour_blocks = 3;  ///< blocks that the tour circles
 };
 
-/// Bent streets over a distorted lattice, with a tour over its junctions (see PlanTour) and, where
-/// there is room, an avenue, a roundabout, a park and a bridge.
+/// Plans bent streets over a distorted lattice, with a tour over its junctions (see PlanTour) and,
+/// where there is room, an avenue, a roundabout, a park and a bridge.
 StreetPlan PlanStreets(const PlanOptions& options);
 
 }  // namespace orb360::town

@@ -10,7 +10,7 @@
 namespace orb360::town {
 namespace {
 
-/// The corners of the block whose lower left junction is (column, row).
+/// Returns the corners of the block whose lower left junction is (column, row).
 std::vector<size_t> Circle(int columns, int column, int row, bool clockwise) {
   const auto node = [columns](int c, int r) { return static_cast<size_t>(r * columns + c); };
   std::vector<size_t> circle = {node(column, row), node(column + 1, row), node(column + 1, row + 1),
@@ -19,7 +19,7 @@ std::vector<size_t> Circle(int columns, int column, int row, bool clockwise) {
   return circle;
 }
 
-/// Whether a closed walk turns round somewhere.
+/// Returns true if a closed walk turns back somewhere.
 bool TurnsRound(const std::vector<size_t>& walk) {
   const size_t n = walk.size();
   for (size_t i = 0; i < n; ++i) {
@@ -28,7 +28,7 @@ bool TurnsRound(const std::vector<size_t>& walk) {
   return false;
 }
 
-/// The pairs of neighbouring junctions of a closed walk, in the order they are driven.
+/// Returns the pairs of neighbouring junctions of a closed walk, in driving order.
 std::set<std::pair<size_t, size_t>> LegsOf(const std::vector<size_t>& walk) {
   const size_t n = walk.size();
   std::set<std::pair<size_t, size_t>> legs;
@@ -36,7 +36,7 @@ std::set<std::pair<size_t, size_t>> LegsOf(const std::vector<size_t>& walk) {
   return legs;
 }
 
-/// Whether a closed walk uses some street in both directions.
+/// Returns true if a closed walk uses some street in both directions.
 bool ComesBack(const std::vector<size_t>& walk) {
   const std::set<std::pair<size_t, size_t>> legs = LegsOf(walk);
   return std::any_of(legs.begin(), legs.end(), [&](const auto& leg) {
@@ -44,13 +44,14 @@ bool ComesBack(const std::vector<size_t>& walk) {
   });
 }
 
-/// A walk around two neighbouring blocks PQRS and QXYR that soon repeats a side in the same
+/// Returns a walk around two neighbouring blocks PQRS and QXYR that soon repeats a side in the same
 /// direction (PQ) and comes back along one in the opposite direction (QR, RQ).
 std::vector<size_t> CircleTwoBlocks(const TourOptions& options, Random& random) {
   const int columns = options.columns;
   const int rows = options.rows;
   const bool side_by_side = columns > 2 && (rows == 2 || random.Chance(0.5));
-  // Counter-clockwise either way: with x and y swapped, the walk is mirrored and begins elsewhere.
+  // The walk is counter-clockwise in both cases: when x and y are exchanged, it is mirrored and
+  // begins elsewhere.
   const int column = random.Int(side_by_side ? columns - 2 : columns - 1);
   const int row = random.Int(side_by_side ? rows - 1 : rows - 2);
   const auto node = [&](int along, int across) {
@@ -63,7 +64,7 @@ std::vector<size_t> CircleTwoBlocks(const TourOptions& options, Random& random) 
   return {p, q, r, s, p, q, x, y, r, q, x, y, r, s};
 }
 
-/// Circles around blocks, the next one entered at a junction of the walk so far.
+/// Returns circles around blocks, each entered at a junction of the previous walk.
 std::vector<size_t> CircleBlocks(const TourOptions& options, Random random) {
   const int block_columns = options.columns - 1;
   const int block_rows = options.rows - 1;
@@ -85,7 +86,7 @@ std::vector<size_t> CircleBlocks(const TourOptions& options, Random random) {
     std::vector<size_t> circle = Circle(options.columns, column, row, clockwise);
     const auto entry = std::find(circle.begin(), circle.end(), walk[position]);
     if (entry == circle.end()) continue;
-    // ... P ... becomes ... P, round the block, P ...
+    // Replaces ... P ... by ... P, round the block, P ...
     std::rotate(circle.begin(), entry, circle.end());
     std::vector<size_t> longer = walk;
     longer.insert(longer.begin() + static_cast<std::ptrdiff_t>(position), circle.begin(),

@@ -13,14 +13,14 @@ struct TourOptions {
   int blocks = 2;  ///< how many blocks are circled, each once; at least 1
 };
 
-/// A closed walk over the junctions of a lattice, without turning round at any of them: circles
-/// around blocks, all in the same sense, the next one entered at a junction of the walk so far, so
-/// that the walk comes back along the side that two blocks share in the opposite direction. Two
-/// blocks are circled in a longer walk that also repeats a side in the same direction soon.
+/// Returns a closed walk over the junctions of a lattice that never turns back: circles around
+/// blocks, all in the same sense. Each block is entered at a junction of the previous walk, so that
+/// the walk returns along the common side of two blocks in the opposite direction. A walk around
+/// two blocks is longer and also repeats a side in the same direction soon.
 std::vector<size_t> PlanTour(const TourOptions& options, Random random);
 
-/// Circles around one to four blocks of the same lattice, each over some side that `tour` does not
-/// use in its direction: for traffic that crosses the tour.
+/// Returns circles around one to four blocks of the same lattice, each over some side that `tour`
+/// does not use in its direction, for traffic that crosses the tour.
 std::vector<std::vector<size_t>> PlanOtherTours(const std::vector<size_t>& tour, int columns,
                                                 int rows, Random random);
 

@@ -17,10 +17,10 @@ struct Town {
   std::vector<uint32_t> cyclists;     ///< the first of kPedalPhases models of each person
 };
 
-/// The streets of the town of a seed; the plan's own seed is drawn from it.
+/// Plans the streets of the town of a seed; the plan's own seed is drawn from it.
 StreetPlan PlanTown(uint64_t seed, PlanOptions plan = {});
 
-/// The town of a seed; the plan's own seed is drawn from it.
+/// Builds the town of a seed; the plan's own seed is drawn from it.
 Town BuildTown(uint64_t seed, PlanOptions plan = {});
 
 }  // namespace orb360::town

@@ -11,7 +11,7 @@
 namespace orb360::town {
 namespace {
 
-/// A direction uniform over the sphere.
+/// Returns a direction with a uniform distribution over the sphere.
 Vector3f RandomDirection(Random& random) {
   const auto z = static_cast<float>(random.Uniform(-1, 1));
   const auto angle = static_cast<float>(random.Uniform(0, 2 * std::numbers::pi));
@@ -19,8 +19,8 @@ Vector3f RandomDirection(Random& random) {
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
-/// A square card with leaves on it, its twig at `root`, lit as part of a crown whose surface faces
-/// `outward` there.
+/// Adds a square card with leaves, whose twig is at `root`, lit as part of a crown whose surface
+/// faces `outward` there.
 void AddLeafCard(MeshBuilder& b, MaterialId leaves, const Vector3f& root, const Vector3f& along,
                  float size, const Vector3f& outward, Random& random) {
   const Vector3f up = along.normalized();
@@ -36,7 +36,7 @@ void AddLeafCard(MeshBuilder& b, MaterialId leaves, const Vector3f& root, const 
   b.AddTriangle(leaves, index[0], index[2], index[3]);
 }
 
-/// How a kind of tree grows; lengths in metres.
+/// Growth parameters of a kind of tree; lengths in metres.
 struct Species {
   float trunk_low, trunk_high;  ///< range of the trunk's length
   float spread;                 ///< how far branches lean from their parent's direction
@@ -56,7 +56,7 @@ constexpr std::array<Species, 5> kSpecies = {{
     {1.9F, 2.4F, 0.95F, 0.4F, 0.7F, 0.9F, {1, 0.62F, 0.5F, 1}, {0.7F, 0.65F, 0.6F, 1}},
 }};
 
-/// A branch with branches, down to `levels`; the ends of the last ones are collected.
+/// Adds a branch with its branches, down to `levels`, and collects the ends of the last ones.
 void Grow(MeshBuilder& b, const Species& species, const Vector3f& base, const Vector3f& direction,
           float length, float radius, int levels, Random& random, std::vector<Vector3f>* tips) {
   const Vector3f middle = base + 0.5F * length * direction;

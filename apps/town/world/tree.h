@@ -5,10 +5,10 @@
 
 namespace orb360::town {
 
-/// A broad-leaved tree of some species standing at the origin, about 6 to 11 m tall.
+/// Makes a broad-leaved tree at the origin, about 6 to 11 m tall.
 Mesh MakeTree(const Materials& materials, Random random);
 
-/// A clipped hedge of unit length along x, centred at the origin: 0.8 m wide and 1.1 m high.
+/// Makes a clipped hedge of unit length along x, centred at the origin: 0.8 m wide and 1.1 m high.
 Mesh MakeBush(const Materials& materials, Random random);
 
 }  // namespace orb360::town

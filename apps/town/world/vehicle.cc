@@ -46,7 +46,7 @@ void AddCabin(MeshBuilder& b, const VehicleShape& s) {
       rise = 1 - std::pow((x - s.screen_top) / (s.screen_base - s.screen_top), 1.25F);
     if (x < s.rear_top) rise = 1 - std::pow((s.rear_top - x) / (s.rear_top - s.rear_base), 1.4F);
     rise = std::max(rise, 0.0F);
-    // The roof bows a little from end to end.
+    // The roof is slightly curved from end to end.
     const float along = (x - middle) / (s.screen_base - s.rear_base);
     const float base = s.belt - 0.03F;
     const float height = (s.roof - 0.09F * along * along - base - 0.02F) * rise;
@@ -86,7 +86,7 @@ void AddCabin(MeshBuilder& b, const VehicleShape& s) {
   });
 }
 
-/// A wheel on the side that `side` (+1 left, -1 right) names.
+/// Adds a wheel on the given side (+1 left, -1 right).
 void AddWheel(MeshBuilder& b, const Vector3f& hub, float r, float side) {
   const Materials& m = b.materials();
   constexpr int kSides = 20;
@@ -150,7 +150,7 @@ void AddMirrors(MeshBuilder& b, const VehicleShape& s) {
   }
 }
 
-/// What is seen below a car is dark: an octagonal plate just above the road.
+/// Adds a dark octagonal plate just above the road, as the visible underside of a car.
 void AddUnderside(MeshBuilder& b, const VehicleShape& s) {
   const float x = 0.46F * s.length;
   const float y = 0.42F * s.width;

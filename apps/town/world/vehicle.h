@@ -8,19 +8,19 @@ namespace orb360::town {
 enum class VehicleKind { kHatchback, kSaloon, kSuv, kVan, kEstate };
 inline constexpr int kVehicleKinds = 5;
 
-/// Length over all in metres.
+/// Returns the overall length, metres.
 float VehicleLength(VehicleKind kind);
-/// Width over all but the mirrors in metres.
+/// Returns the overall width without the mirrors, metres.
 float VehicleWidth(VehicleKind kind);
 
-/// A car on its wheels: x forward, y left, z up from the road, the origin below its middle. Its
-/// body takes the tint of the instance.
+/// Makes a car on its wheels: x forward, y left, z up from the road, the origin below its middle.
+/// Its body takes the tint of the instance.
 Mesh MakeVehicle(VehicleKind kind, const Materials& materials);
 
-/// A kind of vehicle, as often as they are seen in streets.
+/// Draws a kind of vehicle with its frequency in streets.
 VehicleKind DrawVehicleKind(Random& random);
 
-/// A car colour, most of them greys.
+/// Draws the colour of a car; most are greys.
 Rgba DrawPaint(Random& random);
 
 }  // namespace orb360::town

@@ -9,7 +9,7 @@ constexpr float kRoundness = 4.5F;  // exponent of the plan's superellipse
 constexpr float kFloor = 0.21F;     // metres, lower edge of the sills
 constexpr float kPi = std::numbers::pi_v<float>;
 
-/// A point of the plan's outline.
+/// A point of the outline in the plan.
 struct OutlinePoint {
   float x;
   float y;
@@ -20,7 +20,7 @@ float Ramp(float x, float x0, float y0, float x1, float y1) {
   return y0 + (y1 - y0) * t * t * (3 - 2 * t);
 }
 
-/// Height of bonnet and deck under the windows.
+/// Returns the height of the bonnet and the deck under the windows.
 float DeckHeight(const VehicleShape& s, float x) {
   const float half = 0.5F * s.length;
   if (x > s.screen_base) return Ramp(x, s.screen_base, s.belt, half + 0.25F, s.nose);
@@ -30,7 +30,7 @@ float DeckHeight(const VehicleShape& s, float x) {
 
 float ArchRadius(const VehicleShape& s) { return 1.16F * s.wheel_radius; }
 
-/// Height of the lower edge: sills, wheel arches, aprons.
+/// Returns the height of the lower edge: sills, wheel arches, aprons.
 float LowerEdge(const VehicleShape& s, const OutlinePoint& p) {
   const float radius = ArchRadius(s);
   for (const float axle : {s.front_axle, s.rear_axle}) {
@@ -40,19 +40,19 @@ float LowerEdge(const VehicleShape& s, const OutlinePoint& p) {
   return std::abs(p.x) > s.front_axle ? kFloor + 0.03F : kFloor;
 }
 
-/// How far (in [0, 1]) a point of the outline belongs to the nose or the tail.
+/// Returns the degree, in [0, 1], to which a point of the outline belongs to the nose or the tail.
 float Endness(const VehicleShape& s, const OutlinePoint& p) {
   return Ramp(std::abs(p.x) / (0.5F * s.length), 0.8F, 0, 0.99F, 1);
 }
 
-/// A height on the body's skin and how far it lies inside the outline there.
+/// A height on the body's skin and its distance inside the outline there.
 struct ProfilePoint {
   float z;
   float inset;
 };
 constexpr size_t kSkinPoints = 7;
 
-/// The skin above a point of the outline, from the lower edge to the deck's edge.
+/// Returns the skin above a point of the outline, from the lower edge to the edge of the deck.
 std::array<ProfilePoint, kSkinPoints> Profile(const VehicleShape& s, const OutlinePoint& p) {
   const float low = LowerEdge(s, p);
   const float top = DeckHeight(s, p.x);
@@ -76,7 +76,7 @@ Vector3f Inset(const VehicleShape& s, const OutlinePoint& p, float inset, float 
   return {p.x * (1 - inset / (0.5F * s.length)), p.y * (1 - inset / (0.5F * s.width)), z};
 }
 
-/// The skin's point at height `z`.
+/// Returns the point of the skin at height `z`.
 Vector3f SkinAt(const VehicleShape& s, const OutlinePoint& p, float z) {
   const auto profile = Profile(s, p);
   size_t k = 1;
@@ -87,7 +87,7 @@ Vector3f SkinAt(const VehicleShape& s, const OutlinePoint& p, float z) {
                std::lerp(profile[k - 1].z, profile[k].z, t));
 }
 
-/// The outline at a parameter angle: 0 is the nose, pi / 2 the left side.
+/// Returns the outline at a parameter angle: 0 is the nose, pi / 2 the left side.
 OutlinePoint OutlineAt(const VehicleShape& s, float angle) {
   const auto power = [](float x) {
     return std::copysign(std::pow(std::abs(x), 2 / kRoundness), x);
@@ -95,7 +95,8 @@ OutlinePoint OutlineAt(const VehicleShape& s, float angle) {
   return {0.5F * s.length * power(std::cos(angle)), 0.5F * s.width * power(std::sin(angle))};
 }
 
-/// The closed outline, counter-clockwise from the middle of the tail, fine at the wheel arches.
+/// Returns the closed outline, counter-clockwise from the middle of the tail, with a fine spacing
+/// at the wheel arches.
 std::vector<OutlinePoint> Outline(const VehicleShape& s) {
   const float corner = 0.84F * 0.5F * s.length;
   std::vector<float> stations;
@@ -131,7 +132,7 @@ std::vector<OutlinePoint> Outline(const VehicleShape& s) {
   return outline;
 }
 
-/// A piece of another material on the skin, between two angles of the outline and two heights.
+/// Adds a piece of another material to the skin, between two angles of the outline and two heights.
 void AddPatch(MeshBuilder& b, const VehicleShape& s, float angle0, float angle1, float z0, float z1,
               const Skin& skin) {
   constexpr int kAround = 10;
@@ -150,7 +151,7 @@ void AddPatch(MeshBuilder& b, const VehicleShape& s, float angle0, float angle1,
   AddGrid(b, rows, [&](size_t, size_t) { return skin; });
 }
 
-/// A patch on either flank between two stations.
+/// Adds a patch to either flank between two stations.
 void AddFlankPatch(MeshBuilder& b, const VehicleShape& s, float x0, float x1, float z0, float z1,
                    const Skin& skin) {
   constexpr float kProud = 0.004F;  // metres
@@ -235,10 +236,11 @@ void AddBody(MeshBuilder& b, const VehicleShape& s) {
   for (const OutlinePoint& p : Outline(s)) {
     const auto profile = Profile(s, p);
     std::vector<Vector3f> row;
-    // Under the body the skin turns in: the lining of the arches and what is seen below the sills.
+    // Under the body the skin turns inward: the lining of the arches and the visible part below the
+    // sills.
     row.push_back(Inset(s, p, 0.3F, profile.front().z));
     for (const ProfilePoint& q : profile) row.push_back(Inset(s, p, q.inset, q.z));
-    // The deck closes over a spine along the middle, slightly crowned.
+    // The deck closes over a spine along the middle, which is slightly crowned.
     const Vector3f edge = row.back();
     const Vector3f spine(std::clamp(edge.x(), -0.75F * half, 0.75F * half), 0, 0);
     for (const float share : {0.35F, 0.7F, 1.0F}) {

@@ -11,7 +11,7 @@
 
 namespace orb360::town {
 
-/// Measures of a car in metres; x runs from the tail (-length / 2) to the nose.
+/// Dimensions of a car, metres; x runs from the tail (-length / 2) to the nose.
 struct VehicleShape {
   float length;
   float width;                    ///< without the mirrors
@@ -28,22 +28,22 @@ struct VehicleShape {
 
 const VehicleShape& ShapeOf(VehicleKind kind);
 
-/// Half the body's width at `x`: a superellipse in plan.
+/// Returns half of the body's width at `x`: a superellipse in plan.
 float HalfWidth(const VehicleShape& shape, float x);
 
-/// What a cell of a grid is made of.
+/// The material and tint of a cell of a grid.
 struct Skin {
   MaterialId material;
   Rgba tint{1, 1, 1, 1};
 };
 
-/// A grid of points, rows of equal length, as smooth-shaded quads; `skin(i, j)` gives the one
-/// between rows i, i + 1 and columns j, j + 1. Faces look along (row direction) x (column
-/// direction). A grid whose last row repeats the first is smooth there as well.
+/// Adds a grid of points, rows of equal length, as smooth-shaded quads. `skin(i, j)` returns the
+/// skin of the quad between rows i, i + 1 and columns j, j + 1. Faces look along (row direction) x
+/// (column direction). A grid whose last row repeats the first one is smooth there too.
 void AddGrid(MeshBuilder& b, const std::vector<std::vector<Vector3f>>& rows,
              const std::function<Skin(size_t i, size_t j)>& skin);
 
-/// The body below the windows with wheel arches, lamps, grille, bumpers and door seams.
+/// Adds the body below the windows with wheel arches, lamps, grille, bumpers and door seams.
 void AddBody(MeshBuilder& b, const VehicleShape& shape);
 
 }  // namespace orb360::town

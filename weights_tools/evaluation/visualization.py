@@ -1,4 +1,4 @@
-"""Pictures of completed frames, and charts."""
+"""Images of completed frames, and charts."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -35,28 +35,28 @@ def write_completion(
     cv2.imwrite(str(path), np.hstack(parts), [cv2.IMWRITE_JPEG_QUALITY, 85])
 
 
-def _coloured(share: np.ndarray) -> np.ndarray:
-    levels = np.clip(255 * share, 0, 255).astype(np.uint8)
+def _coloured(fraction: np.ndarray) -> np.ndarray:
+    levels = np.clip(255 * fraction, 0, 255).astype(np.uint8)
     return cv2.applyColorMap(levels, cv2.COLORMAP_VIRIDIS)
 
 
 def _coloured_range(metres: np.ndarray, known: np.ndarray) -> np.ndarray:
-    """Near is bright; black where nothing is known."""
-    share = np.log(np.maximum(metres, NEAREST) / NEAREST) / np.log(FARTHEST / NEAREST)
-    picture = _coloured(1 - share)
-    picture[~known] = 0
-    return picture
+    """Colours of ranges: near is bright, unknown is black."""
+    fraction = np.log(np.maximum(metres, NEAREST) / NEAREST) / np.log(FARTHEST / NEAREST)
+    image = _coloured(1 - fraction)
+    image[~known] = 0
+    return image
 
 
-def _labelled(picture: np.ndarray, text: str) -> np.ndarray:
-    picture = np.ascontiguousarray(picture)
+def _labelled(image: np.ndarray, text: str) -> np.ndarray:
+    image = np.ascontiguousarray(image)
     for colour, thickness in (((0, 0, 0), 4), ((255, 255, 255), 1)):
-        cv2.putText(picture, text, (8, 22), cv2.FONT_HERSHEY_SIMPLEX, 0.6, colour, thickness)
-    return picture
+        cv2.putText(image, text, (8, 22), cv2.FONT_HERSHEY_SIMPLEX, 0.6, colour, thickness)
+    return image
 
 
 def write_calibration(path: Path, table: np.ndarray) -> None:
-    """Expected against observed error; on the diagonal confidence tells the truth."""
+    """Draws observed over expected error; a calibrated confidence lies on the diagonal."""
     if len(table) == 0:
         return
     ends = np.array([table.min(), table.max()])
@@ -71,7 +71,7 @@ def write_chart(
     curves: Mapping[str, tuple[np.ndarray, np.ndarray]],
     log_x: bool = False,
 ) -> None:
-    """Lines over a logarithmic y axis."""
+    """Draws curves over a logarithmic y axis."""
     width, height, left, bottom, margin = 900, 560, 80, 60, 24
     canvas = np.full((height, width, 3), 255, np.uint8)
     xs = np.concatenate([np.asarray(x, float) for x, _ in curves.values()])
@@ -116,8 +116,9 @@ class _Axis:
         return float(np.log(max(value, 1e-12)) if self._is_log else value)
 
     def pixel(self, value: float) -> int:
-        share = (self._place(value) - self._low) / (self._high - self._low)
-        return round(self._first + float(np.clip(share, -0.02, 1.02)) * (self._last - self._first))
+        fraction = (self._place(value) - self._low) / (self._high - self._low)
+        position = float(np.clip(fraction, -0.02, 1.02))
+        return round(self._first + position * (self._last - self._first))
 
     def ticks(self) -> np.ndarray:
         places = np.linspace(self._low, self._high, 6)
