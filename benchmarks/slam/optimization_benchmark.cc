@@ -48,7 +48,7 @@ void AdjustTwentyKeyframes(benchmark::State& state) {
 }
 BENCHMARK(AdjustTwentyKeyframes)->ArgName("ranges")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
-using Solver = BundleReport (*)(const BundleOptions&, BundleProblem*);
+using Solver = SolverReport (*)(const BundleOptions&, BundleProblem*);
 
 // 10 poses that move and 16 that do not, 2,300 points seen by five of them in a row.
 void SolveWindow(benchmark::State& state, Solver solve) {

@@ -30,8 +30,8 @@ TEST_P(BundleSolvers, ComeToTheSameMinimum) {
     BundleProblem other = own;
     const BundleOptions options{
         .max_iterations = 200, .loss = GetParam(), .function_tolerance = 1e-15};
-    const BundleReport ours = SolveBundle(options, &own);
-    const BundleReport by_ceres = SolveBundleByCeres(options, &other);
+    const SolverReport ours = SolveBundle(options, &own);
+    const SolverReport by_ceres = SolveBundleByCeres(options, &other);
     ASSERT_TRUE(ours.usable && by_ceres.usable);
     EXPECT_NEAR(ours.initial_cost, by_ceres.initial_cost, 1e-9 * by_ceres.initial_cost);
     EXPECT_LT(ours.final_cost, 0.9 * ours.initial_cost);
@@ -44,7 +44,7 @@ TEST_P(BundleSolvers, ComeToTheSameMinimum) {
   }
 }
 
-// Points that more poses see than ReducedStructure::kMaxPoses are not eliminated.
+// Points that more poses see than ReducedCameraStructure::kMaxPoses are not eliminated.
 TEST(SolveBundle, ComesToTheMinimumOfCeresWhereAllSeeTheSamePoints) {
   BundleProblem own = NoisyWalk(7);
   RandomGeometry random(7);
@@ -60,8 +60,8 @@ TEST(SolveBundle, ComesToTheMinimumOfCeresWhereAllSeeTheSamePoints) {
   }
   BundleProblem other = own;
   const BundleOptions options{.max_iterations = 100, .function_tolerance = 1e-12};
-  const BundleReport ours = SolveBundle(options, &own);
-  const BundleReport by_ceres = SolveBundleByCeres(options, &other);
+  const SolverReport ours = SolveBundle(options, &own);
+  const SolverReport by_ceres = SolveBundleByCeres(options, &other);
   ASSERT_TRUE(ours.usable && by_ceres.usable);
   EXPECT_LT(ours.final_cost, 0.9 * ours.initial_cost);
   EXPECT_NEAR(ours.final_cost, by_ceres.final_cost, 1e-8 * by_ceres.final_cost);
@@ -72,8 +72,8 @@ TEST_P(BundleSolvers, ComeEquallyFarInFewSteps) {
   BundleProblem own = NoisyWalk(4);
   BundleProblem other = own;
   const BundleOptions options{.max_iterations = 4, .loss = GetParam()};
-  const BundleReport ours = SolveBundle(options, &own);
-  const BundleReport by_ceres = SolveBundleByCeres(options, &other);
+  const SolverReport ours = SolveBundle(options, &own);
+  const SolverReport by_ceres = SolveBundleByCeres(options, &other);
   ASSERT_TRUE(ours.usable);
   EXPECT_LE(ours.iterations, 4);
   EXPECT_LT(ours.final_cost, 0.9 * ours.initial_cost);
@@ -106,8 +106,8 @@ TEST_P(BundleSolvers, ComeAsFarFarAwayFromTheOrigin) {
     BundleProblem near_copy = near;
     BundleProblem far_copy = far;
     const BundleOptions options{.max_iterations = 3, .loss = GetParam()};
-    const BundleReport near_report = solve(options, &near_copy);
-    const BundleReport far_report = solve(options, &far_copy);
+    const SolverReport near_report = solve(options, &near_copy);
+    const SolverReport far_report = solve(options, &far_copy);
     EXPECT_LT(near_report.final_cost, 0.95 * near_report.initial_cost);
     EXPECT_NEAR(far_report.final_cost, near_report.final_cost, 1e-6 * near_report.final_cost);
   }
@@ -140,7 +140,7 @@ TEST(SolveBundle, BearsPointsWithoutParallax) {
       problem.observations.push_back({i, point, seen.normalized(), 0.001});
     }
   }
-  const BundleReport report = SolveBundle({.max_iterations = 50}, &problem);
+  const SolverReport report = SolveBundle({.max_iterations = 50}, &problem);
   ASSERT_TRUE(report.usable);
   EXPECT_LT(report.final_cost, 0.9 * report.initial_cost);
   for (size_t o = first_far; o < problem.observations.size(); ++o) {
@@ -153,8 +153,8 @@ TEST(SolveBundle, ComesDownFromAFarStart) {
   BundleProblem problem = FarStart(9);
   BundleProblem other = problem;
   const BundleOptions options{.max_iterations = 300, .function_tolerance = 1e-12};
-  const BundleReport report = SolveBundle(options, &problem);
-  const BundleReport by_ceres = SolveBundleByCeres(options, &other);
+  const SolverReport report = SolveBundle(options, &problem);
+  const SolverReport by_ceres = SolveBundleByCeres(options, &other);
   ASSERT_TRUE(report.usable && by_ceres.usable);
   EXPECT_LT(report.final_cost, 0.5 * report.initial_cost);
   EXPECT_LT(report.final_cost, 1.2 * by_ceres.final_cost);
@@ -166,7 +166,7 @@ TEST(SolveBundle, RefusesAStepThatLeadsUpAndFindsOneThatLeadsDown) {
     BundleProblem problem = FarStart(seed);
     BundleOptions options{.max_iterations = 1, .loss = BundleLoss::kArctan};
     for (int step = 1; step <= 3; ++step) {
-      const BundleReport report = SolveBundle(options, &problem);
+      const SolverReport report = SolveBundle(options, &problem);
       EXPECT_LE(report.final_cost, report.initial_cost) << seed;
       if (report.final_cost < report.initial_cost) continue;
       ++refused;
@@ -182,7 +182,7 @@ TEST(SolveBundle, RefusesAStepThatLeadsUpAndFindsOneThatLeadsDown) {
 TEST(SolveBundle, StopsWhereNothingIsToBeGained) {
   BundleProblem problem = NoisyWalk(12);
   SolveBundle({.max_iterations = 200, .function_tolerance = 1e-12}, &problem);
-  const BundleReport again =
+  const SolverReport again =
       SolveBundle({.max_iterations = 200, .function_tolerance = 1e-6}, &problem);
   EXPECT_EQ(again.iterations, 1);
 }
@@ -190,7 +190,7 @@ TEST(SolveBundle, StopsWhereNothingIsToBeGained) {
 TEST(SolveBundle, NothingToMoveAndNothingSeenAreNoError) {
   BundleProblem held = NoisyWalk(10);
   held.pose_fixed.assign(held.pose_fixed.size(), 1);
-  const BundleReport report = SolveBundle({}, &held);
+  const SolverReport report = SolveBundle({}, &held);
   EXPECT_TRUE(report.usable);
   EXPECT_LT(report.final_cost, report.initial_cost);  // points move
 

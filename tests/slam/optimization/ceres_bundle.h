@@ -12,8 +12,15 @@
 
 namespace orb360 {
 
+inline std::unique_ptr<ceres::LossFunction> MakeCeresLoss(const RobustLoss& loss) {
+  if (loss.kind == RobustLoss::kHuber) return std::make_unique<ceres::HuberLoss>(loss.scale);
+  if (loss.kind == RobustLoss::kCauchy) return std::make_unique<ceres::CauchyLoss>(loss.scale);
+  if (loss.kind == RobustLoss::kArctan) return std::make_unique<ceres::ArctanLoss>(loss.scale);
+  return nullptr;
+}
+
 /// SolveBundle by Ceres, as independent truth.
-inline BundleReport SolveBundleByCeres(const BundleOptions& options, BundleProblem* bundle) {
+inline SolverReport SolveBundleByCeres(const BundleOptions& options, BundleProblem* bundle) {
   // As PointCost has them.
   std::vector<std::array<double, 7>> poses(bundle->world_from_camera.size());
   for (size_t i = 0; i < poses.size(); ++i) {
@@ -23,8 +30,8 @@ inline BundleReport SolveBundleByCeres(const BundleOptions& options, BundleProbl
   }
   std::vector<Eigen::Vector3d> points = bundle->points;
 
-  const std::unique_ptr<ceres::LossFunction> loss = MakeBearingLoss(options.loss);
-  ceres::CauchyLoss range_loss(kRangeCauchySigmas);
+  const std::unique_ptr<ceres::LossFunction> loss = MakeCeresLoss(DirectionLoss(options.loss));
+  const std::unique_ptr<ceres::LossFunction> range_loss = MakeCeresLoss(RangeLoss());
   ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>> manifold;
   ceres::Problem::Options problem_options;
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -57,7 +64,7 @@ inline BundleReport SolveBundleByCeres(const BundleOptions& options, BundleProbl
   }
   for (const BundleProblem::Range& r : bundle->ranges) {
     range_costs.emplace_back(RangeResidual(r.range, r.sigma));
-    problem.AddResidualBlock(&range_costs.back(), &range_loss, poses[r.pose].data(),
+    problem.AddResidualBlock(&range_costs.back(), range_loss.get(), poses[r.pose].data(),
                              points[r.point].data());
   }
 
@@ -76,7 +83,7 @@ inline BundleReport SolveBundleByCeres(const BundleOptions& options, BundleProbl
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options, &problem, &summary);
 
-  BundleReport report{summary.initial_cost, summary.final_cost,
+  SolverReport report{summary.initial_cost, summary.final_cost,
                       static_cast<int>(summary.iterations.size()) - 1, summary.IsSolutionUsable()};
   if (!report.usable) return report;
   for (size_t i = 0; i < poses.size(); ++i) {
