@@ -9,7 +9,7 @@
 #include "slam/optimization/local_bundle_adjustment.h"
 #include "slam/optimization/pose_refinement.h"
 #include "tests/slam/geometry/random_geometry.h"
-#include "tests/slam/optimization/ceres_bundle.h"
+#include "slam/optimization/ceres/bundle_solver.h"
 #include "tests/slam/pipeline/synthetic_scene.h"
 
 namespace orb360 {
@@ -118,9 +118,9 @@ void SolveMap(benchmark::State& state, Solver solve) {
   }
 }
 BENCHMARK_CAPTURE(SolveMap, ours, SolveBundle)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(SolveMap, ceres, SolveBundleByCeres)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(SolveMap, ceres, SolveBundleCeres)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(SolveWindow, ours, SolveBundle)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(SolveWindow, ceres, SolveBundleByCeres)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(SolveWindow, ceres, SolveBundleCeres)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace orb360

@@ -4,13 +4,15 @@
 
 #include "nn/base/check.h"
 #include "slam/optimization/bearing_residual.h"
+#include "slam/optimization/ceres/bundle_solver.h"
 #include "slam/optimization/schur/bundle_solver.h"
 
 namespace orb360 {
 
 SolverReport SolveBundle(const BundleOptions& options, BundleProblem* problem) {
   ORB360_CHECK(problem->pose_fixed.size() == problem->world_from_camera.size());
-  return SolveBundleSchur(options, problem);
+  return options.optimizer == Optimizer::kCeres ? SolveBundleCeres(options, problem)
+                                                : SolveBundleSchur(options, problem);
 }
 
 double SquaredResidual(const BundleProblem& problem,

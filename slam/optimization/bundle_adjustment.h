@@ -1,6 +1,7 @@
 #pragma once
 
 #include "slam/optimization/bundle_problem.h"
+#include "slam/optimization/optimizer.h"
 #include "slam/optimization/solver_report.h"
 
 namespace orb360 {
@@ -22,6 +23,7 @@ struct BundleOptions {
   BundleLoss loss = BundleLoss::kHuber;
   /// The solver stops when an iteration changes the cost by less than this fraction.
   double function_tolerance = 1e-4;
+  Optimizer optimizer = Optimizer::kSchur;
 };
 
 /// Minimizes the robust cost of tangent-plane residuals (bearing_residual.h; paper Eq. 11), heights

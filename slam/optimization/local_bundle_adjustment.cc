@@ -223,12 +223,13 @@ void AdjustLocally(KeyframeId center, const LocalBundleOptions& options,
     fixed.push_back(*oldest);
     moving.erase(oldest);
   }
-  Adjust(moving, fixed, landmarks, {.max_iterations = options.max_iterations}, ground,
+  Adjust(moving, fixed, landmarks,
+         {.max_iterations = options.max_iterations, .optimizer = options.optimizer}, ground,
          options.height_sigma, false, map);
 }
 
 void AdjustGlobally(int max_iterations, const std::optional<KnownGround>& ground,
-                    double height_sigma, Map* map) {
+                    double height_sigma, Map* map, Optimizer optimizer) {
   const std::vector<KeyframeId> keyframes = map->KeyframeIds();
   if (keyframes.size() < 2) return;
   const std::span<const KeyframeId> all(keyframes);
@@ -238,8 +239,8 @@ void AdjustGlobally(int max_iterations, const std::optional<KnownGround>& ground
       if (map->HasLandmark(id)) landmarks.push_back(id);
     }
     Adjust(all.subspan(1), all.first(1), landmarks,
-           {.max_iterations = max_iterations, .loss = BundleLoss::kArctan}, ground, height_sigma,
-           true, map);
+           {.max_iterations = max_iterations, .loss = BundleLoss::kArctan, .optimizer = optimizer},
+           ground, height_sigma, true, map);
   }
 }
 

@@ -5,6 +5,7 @@
 #include "slam/map/ground.h"
 #include "slam/map/map.h"
 #include "slam/optimization/bundle_adjustment.h"
+#include "slam/optimization/optimizer.h"
 
 namespace orb360 {
 
@@ -21,6 +22,7 @@ struct LocalBundleOptions {
   /// Standard deviation of the camera's height over the plane through the ground around it, as a
   /// fraction of the height. Roads are not flat, and cameras sway.
   double height_sigma = 0.01;
+  Optimizer optimizer = Optimizer::kSchur;
 };
 
 /// Adjusts the neighbourhood of a keyframe (paper Eq. 11): the poses of the keyframes around it and
@@ -36,6 +38,6 @@ void AdjustLocally(KeyframeId center, const LocalBundleOptions& options,
 /// each. At the ends of a loop, landmarks that merely look alike have become one, and a few dozen
 /// of them bend the map; the first round finds and removes them, the second adjusts without them.
 void AdjustGlobally(int max_iterations, const std::optional<KnownGround>& ground,
-                    double height_sigma, Map* map);
+                    double height_sigma, Map* map, Optimizer optimizer = Optimizer::kSchur);
 
 }  // namespace orb360

@@ -5,6 +5,7 @@
 
 #include "slam/features/features.h"
 #include "slam/geometry/rigid3.h"
+#include "slam/optimization/optimizer.h"
 
 namespace orb360 {
 
@@ -52,6 +53,7 @@ struct InitializationResult {
 /// bundle adjustment. The points' parallax is measured after the rotation is taken out, so that a
 /// turning camera is not taken for a moving one.
 InitializationResult InitializeFromTwoViews(const Features& features1, const Features& features2,
-                                            const InitializerOptions& options);
+                                            const InitializerOptions& options,
+                                            Optimizer optimizer = Optimizer::kSchur);
 
 }  // namespace orb360

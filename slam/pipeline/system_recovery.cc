@@ -102,7 +102,8 @@ void System::InitializeMap(const PendingFrame& frame) {
     if (reference == pending_.end()) reference = std::prev(pending_.end());
     reference_index_ = reference->index;
     const InitializationResult result =
-        InitializeFromTwoViews(*reference->features, *frame.features, options_.initializer);
+        InitializeFromTwoViews(*reference->features, *frame.features, options_.initializer,
+                               options_.mapper.bundle.optimizer);
     if (result.map) {
       CreateMap(*reference, frame, *result.map);
       return;
@@ -151,7 +152,7 @@ void System::CreateMap(const PendingFrame& first, const PendingFrame& second,
     map.UpdateAppearance(landmark);
   }
   TriangulateNewLandmarks(keyframe2, options_.mapper.triangulation, &map);
-  AdjustGlobally(10, std::nullopt, 0.0, &map);
+  AdjustGlobally(10, std::nullopt, 0.0, &map, options_.mapper.bundle.optimizer);
 
   // Gauge: the surroundings are one unit of length away; a later map goes on where the last pose
   // of the one before was, in its scale.

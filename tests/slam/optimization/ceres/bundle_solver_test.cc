@@ -1,9 +1,10 @@
+#include "slam/optimization/ceres/bundle_solver.h"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "slam/optimization/bundle_adjustment.h"
-#include "tests/slam/optimization/ceres_bundle.h"
+#include "slam/optimization/schur/bundle_solver.h"
 #include "tests/slam/optimization/noisy_walk.h"
 
 namespace orb360 {
@@ -31,7 +32,7 @@ TEST_P(BundleSolvers, ComeToTheSameMinimum) {
     const BundleOptions options{
         .max_iterations = 200, .loss = GetParam(), .function_tolerance = 1e-15};
     const SolverReport ours = SolveBundle(options, &own);
-    const SolverReport by_ceres = SolveBundleByCeres(options, &other);
+    const SolverReport by_ceres = SolveBundleCeres(options, &other);
     ASSERT_TRUE(ours.usable && by_ceres.usable);
     EXPECT_NEAR(ours.initial_cost, by_ceres.initial_cost, 1e-9 * by_ceres.initial_cost);
     EXPECT_LT(ours.final_cost, 0.9 * ours.initial_cost);
@@ -61,7 +62,7 @@ TEST(SolveBundle, ComesToTheMinimumOfCeresWhereAllSeeTheSamePoints) {
   BundleProblem other = own;
   const BundleOptions options{.max_iterations = 100, .function_tolerance = 1e-12};
   const SolverReport ours = SolveBundle(options, &own);
-  const SolverReport by_ceres = SolveBundleByCeres(options, &other);
+  const SolverReport by_ceres = SolveBundleCeres(options, &other);
   ASSERT_TRUE(ours.usable && by_ceres.usable);
   EXPECT_LT(ours.final_cost, 0.9 * ours.initial_cost);
   EXPECT_NEAR(ours.final_cost, by_ceres.final_cost, 1e-8 * by_ceres.final_cost);
@@ -73,7 +74,7 @@ TEST_P(BundleSolvers, ComeEquallyFarInFewSteps) {
   BundleProblem other = own;
   const BundleOptions options{.max_iterations = 4, .loss = GetParam()};
   const SolverReport ours = SolveBundle(options, &own);
-  const SolverReport by_ceres = SolveBundleByCeres(options, &other);
+  const SolverReport by_ceres = SolveBundleCeres(options, &other);
   ASSERT_TRUE(ours.usable);
   EXPECT_LE(ours.iterations, 4);
   EXPECT_LT(ours.final_cost, 0.9 * ours.initial_cost);
@@ -102,7 +103,7 @@ TEST_P(BundleSolvers, ComeAsFarFarAwayFromTheOrigin) {
   const Eigen::Vector3d away(2000, -500, 100);
   for (Rigid3& pose : far.world_from_camera) pose.translation += away;
   for (Eigen::Vector3d& point : far.points) point += away;
-  for (const auto solve : {SolveBundle, SolveBundleByCeres}) {
+  for (const auto solve : {SolveBundle, SolveBundleCeres}) {
     BundleProblem near_copy = near;
     BundleProblem far_copy = far;
     const BundleOptions options{.max_iterations = 3, .loss = GetParam()};
@@ -154,7 +155,7 @@ TEST(SolveBundle, ComesDownFromAFarStart) {
   BundleProblem other = problem;
   const BundleOptions options{.max_iterations = 300, .function_tolerance = 1e-12};
   const SolverReport report = SolveBundle(options, &problem);
-  const SolverReport by_ceres = SolveBundleByCeres(options, &other);
+  const SolverReport by_ceres = SolveBundleCeres(options, &other);
   ASSERT_TRUE(report.usable && by_ceres.usable);
   EXPECT_LT(report.final_cost, 0.5 * report.initial_cost);
   EXPECT_LT(report.final_cost, 1.2 * by_ceres.final_cost);
