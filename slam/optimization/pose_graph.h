@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "slam/geometry/rigid3.h"
+#include "slam/optimization/optimizer.h"
+#include "slam/optimization/solver_report.h"
 
 namespace orb360 {
 
@@ -25,8 +27,21 @@ struct PoseGraph {
   double unit = 1.0;
 };
 
-/// Moves the nodes that are not fixed to the minimum of the edges' squared errors, in place, with
-/// Ceres on one thread. False where that fails numerically; then no node has moved.
-bool SolvePoseGraph(PoseGraph* graph);
+struct PoseGraphOptions {
+  int max_iterations = 30;
+  /// The solver stops when an iteration changes the cost by less than this fraction ...
+  double function_tolerance = 1e-6;
+  /// ... when no component of the gradient is larger ...
+  double gradient_tolerance = 1e-10;
+  /// ... or when the norm of the step is less than this fraction of the norm of all parameters.
+  double parameter_tolerance = 1e-8;
+  Optimizer optimizer = Optimizer::kSchur;
+};
+
+/// Moves the nodes that are not fixed to the minimum of half the sum of the edges' weighted squared
+/// errors, in place and on one thread. The error of an edge is that of second_from_first *
+/// first_from_second: rotation, translation over `unit` and logarithm of the scale.
+/// Contract: the nodes and edges are consistent and `unit` is positive.
+SolverReport SolvePoseGraph(const PoseGraphOptions& options, PoseGraph* graph);
 
 }  // namespace orb360

@@ -79,7 +79,7 @@ double ScaleOfChange(const Keyframe& before, const Map& map_before, const Map& m
 
 }  // namespace
 
-std::vector<Similarity3> CloseLoop(const Loop& loop, Map* map) {
+std::vector<Similarity3> CloseLoop(const Loop& loop, Map* map, Optimizer optimizer) {
   const std::vector<KeyframeId> ids = map->KeyframeIds();
   std::vector<int> node_of(map->keyframe_end(), -1);
   PoseGraph graph;
@@ -107,7 +107,8 @@ std::vector<Similarity3> CloseLoop(const Loop& loop, Map* map) {
     graph.edges.push_back({node_of[revisit.place], node_of[revisit.keyframe],
                            revisit.place_from_keyframe, kRevisitWeight * revisit.shared});
   }
-  if (graph.edges.size() == num_old_edges || !SolvePoseGraph(&graph)) return {};
+  if (graph.edges.size() == num_old_edges) return {};
+  if (!SolvePoseGraph({.optimizer = optimizer}, &graph).usable) return {};
 
   std::vector<Similarity3> corrections(map->keyframe_end());
   for (const KeyframeId id : ids) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "slam/map/map.h"
+#include "slam/optimization/optimizer.h"
 #include "slam/pipeline/loop_detector.h"
 
 namespace orb360 {
@@ -11,7 +12,8 @@ namespace orb360 {
 /// brings the ends together, landmarks go along with their keyframes, and those that both ends have
 /// are fused. Returns by keyframe id what moved the world around each (removed keyframes: around
 /// the one that stands for them); nothing, and the map as it was, where that fails numerically.
-std::vector<Similarity3> CloseLoop(const Loop& loop, Map* map);
+std::vector<Similarity3> CloseLoop(const Loop& loop, Map* map,
+                                   Optimizer optimizer = Optimizer::kSchur);
 
 /// Joins the present map to the finished one that a loop leads to, in the latter's world and scale.
 /// Ids of the finished map stay; those of the present one grow by keyframe_end() and landmark_end()

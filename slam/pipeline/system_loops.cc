@@ -35,7 +35,8 @@ void System::StartIn(Map map, const std::optional<KnownGround>& ground, bool is_
 void System::StartLoopCorrection() {
   const KeyframeId reference = map_.LivingKeyframe(local_.reference);
   auto correct = [map = std::move(map_), loops = std::move(loops_), loop = std::move(*loop_),
-                  finished = &finished_maps_, reference]() mutable {
+                  finished = &finished_maps_, reference,
+                  optimizer = options_.mapper.bundle.optimizer]() mutable {
     omp_set_num_threads(1);
     MappingResult result;
     result.loops = std::move(loops);
@@ -55,7 +56,7 @@ void System::StartLoopCorrection() {
       result.closed = closed;
       result.map = JoinMaps(loop, std::move(map), std::move(other), &result.correction);
     } else {
-      result.corrections = CloseLoop(loop, &map);
+      result.corrections = CloseLoop(loop, &map, optimizer);
       if (!result.corrections.empty()) {
         result.closed = closed;
         result.correction = result.corrections[reference];
@@ -122,7 +123,8 @@ void System::StartBundle() {
   before.ForgetPictures(0);
   auto adjust = [map = before, ground = ReliableGround(), options = options_]() mutable {
     omp_set_num_threads(1);
-    AdjustGlobally(options.loop.bundle_iterations, ground, options.loop.height_sigma, &map);
+    AdjustGlobally(options.loop.bundle_iterations, ground, options.loop.height_sigma, &map,
+                   options.mapper.bundle.optimizer);
     return std::move(map);
   };
   const double frames = options_.loop.bundle_frames * map_.num_keyframes();

@@ -49,8 +49,12 @@ class TrustRegion {
 
 struct LevenbergMarquardtOptions {
   int max_iterations;
-  /// The solver stops when an iteration changes the cost by less than this fraction.
+  /// The solver stops when an iteration changes the cost by less than this fraction ...
   double function_tolerance;
+  /// ... when no component of the gradient is larger ...
+  double gradient_tolerance = 0;
+  /// ... or when the norm of the step is less than this fraction of the state's.
+  double parameter_tolerance = 0;
 };
 
 /// Minimizes a cost by Levenberg and Marquardt's method, damped as Ceres does it. A Problem has a
@@ -64,6 +68,10 @@ struct LevenbergMarquardtOptions {
 ///                                   to rounding or where the model predicts no decrease
 ///   double CandidateCost() const    cost of the candidate
 ///   void AcceptCandidate()          makes the candidate the state
+/// and, where their tolerances are positive,
+///   double GradientMaxNorm() const  largest component of the gradient at the state
+///   std::pair<double, double> StepAndStateNorms() const
+///                                   norm of the step to the candidate, and of the state
 /// The state is unchanged where the report is not usable.
 template <typename Problem>
 SolverReport MinimizeLevenbergMarquardt(const LevenbergMarquardtOptions& options,
@@ -76,15 +84,25 @@ SolverReport MinimizeLevenbergMarquardt(const LevenbergMarquardtOptions& options
   bool is_linearized = false;
   bool has_solved = false;
   while (report.iterations < options.max_iterations && cost > 0) {
-    ++report.iterations;
-    if (!is_linearized) problem->Linearize();
+    if (!is_linearized) {
+      problem->Linearize();
+      if constexpr (requires { problem->GradientMaxNorm(); }) {
+        if (problem->GradientMaxNorm() <= options.gradient_tolerance) break;
+      }
+    }
     is_linearized = true;
+    ++report.iterations;
     double gain_ratio = 0;
     bool has_converged = false;
     if (const std::optional<double> predicted = problem->ComputeCandidate(region.radius())) {
       has_solved = true;
       const double new_cost = problem->CandidateCost();
       has_converged = std::abs(cost - new_cost) <= options.function_tolerance * cost;
+      if constexpr (requires { problem->StepAndStateNorms(); }) {
+        const auto [step, state] = problem->StepAndStateNorms();
+        const double tolerance = options.parameter_tolerance;
+        has_converged |= step <= tolerance * (state + tolerance);
+      }
       gain_ratio = (cost - new_cost) / *predicted;
       if (gain_ratio > TrustRegion::kMinGainRatio) {
         problem->AcceptCandidate();
