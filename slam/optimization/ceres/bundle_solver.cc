@@ -47,11 +47,14 @@ class CeresBundle {
       Eigen::Map<Eigen::Vector3d>(poses_[i].data() + 4) = world_from_camera.translation;
       problem_.AddParameterBlock(poses_[i].data(), 7, &manifold_);
       if (bundle.pose_fixed[i]) problem_.SetParameterBlockConstant(poses_[i].data());
-      ordering_->AddElementToGroup(poses_[i].data(), 1);
     }
+    for (Eigen::Vector3d& point : points_) problem_.AddParameterBlock(point.data(), 3);
+    // The more numerous variables are eliminated. Those are the points, except where a long track
+    // follows a few of them: their elimination would make the reduced system large and full.
+    const bool eliminates_points = points_.size() >= poses_.size();
+    for (auto& pose : poses_) ordering_->AddElementToGroup(pose.data(), eliminates_points ? 1 : 0);
     for (Eigen::Vector3d& point : points_) {
-      problem_.AddParameterBlock(point.data(), 3);
-      ordering_->AddElementToGroup(point.data(), 0);  // eliminated first
+      ordering_->AddElementToGroup(point.data(), eliminates_points ? 0 : 1);
     }
     for (const BundleProblem::Observation& o : bundle.observations) {
       directions_.emplace_back(DirectionResidual(o.bearing, o.sigma));

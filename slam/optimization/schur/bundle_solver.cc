@@ -18,7 +18,7 @@ class BundleMinimization {
  public:
   BundleMinimization(BundleLoss loss, const BundleProblem& problem)
       : evaluator_(loss, problem),
-        structure_(evaluator_.num_free_poses(), evaluator_.pairs()),
+        structure_(evaluator_.num_free_poses(), evaluator_.pairs(), MaxPoses(problem)),
         cholesky_(structure_) {
     for (const Rigid3& pose : problem.world_from_camera) {
       state_.camera_from_world.push_back(pose.Inverse());
@@ -63,6 +63,15 @@ class BundleMinimization {
   const BundleState& state() const { return state_; }
 
  private:
+  // Where there are fewer points than poses, as in a long shot that follows a few tracks, all points
+  // are kept and the poses are eliminated first: the elimination of a point would link all poses
+  // that see it.
+  static size_t MaxPoses(const BundleProblem& problem) {
+    return problem.points.size() < problem.world_from_camera.size()
+               ? 0
+               : ReducedCameraStructure::kMaxPoses;
+  }
+
   BundleEvaluator evaluator_;
   ReducedCameraStructure structure_;
   BlockCholesky<kPoseSize> cholesky_;
