@@ -21,11 +21,10 @@ inline ceres::Solver::Options DeterministicSolverOptions() {
 }
 
 inline SolverReport ToReport(const ceres::Solver::Summary& summary) {
-  // The first of Ceres' iterations only evaluates the start.
-  const auto iterations = std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   return {.initial_cost = summary.initial_cost,
           .final_cost = summary.final_cost,
-          .iterations = iterations,
+          // Ceres leaves the iteration that finds the minimum out of its list of iterations.
+          .iterations = std::max(0, summary.num_linear_solves),
           .usable = summary.IsSolutionUsable()};
 }
 
