@@ -220,7 +220,7 @@ TEST(LocalBundleAdjustment, GlobalAdjustmentIsNotBentByLandmarksThatAreTwoPoints
   }
   AdjustGlobally(5, std::nullopt, 0.0, &map);
   map.CheckConsistency();
-  // The first keyframe is held, the scale is free.
+  // The first keyframe is fixed, the scale is free.
   const double scale =
       map.keyframe(8).world_from_camera.translation.norm() / poses[8].translation.norm();
   for (KeyframeId id = 1; id < 12; ++id) {

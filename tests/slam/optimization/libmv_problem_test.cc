@@ -10,12 +10,12 @@ namespace orb360 {
 namespace {
 
 const LibmvIntrinsics kIntrinsics{.focal_length = 1500,
-                                      .principal_point = {960, 540},
-                                      .k1 = -0.05,
-                                      .k2 = 0.01,
-                                      .k3 = -0.002,
-                                      .p1 = 0.001,
-                                      .p2 = -0.0005};
+                                  .principal_point = {960, 540},
+                                  .k1 = -0.05,
+                                  .k2 = 0.01,
+                                  .k3 = -0.002,
+                                  .p1 = 0.001,
+                                  .p2 = -0.0005};
 
 template <typename T>
 void Append(T value, std::string* bytes) {
