@@ -105,8 +105,8 @@ BundleProblem MakeWindow() {
 }
 
 // A whole map: three times round a block, 300 poses, 24,000 points each seen by six of them, a
-// fifth of the points in two rounds, and a few clouds seen by all.
-BundleProblem MakeMap() {
+// fifth of the points in two rounds, and `num_clouds` points seen by all.
+BundleProblem MakeMap(int num_clouds) {
   RandomGeometry random(4);
   constexpr int kPoses = 300;
   constexpr int kRound = 100;
@@ -127,7 +127,7 @@ BundleProblem MakeMap() {
       Observe(k < 6 - again ? first + k : first + kRound + k - 3, p, point, &random, &map);
     }
   }
-  for (int c = 0; c < 12; ++c) {
+  for (int c = 0; c < num_clouds; ++c) {
     const auto p = static_cast<int>(map.points.size());
     map.points.push_back(random.Point(1e4, 2e4));
     for (int i = 0; i < kPoses; ++i) Observe(i, p, map.points[p], &random, &map);
@@ -146,11 +146,20 @@ void OptimizersLocal(benchmark::State& state) {
 }
 BENCHMARK(OptimizersLocal)->Unit(benchmark::kMillisecond)->Iterations(15);
 
-// With the loss of AdjustGlobally.
+// A round of the adjustment of a whole map.
+void OptimizersGlobalFiveIterations(benchmark::State& state) {
+  CompareBundle(state, MakeMap(static_cast<int>(state.range(0))),
+                {.max_iterations = 5, .loss = BundleLoss::kArctan});
+}
+BENCHMARK(OptimizersGlobalFiveIterations)
+    ->ArgName("clouds")
+    ->Arg(0)
+    ->Arg(12)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(3);
+
 void OptimizersGlobal(benchmark::State& state) {
-  BundleOptions options = kToConvergence;
-  options.loss = BundleLoss::kArctan;
-  CompareBundle(state, MakeMap(), options);
+  CompareBundle(state, MakeMap(12), kToConvergence);
 }
 BENCHMARK(OptimizersGlobal)->Unit(benchmark::kMillisecond)->Iterations(1);
 
