@@ -93,6 +93,16 @@ std::string RangeNote(double min, double max, bool is_int) {
   return {};
 }
 
+/// "a or b", "a, b or c".
+std::string ListOf(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 < names.size() ? ", " : " or ";
+    text += names[i];
+  }
+  return text;
+}
+
 }  // namespace
 
 void ConfigSchema::Add(const std::string& key, bool* value, const std::string& doc) {
@@ -171,6 +181,11 @@ ConfigSchema::Value ConfigSchema::Parse(const Option& option, const std::string&
     require_range(*value, false);
     return *value;
   }
+  if (const auto* choice = std::get_if<Choice>(&option.variable)) {
+    const auto found = std::ranges::find(choice->names, text);
+    if (found == choice->names.end()) throw wrong(ListOf(choice->names));
+    return static_cast<size_t>(found - choice->names.begin());
+  }
   return text;
 }
 
@@ -197,8 +212,12 @@ void ConfigSchema::Load(const std::filesystem::path& file) const {
   }
   for (const auto& [variable, value] : assignments) {
     std::visit(
-        [&value = value](auto* target) {
-          *target = std::get<std::remove_pointer_t<decltype(target)>>(value);
+        [&value = value](const auto& target) {
+          if constexpr (std::is_same_v<decltype(target), const Choice&>) {
+            target.set(std::get<size_t>(value));
+          } else {
+            *target = std::get<std::remove_reference_t<decltype(*target)>>(value);
+          }
         },
         variable);
   }
@@ -224,11 +243,23 @@ std::string ConfigSchema::Document() const {
     sections = parts;
 
     const std::string indent(2 * parts.size(), ' ');
+    const auto* choice = std::get_if<Choice>(&option.variable);
     const std::string range =
-        RangeNote(option.min, option.max, std::holds_alternative<int*>(option.variable));
+        choice != nullptr
+            ? ListOf(choice->names)
+            : RangeNote(option.min, option.max, std::holds_alternative<int*>(option.variable));
     text += indent + "# " + option.doc + (range.empty() ? "" : " (" + range + ")") + "\n";
     text += indent + name + ": ";
-    text += std::visit([](const auto* value) { return TextOf(*value); }, option.variable) + "\n";
+    text += std::visit(
+                [](const auto& value) {
+                  if constexpr (std::is_same_v<decltype(value), const Choice&>) {
+                    return value.names[value.get()];
+                  } else {
+                    return TextOf(*value);
+                  }
+                },
+                option.variable) +
+            "\n";
   }
   return text;
 }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <limits>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -27,6 +29,16 @@ class ConfigSchema {
            int max = kIntMax);
   void Add(const std::string& key, double* value, const std::string& doc, double min = -kInfinity,
            double max = kInfinity);
+  /// The same for an enumeration whose values, from 0 on, have `names`.
+  template <typename Enum>
+  void Add(const std::string& key, Enum* value, const std::string& doc,
+           std::span<const char* const> names) {
+    Add(Option{key,
+               Choice{{names.begin(), names.end()},
+                      [value] { return static_cast<size_t>(*value); },
+                      [value](size_t index) { *value = static_cast<Enum>(index); }},
+               doc});
+  }
 
   /// Sets the variables that `file` names. Throws UserError with file, line and key if the file
   /// cannot be read, is not YAML, has an unknown key (the nearest known one is suggested), or has a
@@ -38,8 +50,14 @@ class ConfigSchema {
   std::string Document() const;
 
  private:
-  using Variable = std::variant<bool*, int*, double*, std::string*>;
-  using Value = std::variant<bool, int, double, std::string>;
+  /// A variable with named values.
+  struct Choice {
+    std::vector<std::string> names;
+    std::function<size_t()> get;  ///< Index of the present value's name.
+    std::function<void(size_t)> set;
+  };
+  using Variable = std::variant<bool*, int*, double*, std::string*, Choice>;
+  using Value = std::variant<bool, int, double, std::string, size_t>;
   struct Option {
     std::string key;
     Variable variable;

@@ -23,8 +23,8 @@ inline Eigen::Vector2d BearingResidual(const Eigen::Vector3d& point_camera,
   return residual;
 }
 
-/// Squared residuals of a correct match follow a chi-squared law of 2 degrees of freedom: 95 %
-/// are below this.
+/// 95 % bound of the squared residual of a correct match, which has a chi-squared distribution with
+/// 2 degrees of freedom.
 inline constexpr double kChiSquared95 = 5.991;
 
 }  // namespace orb360

@@ -1,78 +1,38 @@
 #pragma once
 
-#include <cstdint>
-#include <vector>
-
-#include <Eigen/Core>
-
-#include "slam/geometry/rigid3.h"
+#include "slam/optimization/bundle_problem.h"
+#include "slam/optimization/optimizer.h"
+#include "slam/optimization/solver_report.h"
 
 namespace orb360 {
 
-/// Poses, points and bearings that see them, by index. Solved in place.
-struct BundleProblem {
-  struct Observation {
-    int pose;
-    int point;
-    Eigen::Vector3d bearing;  // unit, camera frame
-    double sigma;             // angular noise, rad
-  };
-  /// A point of the ground: it lies `height` below the camera. See HeightResidual.
-  struct Height {
-    int pose;
-    int point;
-    Eigen::Vector3d normal;  // of the ground, unit, towards the camera, camera frame
-    double height;
-    double sigma;  // share of the height
-  };
-  /// A range that is known roughly, from completed depth. See RangeResidual.
-  struct Range {
-    int pose;
-    int point;
-    double range;
-    double sigma;  // of its logarithm
-  };
-  std::vector<Rigid3> world_from_camera;
-  std::vector<uint8_t> pose_fixed;  // by pose; at least one, or the gauge is free
-  std::vector<Eigen::Vector3d> points;
-  std::vector<Observation> observations;
-  std::vector<Height> heights;
-  std::vector<Range> ranges;
-};
-
-/// What an observation's error costs.
+/// The robust loss of the observations' residuals.
 enum class BundleLoss {
-  /// Grows like the error from one sigma on. Errors have heavier tails than a normal
-  /// distribution's, since a corner is not quite the same point from everywhere: with a loss from
-  /// the 95 % bound on (2.4 sigmas), a few corners of roofs and trees, seen from dozens of
-  /// keyframes, decide how the scale drifts.
+  /// Huber's loss, linear from one sigma on. The errors of corners have heavier tails than a normal
+  /// distribution, since a corner is not quite the same point from every side. With a loss that is
+  /// quadratic up to the 95 % bound (2.4 sigmas), a few corners of roofs and trees that dozens of
+  /// keyframes see decide how the scale drifts.
   kHuber,
-  /// Has a limit, of which three sigmas cost 86 %: for poses that are nearly right and observations
-  /// that are wrong altogether.
+  /// A bounded loss, which reaches 86 % of its limit at three sigmas. It is for poses that are
+  /// nearly right and observations some of which are wrong altogether.
   kArctan,
 };
 
 struct BundleOptions {
   int max_iterations = 10;
   BundleLoss loss = BundleLoss::kHuber;
-  /// The solver stops when an iteration lowers the cost by less than this share.
+  /// The solver stops when an iteration changes the cost by less than this fraction.
   double function_tolerance = 1e-4;
+  Optimizer optimizer = Optimizer::kSchur;
 };
 
-struct BundleReport {
-  double initial_cost = 0;
-  double final_cost = 0;
-  int iterations = 0;
-  bool usable = false;  // false: numerically failed, the problem is as it was
-};
-
-/// Bundle adjustment on tangent-plane residuals (bearing_residual.h; paper Eq. 11) by Levenberg and
-/// Marquardt's method, damped as Ceres does it, with the points eliminated, on one thread.
+/// Minimizes the robust cost of tangent-plane residuals (bearing_residual.h; paper Eq. 11), heights
+/// and ranges over all poses that are not fixed and all points, on one thread. The derivation is in
+/// docs/concepts/bundle_adjustment.md.
 /// Contract: indices are in range; every point is observed.
-BundleReport SolveBundle(const BundleOptions& options, BundleProblem* problem);
+SolverReport SolveBundle(const BundleOptions& options, BundleProblem* problem);
 
-/// Squared residual, in sigmas, of one observation; infinity where the point is on the other side
-/// of the sphere than its bearing.
+/// Squared residual of an observation in sigmas; infinite for a point behind its bearing.
 double SquaredResidual(const BundleProblem& problem, const BundleProblem::Observation& observation);
 
 }  // namespace orb360

@@ -1,23 +1,23 @@
 #pragma once
 
-#include <memory>
-
-#include <ceres/loss_function.h>
-
 #include "slam/optimization/bundle_adjustment.h"
+#include "slam/optimization/robust_loss.h"
 
 namespace orb360 {
 
-// The reason is told at BundleLoss.
-inline std::unique_ptr<ceres::LossFunction> MakeBearingLoss(BundleLoss loss) {
+/// The loss of directions. BundleLoss tells the reasons.
+constexpr RobustLoss DirectionLoss(BundleLoss loss) {
   constexpr double kHuberSigmas = 1.0;
-  constexpr double kArctanSquares = 2.0;  // squared sigmas, where the cost is half of its limit
-  if (loss == BundleLoss::kArctan) return std::make_unique<ceres::ArctanLoss>(kArctanSquares);
-  return std::make_unique<ceres::HuberLoss>(kHuberSigmas);
+  constexpr double kArctanSquares = 2.0;  // squared sigmas at which the cost is half of its limit
+  return loss == BundleLoss::kArctan ? RobustLoss{RobustLoss::kArctan, kArctanSquares}
+                                     : RobustLoss{RobustLoss::kHuber, kHuberSigmas};
 }
 
-/// Of ranges that are known roughly: networks are wrong altogether more often than corners are, and
-/// what is wrong by far should not count at all. In sigmas.
-inline constexpr double kRangeCauchySigmas = 1.0;
+/// The loss of heights. They are weighted robustly where their plane is fitted (GroundPlane).
+constexpr RobustLoss HeightLoss() { return {}; }
+
+/// The loss of ranges that are known roughly. Networks are wrong altogether more often than corners
+/// are, and a range that is wrong by far should not count at all.
+constexpr RobustLoss RangeLoss() { return {RobustLoss::kCauchy, 1.0}; }
 
 }  // namespace orb360

@@ -11,26 +11,26 @@
 namespace orb360 {
 namespace {
 
-// Where the plane below is at another height than this share allows, it is not the ground: a
-// kerb's, a roof's.
+// A plane below the camera whose height differs by more than this fraction is not the ground, but
+// that of a kerb or a roof.
 constexpr double kMaxHeightError = 0.1;
-// All ranges of a keyframe together are worth as many measurements: about as many surfaces stand
-// around a camera, and on one of them a network is right or wrong as a whole.
+// All ranges of a keyframe together weigh as much as this many independent measurements. About as
+// many surfaces stand around a camera, and a network is right or wrong about each as a whole.
 constexpr double kIndependentRanges = 5.0;
-// A third round of the whole map's adjustment finds next to nothing that is wrong.
+// A third round of the whole map's adjustment finds next to no further outliers.
 constexpr int kGlobalRounds = 2;
 
-// Heights of the camera beyond which what lies 14 degrees under the horizon (GroundPlaneOptions) is
-// at least twice as deep as the ground.
+// Range, in heights of the camera, beyond which a point 14 degrees under the horizon
+// (GroundPlaneOptions) lies at least twice as deep as the ground.
 constexpr double kGroundReach = 8.0;
 
-// Adds what the ground says of the keyframe with index `pose` and of the points around it.
+// Adds the heights of the camera with index `pose` over the points of the ground around it.
 void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem* problem) {
   const Rigid3& world_from_camera = problem->world_from_camera[pose];
   const Rigid3 camera_from_world = world_from_camera.Inverse();
   const double squared_reach = std::pow(kGroundReach * ground.camera_height, 2);
   std::vector<int> near;
-  std::vector<Eigen::Vector3d> points;  // of those, in the camera's frame
+  std::vector<Eigen::Vector3d> points;  // the near ones, camera frame
   for (size_t p = 0; p < problem->points.size(); ++p) {
     const Eigen::Vector3d& point = problem->points[p];
     if ((point - world_from_camera.translation).squaredNorm() > squared_reach) continue;
@@ -40,75 +40,84 @@ void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem
   const std::optional<GroundPlane> plane =
       FitGroundPlane(points, camera_from_world.rotation * ground.up, {});
   if (!plane || !(std::abs(plane->height / ground.camera_height - 1) < kMaxHeightError)) return;
-  // Together as certain as one measurement of the height: their errors have the same causes.
+  // The errors of the heights have the same causes, so that all heights together weigh as much as
+  // one measurement.
   const double total = std::reduce(plane->weights.begin(), plane->weights.end());
   for (size_t i = 0; i < plane->points.size(); ++i) {
-    problem->heights.push_back({pose, near[plane->points[i]], plane->normal, ground.camera_height,
-                                sigma * std::sqrt(total / plane->weights[i])});
+    problem->heights.push_back({.pose = pose,
+                                .point = near[plane->points[i]],
+                                .normal = plane->normal,
+                                .height = ground.camera_height,
+                                .sigma = sigma * std::sqrt(total / plane->weights[i])});
   }
 }
 
-// Scales everything about the first pose that is held, so that the cameras are as high over the
-// ground as they should be in the mean. The solver, which has to move each point on its own for
-// that, would need many steps.
+// Scales the problem about its first fixed pose, so that the cameras have the right mean height
+// over the ground. The solver, which moves each point by itself, would need many steps for that.
 void RestoreMeanHeight(BundleProblem* problem) {
-  constexpr size_t kEnough = 5;  // poses that see the ground, as many as it takes to find it
+  constexpr size_t kMinPoses = 5;  // as many poses must see the ground as it takes to find it
   std::set<int> poses;
-  double sum = 0;
-  double squares = 0;
+  double sum_measured = 0;
+  double sum_squared = 0;
   for (const BundleProblem::Height& height : problem->heights) {
     const Rigid3& pose = problem->world_from_camera[height.pose];
     const double measured =
         (pose.rotation * height.normal).dot(pose.translation - problem->points[height.point]) /
         height.height;
     const double weight = 1 / (height.sigma * height.sigma);
-    sum += weight * measured;
-    squares += weight * measured * measured;
+    sum_measured += weight * measured;
+    sum_squared += weight * measured * measured;
     poses.insert(height.pose);
   }
-  if (poses.size() < kEnough) return;
-  const double factor = sum / squares;  // least squares of factor * measured - 1
-  const auto held = std::ranges::find(problem->pose_fixed, uint8_t{1});
+  if (poses.size() < kMinPoses) return;
+  const double factor = sum_measured / sum_squared;  // least squares of factor * measured - 1
+  const auto fixed = std::ranges::find(problem->pose_fixed, uint8_t{1});
   const Eigen::Vector3d center =
-      problem->world_from_camera[held - problem->pose_fixed.begin()].translation;
+      problem->world_from_camera[fixed - problem->pose_fixed.begin()].translation;
   const auto scale = [&](Eigen::Vector3d* p) { *p = center + factor * (*p - center); };
   for (Rigid3& pose : problem->world_from_camera) scale(&pose.translation);
   for (Eigen::Vector3d& point : problem->points) scale(&point);
   for (BundleProblem::Range& range : problem->ranges) range.range *= factor;
 }
 
-// Ranges of one picture are wrong together: what they have in common is taken off, so that they say
-// how the landmarks lie to each other and not how large the world is, and all together they are as
-// certain as a few measurements.
+// The ranges of one image have a common error of scale. It is estimated and removed, so that the
+// ranges tell how the landmarks lie to each other but not how large the world is. The sigmas are
+// increased, so that all ranges of an image weigh as much as a few independent measurements.
 void LevelRanges(BundleProblem* problem) {
-  std::vector<std::vector<size_t>> of_pose(problem->world_from_camera.size());
-  for (size_t i = 0; i < problem->ranges.size(); ++i) of_pose[problem->ranges[i].pose].push_back(i);
-  for (size_t pose = 0; pose < of_pose.size(); ++pose) {
-    if (of_pose[pose].empty()) continue;
+  std::vector<std::vector<size_t>> ranges_of(problem->world_from_camera.size());
+  for (size_t i = 0; i < problem->ranges.size(); ++i) {
+    ranges_of[problem->ranges[i].pose].push_back(i);
+  }
+  for (size_t pose = 0; pose < ranges_of.size(); ++pose) {
+    if (ranges_of[pose].empty()) continue;
     const Eigen::Vector3d& center = problem->world_from_camera[pose].translation;
     std::vector<double> ratios;
-    for (const size_t i : of_pose[pose]) {
+    for (const size_t i : ranges_of[pose]) {
       const BundleProblem::Range& range = problem->ranges[i];
       ratios.push_back((problem->points[range.point] - center).norm() / range.range);
     }
     const auto middle = ratios.begin() + ratios.size() / 2;
     std::nth_element(ratios.begin(), middle, ratios.end());
     const double factor = std::sqrt(std::max(1.0, ratios.size() / kIndependentRanges));
-    for (const size_t i : of_pose[pose]) {
+    for (const size_t i : ranges_of[pose]) {
       problem->ranges[i].range *= *middle;
       problem->ranges[i].sigma *= factor;
     }
   }
 }
 
-// What the corner shows, without any alignment.
-BundleProblem::Observation CornerOf(const Keyframe& keyframe, int feature, int pose, int point) {
-  return {pose, point, keyframe.features->bearings[feature],
-          keyframe.features->keypoints[feature].sigma};
+// The observation of a feature's corner, without alignment.
+BundleProblem::Observation CornerObservation(const Keyframe& keyframe, int feature, int pose,
+                                             int point) {
+  return {.pose = pose,
+          .point = point,
+          .bearing = keyframe.features->bearings[feature],
+          .sigma = keyframe.features->keypoints[feature].sigma};
 }
 
-// Builds, solves and writes back. `fixed` keyframes are held; of the landmarks' observations only
-// those from `moving` and `fixed` take part. `free_scale`: what is held holds no scale.
+// Builds a problem, solves it and writes the result to the map. Only the landmarks' observations
+// from `moving` and `fixed` keyframes take part; the latter do not move. `free_scale`: the fixed
+// keyframes do not determine the scale.
 void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixed,
             std::span<const LandmarkId> landmarks, const BundleOptions& options,
             const std::optional<KnownGround>& ground, double height_sigma, bool free_scale,
@@ -137,13 +146,16 @@ void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixe
       const Keyframe& keyframe = map->keyframe(o.keyframe);
       const int pose = pose_of[o.keyframe];
       if (o.aligned_sigma > 0) {
-        problem.observations.push_back(
-            {pose, point, o.aligned_bearing.cast<double>().normalized(), o.aligned_sigma});
+        problem.observations.push_back({.pose = pose,
+                                        .point = point,
+                                        .bearing = o.aligned_bearing.cast<double>().normalized(),
+                                        .sigma = o.aligned_sigma});
       } else {
-        problem.observations.push_back(CornerOf(keyframe, o.feature, pose, point));
+        problem.observations.push_back(CornerObservation(keyframe, o.feature, pose, point));
       }
       if (const RangePrior prior = keyframe.PriorOf(o.feature); prior.sigma > 0) {
-        problem.ranges.push_back({pose, point, prior.range, prior.sigma});
+        problem.ranges.push_back(
+            {.pose = pose, .point = point, .range = prior.range, .sigma = prior.sigma});
       }
       sources.push_back({id, o.keyframe});
     }
@@ -164,12 +176,12 @@ void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixe
   for (size_t i = 0; i < sources.size(); ++i) {
     BundleProblem::Observation& observed = problem.observations[i];
     if (SquaredResidual(problem, observed) <= kChiSquared95) continue;
-    // What is wrong may be no more than its alignment.
+    // It may be only the alignment that is wrong.
     Observation& source = *map->landmark(sources[i].landmark).FindObservation(sources[i].keyframe);
     if (source.aligned_sigma > 0) {
       source.aligned_sigma = 0;
-      observed =
-          CornerOf(map->keyframe(source.keyframe), source.feature, observed.pose, observed.point);
+      observed = CornerObservation(map->keyframe(source.keyframe), source.feature, observed.pose,
+                                   observed.point);
       if (SquaredResidual(problem, observed) <= kChiSquared95) continue;
     }
     map->RemoveObservation(sources[i].landmark, sources[i].keyframe);
@@ -205,18 +217,19 @@ void AdjustLocally(KeyframeId center, const LocalBundleOptions& options,
       fixed.push_back(observer.keyframe);
     }
   }
-  // Two poses at least hold the gauge, scale included; of a small map its oldest.
+  // At least two fixed poses hold the gauge, scale included; in a small map these are its oldest.
   while (fixed.size() < 2 && moving.size() > 1) {
     const auto oldest = std::min_element(moving.begin(), moving.end());
     fixed.push_back(*oldest);
     moving.erase(oldest);
   }
-  Adjust(moving, fixed, landmarks, {.max_iterations = options.max_iterations}, ground,
+  Adjust(moving, fixed, landmarks,
+         {.max_iterations = options.max_iterations, .optimizer = options.optimizer}, ground,
          options.height_sigma, false, map);
 }
 
 void AdjustGlobally(int max_iterations, const std::optional<KnownGround>& ground,
-                    double height_sigma, Map* map) {
+                    double height_sigma, Map* map, Optimizer optimizer) {
   const std::vector<KeyframeId> keyframes = map->KeyframeIds();
   if (keyframes.size() < 2) return;
   const std::span<const KeyframeId> all(keyframes);
@@ -226,8 +239,8 @@ void AdjustGlobally(int max_iterations, const std::optional<KnownGround>& ground
       if (map->HasLandmark(id)) landmarks.push_back(id);
     }
     Adjust(all.subspan(1), all.first(1), landmarks,
-           {.max_iterations = max_iterations, .loss = BundleLoss::kArctan}, ground, height_sigma,
-           true, map);
+           {.max_iterations = max_iterations, .loss = BundleLoss::kArctan, .optimizer = optimizer},
+           ground, height_sigma, true, map);
   }
 }
 

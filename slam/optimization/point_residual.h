@@ -8,13 +8,12 @@
 
 namespace orb360 {
 
-// What is known of a point in a camera's frame, as two residuals in standard deviations, with their
-// derivatives by the point. All have two rows, if need be with zeros in the second: where they
-// have, Ceres eliminates points with code for blocks of 2 x 3 and 2 x 6, instead of sizes found at
-// run time.
+// Residuals of a point in a camera's frame, in standard deviations, with their Jacobians by the
+// point. All have two rows, the second of which may be zero, since Ceres eliminates points with
+// code for blocks of 2 x 3 and 2 x 6 when no residual has another size.
 using PointJacobian = Eigen::Matrix<double, 2, 3>;
 
-/// Its direction, see BearingResidual.
+/// The point is seen in a direction. See BearingResidual.
 struct DirectionResidual {
   Eigen::Matrix<double, 3, 2> scaled_basis;
 
@@ -27,13 +26,13 @@ struct DirectionResidual {
   }
 };
 
-/// A point of the ground lies the camera's height below it: (-normal . p / height - 1) / sigma.
+/// The point lies on the ground, the camera's height below it: (-normal . p / height - 1) / sigma.
 struct HeightResidual {
   Eigen::Vector3d direction;
   double offset;
 
   /// `normal`: of the ground, unit, towards the camera, in its frame; `height` in the world's unit;
-  /// `sigma`: standard deviation as a share of the height.
+  /// `sigma`: standard deviation as a fraction of the height.
   HeightResidual(const Eigen::Vector3d& normal, double height, double sigma)
       : direction(-normal / (height * sigma)), offset(1 / sigma) {}
 
@@ -43,7 +42,7 @@ struct HeightResidual {
   }
 };
 
-/// Its range is known roughly: ln(|p| / range) / sigma. Not finite for a point at the centre.
+/// The range of the point is known roughly: ln(|p| / range) / sigma. Not finite at |p| = 0.
 struct RangeResidual {
   double log_range;
   double weight;

@@ -4,29 +4,44 @@
 #include <vector>
 
 #include "slam/geometry/rigid3.h"
+#include "slam/optimization/optimizer.h"
+#include "slam/optimization/solver_report.h"
 
 namespace orb360 {
 
-/// Cameras with a scale of their own, and what is known of pairs of them. A map without a metric
-/// measure drifts in scale as well as in place; so nodes and edges are similarities (Strasdat,
-/// Montiel, Davison, Scale Drift-Aware Large Scale Monocular SLAM, RSS 2010).
+/// Relative poses between cameras. A map without a metric measurement drifts in scale as well as in
+/// position, so that nodes and edges are similarities (Strasdat, Montiel, Davison, Scale
+/// Drift-Aware Large Scale Monocular SLAM, RSS 2010).
 struct PoseGraph {
   struct Edge {
-    int first;  // nodes
+    int first;  // index of a node
     int second;
-    Similarity3 first_from_second;
-    double weight;  // of its squared residuals
+    Similarity3 first_from_second;  // as measured
+    double weight;                  // of the squared residuals
   };
   std::vector<Similarity3> world_from_node;
   std::vector<uint8_t> fixed;  // by node; at least one
   std::vector<Edge> edges;
-  /// A length that weighs as much as a turn by one radian and a scale of e: the range of what the
-  /// cameras see.
+  /// Length of an error of translation that weighs as much as a rotation by one radian and as a
+  /// scale by e: the range of what the cameras see.
   double unit = 1.0;
 };
 
-/// Moves the free nodes to the least sum of squared errors of the edges, in place, with Ceres on
-/// one thread. False, and nothing moved, where that fails numerically.
-bool SolvePoseGraph(PoseGraph* graph);
+struct PoseGraphOptions {
+  int max_iterations = 30;
+  /// The solver stops when an iteration changes the cost by less than this fraction ...
+  double function_tolerance = 1e-6;
+  /// ... when no component of the gradient is larger ...
+  double gradient_tolerance = 1e-10;
+  /// ... or when the norm of the step is less than this fraction of the norm of all parameters.
+  double parameter_tolerance = 1e-8;
+  Optimizer optimizer = Optimizer::kSchur;
+};
+
+/// Moves the nodes that are not fixed to the minimum of half the sum of the edges' weighted squared
+/// errors, in place and on one thread. The error of an edge is that of second_from_first *
+/// first_from_second: rotation, translation over `unit` and logarithm of the scale.
+/// Contract: the nodes and edges are consistent and `unit` is positive.
+SolverReport SolvePoseGraph(const PoseGraphOptions& options, PoseGraph* graph);
 
 }  // namespace orb360

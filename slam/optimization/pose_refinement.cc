@@ -23,7 +23,7 @@ struct NormalEquations {
   double cost = 0;
 };
 
-// Half the robust squared error. Beyond the 95 % bound Huber's loss grows linearly.
+// Half of Huber's loss of a squared residual; it is linear beyond the 95 % bound.
 double HuberCost(double squared) {
   return squared <= kChiSquared95
              ? 0.5 * squared

@@ -10,7 +10,7 @@
 
 namespace orb360 {
 
-/// One landmark seen in the image whose pose is sought.
+/// A landmark that the image whose pose is sought shows.
 struct PoseObservation {
   Eigen::Vector3d point;    // world
   Eigen::Vector3d bearing;  // unit, camera frame
@@ -21,14 +21,14 @@ struct RefinedPose {
   Rigid3 world_from_camera;
   std::vector<uint8_t> inliers;  // by observation
   int num_inliers = 0;
-  /// Of the inliers' residuals, in sigmas (1 when the noise is as assumed).
+  /// Root mean square of the inliers' residuals in sigmas (1 when the noise is as assumed).
   double rms = 0;
 };
 
-/// Pose of a camera from landmarks, by Levenberg-Marquardt on tangent-plane residuals
-/// (bearing_residual.h) from `initial` on: rounds with a Huber loss in which observations beyond
-/// the 95 % bound are set aside, and may come back, then a last one on the inliers alone.
-/// With fewer than three inliers the result is `initial` without inliers.
+/// Estimates the pose of a camera from landmarks by Levenberg-Marquardt on tangent-plane residuals
+/// (bearing_residual.h) with a Huber loss, starting from `initial_world_from_camera`. It runs in
+/// rounds: after each, observations beyond the 95 % bound are left out of the next, and those
+/// within it come back. With fewer than three inliers it returns the initial pose without inliers.
 RefinedPose RefinePose(const Rigid3& initial_world_from_camera,
                        std::span<const PoseObservation> observations);
 

@@ -13,7 +13,7 @@ void BackEnd::Start(MapJob job, AdoptionTime adoption) {
     if (auto* mapping = std::get_if<KeyframeMapping>(&job)) {
       return MapKeyframe(std::move(*mapping), options);
     }
-    return CorrectLoop(std::move(std::get<LoopCorrection>(job)));
+    return CorrectLoop(std::move(std::get<LoopCorrection>(job)), options.mapper.bundle.optimizer);
   };
   map_job_.emplace(std::move(run), adoption);
 }

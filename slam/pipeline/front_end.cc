@@ -198,11 +198,11 @@ std::optional<InitialMap> FrontEnd::Initialize(const PendingFrame& frame, int nu
   constexpr int kAttempts = 2;  // with the reference, then with the frame just before
   for (int attempt = 0; attempt < kAttempts && !pending_.empty(); ++attempt) {
     const PendingFrame& reference = pending_.Reference();
-    const InitializationResult result = InitializeFromTwoViews(*reference.features, *frame.features,
-                                                               options_.initializer, num_threads);
+    const InitializationResult result =
+        InitializeFromTwoViews(*reference.features, *frame.features, options_.initializer,
+                               options_.mapper.bundle.optimizer, num_threads);
     if (result.map) {
-      InitialMap initial =
-          MakeInitialMap(reference, frame, *result.map, options_.mapper.triangulation);
+      InitialMap initial = MakeInitialMap(reference, frame, *result.map, options_.mapper);
       // Gauge: the surroundings are one unit of length away.
       Similarity3 gauge;
       gauge.scale = 1.0 / initial.map.MedianRange(InitialMap::kSecond);

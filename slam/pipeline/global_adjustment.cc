@@ -10,7 +10,7 @@ namespace orb360 {
 AdjustedMap AdjustMap(GlobalAdjustment job, const Options& options) {
   AdjustedMap result{.before = job.map, .after = std::move(job.map)};
   AdjustGlobally(options.loop.bundle_iterations, job.ground, options.loop.height_sigma,
-                 &result.after);
+                 &result.after, options.mapper.bundle.optimizer);
   return result;
 }
 

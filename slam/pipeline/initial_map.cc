@@ -7,7 +7,7 @@
 namespace orb360 {
 
 InitialMap MakeInitialMap(const PendingFrame& first, const PendingFrame& second,
-                          const TwoViewMap& views, const TriangulationOptions& options) {
+                          const TwoViewMap& views, const MapperOptions& options) {
   constexpr int kIterations = 10;
   InitialMap result{.map = {}, .first = first, .second = second};
   Map& map = result.map;
@@ -20,8 +20,8 @@ InitialMap MakeInitialMap(const PendingFrame& first, const PendingFrame& second,
     map.AddObservation(landmark, InitialMap::kSecond, point.feature2);
     map.UpdateAppearance(landmark);
   }
-  TriangulateNewLandmarks(InitialMap::kSecond, options, &map);
-  AdjustGlobally(kIterations, std::nullopt, 0.0, &map);
+  TriangulateNewLandmarks(InitialMap::kSecond, options.triangulation, &map);
+  AdjustGlobally(kIterations, std::nullopt, 0.0, &map, options.bundle.optimizer);
   return result;
 }
 

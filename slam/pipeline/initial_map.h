@@ -2,7 +2,7 @@
 
 #include "slam/map/map.h"
 #include "slam/pipeline/initializer.h"
-#include "slam/pipeline/panoramic_triangulation.h"
+#include "slam/pipeline/mapper.h"
 #include "slam/pipeline/pending_frames.h"
 
 namespace orb360 {
@@ -20,6 +20,6 @@ struct InitialMap {
 /// Makes two views into a map and refines it. The first camera is the world's origin; the unit of
 /// length is arbitrary.
 InitialMap MakeInitialMap(const PendingFrame& first, const PendingFrame& second,
-                          const TwoViewMap& views, const TriangulationOptions& options);
+                          const TwoViewMap& views, const MapperOptions& options);
 
 }  // namespace orb360

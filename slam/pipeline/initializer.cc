@@ -61,7 +61,8 @@ double MedianParallax(const Features& features1, const Features& features2,
 
 // Points and camera 2 refined together; camera 1 is the gauge, and the free scale does no harm to
 // Levenberg-Marquardt. Points whose residuals are too large afterwards are dropped.
-bool Refine(const Features& features1, const Features& features2, TwoViewMap* map) {
+bool Refine(const Features& features1, const Features& features2, Optimizer optimizer,
+            TwoViewMap* map) {
   BundleProblem problem;
   problem.world_from_camera = {Rigid3(), map->world_from_camera2};
   problem.pose_fixed = {1, 0};
@@ -74,7 +75,7 @@ bool Refine(const Features& features1, const Features& features2, TwoViewMap* ma
     problem.observations.push_back(
         {1, index, features2.bearings[point.feature2], features2.keypoints[point.feature2].sigma});
   }
-  if (!SolveBundle({.max_iterations = 20}, &problem).usable) return false;
+  if (!SolveBundle({.max_iterations = 20, .optimizer = optimizer}, &problem).usable) return false;
   std::vector<TwoViewMap::Point> kept;
   for (size_t i = 0; i < map->points.size(); ++i) {
     const double worst = std::max(SquaredResidual(problem, problem.observations[2 * i]),
@@ -91,7 +92,8 @@ bool Refine(const Features& features1, const Features& features2, TwoViewMap* ma
 }  // namespace
 
 InitializationResult InitializeFromTwoViews(const Features& features1, const Features& features2,
-                                            const InitializerOptions& options, int num_threads) {
+                                            const InitializerOptions& options, Optimizer optimizer,
+                                            int num_threads) {
   const MatchOptions matching{.num_threads = num_threads};
   MatchedViews views =
       EstimateMotion(features1, features2,
@@ -129,7 +131,7 @@ InitializationResult InitializeFromTwoViews(const Features& features1, const Fea
     if (point) map.points.push_back({match.first, match.second, *point});
   }
   if (static_cast<int>(map.points.size()) < options.min_landmarks) return result;
-  if (!Refine(features1, features2, &map)) return result;
+  if (!Refine(features1, features2, optimizer, &map)) return result;
   if (static_cast<int>(map.points.size()) < options.min_landmarks) return result;
   result.map = std::move(map);
   return result;

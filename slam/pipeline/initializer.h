@@ -5,6 +5,7 @@
 
 #include "slam/features/features.h"
 #include "slam/geometry/rigid3.h"
+#include "slam/optimization/optimizer.h"
 
 namespace orb360 {
 
@@ -53,6 +54,8 @@ struct InitializationResult {
 /// turning camera is not taken for a moving one. Runs on `num_threads` OpenMP threads; the result
 /// does not depend on how many.
 InitializationResult InitializeFromTwoViews(const Features& features1, const Features& features2,
-                                            const InitializerOptions& options, int num_threads = 1);
+                                            const InitializerOptions& options,
+                                            Optimizer optimizer = Optimizer::kSchur,
+                                            int num_threads = 1);
 
 }  // namespace orb360

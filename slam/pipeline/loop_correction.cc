@@ -87,7 +87,7 @@ double ScaleOfChange(const Keyframe& before, const Map& map_before, const Map& m
 
 }  // namespace
 
-std::vector<Similarity3> CloseLoop(const Loop& loop, Map* map) {
+std::vector<Similarity3> CloseLoop(const Loop& loop, Map* map, Optimizer optimizer) {
   const std::vector<KeyframeId> ids = map->KeyframeIds();
   std::vector<int> node_of(map->keyframe_end(), -1);
   PoseGraph graph;
@@ -115,7 +115,8 @@ std::vector<Similarity3> CloseLoop(const Loop& loop, Map* map) {
     graph.edges.push_back({node_of[revisit.place], node_of[revisit.keyframe],
                            revisit.place_from_keyframe, kRevisitWeight * revisit.shared});
   }
-  if (graph.edges.size() == num_old_edges || !SolvePoseGraph(&graph)) return {};
+  if (graph.edges.size() == num_old_edges) return {};
+  if (!SolvePoseGraph({.optimizer = optimizer}, &graph).usable) return {};
 
   std::vector<Similarity3> corrections(map->keyframe_end());
   for (const KeyframeId id : ids) {
@@ -184,7 +185,7 @@ std::vector<Similarity3> AdoptAdjustment(const Map& before, const Map& adjusted,
   return corrections;
 }
 
-CorrectedLoop CorrectLoop(LoopCorrection job) {
+CorrectedLoop CorrectLoop(LoopCorrection job, Optimizer optimizer) {
   const Loop& loop = job.loop;
   Map& map = job.active.map;
   const Revisit& newest = loop.revisits.back();
@@ -210,7 +211,7 @@ CorrectedLoop CorrectLoop(LoopCorrection job) {
     update.renumbering = std::move(renumbering);
     result.closed = closed;
   } else {
-    update.corrections = CloseLoop(loop, &result.active.map);
+    update.corrections = CloseLoop(loop, &result.active.map, optimizer);
     if (!update.corrections.empty()) {
       update.correction = update.corrections[job.reference];
       result.closed = closed;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "slam/map/map.h"
+#include "slam/optimization/optimizer.h"
 #include "slam/pipeline/atlas.h"
 #include "slam/pipeline/loop_detector.h"
 
@@ -14,7 +15,8 @@ namespace orb360 {
 /// brings the ends together, landmarks go along with their keyframes, and those that both ends have
 /// are fused. Returns by keyframe id what moved the world around each (removed keyframes: around
 /// the one that stands for them); nothing, and the map as it was, where that fails numerically.
-std::vector<Similarity3> CloseLoop(const Loop& loop, Map* map);
+std::vector<Similarity3> CloseLoop(const Loop& loop, Map* map,
+                                   Optimizer optimizer = Optimizer::kSchur);
 
 /// Merges the present map into the finished one that a loop leads to, in the latter's world and
 /// scale. Ids of the finished map stay; those of the present one grow by keyframe_end() and
@@ -43,6 +45,6 @@ struct CorrectedLoop {
   std::optional<ClosedLoop> closed = {};
 };
 
-CorrectedLoop CorrectLoop(LoopCorrection job);
+CorrectedLoop CorrectLoop(LoopCorrection job, Optimizer optimizer);
 
 }  // namespace orb360

@@ -4,6 +4,9 @@ namespace orb360 {
 
 ConfigSchema MakeConfigSchema(Options* options) {
   ConfigSchema schema;
+  schema.Add("optimizer", &options->mapper.bundle.optimizer,
+             "solver of bundle adjustment and of pose graphs; ceres is slower, to compare with",
+             kOptimizerNames);
   OrbOptions& orb = options->orb;
   schema.Add("features.count", &orb.num_features, "features sought in each image", 100, 20000);
   schema.Add("features.levels", &orb.num_levels,

@@ -184,5 +184,29 @@ TEST_F(ConfigTest, RegistrationMistakesBreakTheContract) {
   EXPECT_THROW(schema_.Add("other", &value, "", 6), ContractError);
 }
 
+enum class Color { kRed, kGreen, kBlue };
+constexpr const char* kColorNames[] = {"red", "green", "blue"};
+
+TEST_F(ConfigTest, AnEnumerationIsSetByItsName) {
+  Color color = Color::kGreen;
+  schema_.Add("color", &color, "Color of the line", kColorNames);
+  EXPECT_THAT(schema_.Document(), HasSubstr("# Color of the line (red, green or blue)\n"
+                                            "color: green\n"));
+  Load("color: blue\n");
+  EXPECT_EQ(color, Color::kBlue);
+  EXPECT_THAT(schema_.Document(), HasSubstr("color: blue\n"));
+  Load(schema_.Document());
+  EXPECT_EQ(color, Color::kBlue);
+}
+
+TEST_F(ConfigTest, AnotherWordThanAnEnumerationHasIsRefused) {
+  Color color = Color::kGreen;
+  schema_.Add("color", &color, "Color of the line", kColorNames);
+  EXPECT_EQ(ErrorOf("threads: 3\ncolor: yellow\n"),
+            "2: color must be red, green or blue, not `yellow`");
+  EXPECT_EQ(color, Color::kGreen);
+  EXPECT_EQ(threads_, 2);
+}
+
 }  // namespace
 }  // namespace orb360

@@ -34,7 +34,7 @@ TEST(BundleAdjustment, RestoresADisturbedMap) {
         problem.world_from_camera[i] * Rigid3{random.Rotation(0.02), random.Point(0.0, 0.05)};
   }
   for (Eigen::Vector3d& point : problem.points) point += random.Point(0.0, 0.1);
-  const BundleReport report =
+  const SolverReport report =
       SolveBundle({.max_iterations = 50, .function_tolerance = 1e-16}, &problem);
   ASSERT_TRUE(report.usable);
   EXPECT_LT(report.final_cost, 1e-9 * report.initial_cost);
@@ -220,7 +220,7 @@ TEST(LocalBundleAdjustment, GlobalAdjustmentIsNotBentByLandmarksThatAreTwoPoints
   }
   AdjustGlobally(5, std::nullopt, 0.0, &map);
   map.CheckConsistency();
-  // The first keyframe is held, the scale is free.
+  // The first keyframe is fixed, the scale is free.
   const double scale =
       map.keyframe(8).world_from_camera.translation.norm() / poses[8].translation.norm();
   for (KeyframeId id = 1; id < 12; ++id) {

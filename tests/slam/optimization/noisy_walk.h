@@ -6,7 +6,7 @@
 namespace orb360 {
 
 /// A walk that sees points from a few poses each, over a ground and with ranges, all with noise,
-/// and every twentieth observation wrong altogether. Three of its twelve poses are held.
+/// and every twentieth observation wrong altogether. Three of its twelve poses are fixed.
 inline BundleProblem NoisyWalk(int seed) {
   RandomGeometry random(seed);
   BundleProblem problem;

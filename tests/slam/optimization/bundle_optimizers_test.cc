@@ -1,9 +1,10 @@
+// What holds for SolveBundle by either optimizer, and by the own one beside Ceres.
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "slam/optimization/bundle_adjustment.h"
-#include "tests/slam/optimization/ceres_bundle.h"
+#include "slam/optimization/ceres/bundle_solver.h"
 #include "tests/slam/optimization/noisy_walk.h"
 
 namespace orb360 {
@@ -30,8 +31,8 @@ TEST_P(BundleSolvers, ComeToTheSameMinimum) {
     BundleProblem other = own;
     const BundleOptions options{
         .max_iterations = 200, .loss = GetParam(), .function_tolerance = 1e-15};
-    const BundleReport ours = SolveBundle(options, &own);
-    const BundleReport by_ceres = SolveBundleByCeres(options, &other);
+    const SolverReport ours = SolveBundle(options, &own);
+    const SolverReport by_ceres = SolveBundleCeres(options, &other);
     ASSERT_TRUE(ours.usable && by_ceres.usable);
     EXPECT_NEAR(ours.initial_cost, by_ceres.initial_cost, 1e-9 * by_ceres.initial_cost);
     EXPECT_LT(ours.final_cost, 0.9 * ours.initial_cost);
@@ -44,7 +45,7 @@ TEST_P(BundleSolvers, ComeToTheSameMinimum) {
   }
 }
 
-// Points that more poses see than ReducedStructure::kMaxPoses are not eliminated.
+// Points that more poses see than ReducedCameraStructure::kMaxPoses are not eliminated.
 TEST(SolveBundle, ComesToTheMinimumOfCeresWhereAllSeeTheSamePoints) {
   BundleProblem own = NoisyWalk(7);
   RandomGeometry random(7);
@@ -60,8 +61,37 @@ TEST(SolveBundle, ComesToTheMinimumOfCeresWhereAllSeeTheSamePoints) {
   }
   BundleProblem other = own;
   const BundleOptions options{.max_iterations = 100, .function_tolerance = 1e-12};
-  const BundleReport ours = SolveBundle(options, &own);
-  const BundleReport by_ceres = SolveBundleByCeres(options, &other);
+  const SolverReport ours = SolveBundle(options, &own);
+  const SolverReport by_ceres = SolveBundleCeres(options, &other);
+  ASSERT_TRUE(ours.usable && by_ceres.usable);
+  EXPECT_LT(ours.final_cost, 0.9 * ours.initial_cost);
+  EXPECT_NEAR(ours.final_cost, by_ceres.final_cost, 1e-8 * by_ceres.final_cost);
+}
+
+// Where there are fewer points than poses, both solvers eliminate the poses first.
+TEST(SolveBundle, ComesToTheMinimumOfCeresWithFewerPointsThanPoses) {
+  RandomGeometry random(8);
+  BundleProblem own;
+  for (int i = 0; i < 40; ++i) {
+    own.world_from_camera.push_back({random.Rotation(0.3), {0.1 * i, 0.02 * i, 0.0}});
+    own.pose_fixed.push_back(i < 2);
+  }
+  for (int p = 0; p < 15; ++p) {
+    const Eigen::Vector3d point = random.Point(2.0, 12.0);
+    own.points.push_back(point + random.Point(0.0, 0.05));
+    for (int i = 0; i < 40; ++i) {
+      if ((i + p) % 4 == 0) continue;
+      const Eigen::Vector3d seen = own.world_from_camera[i].Inverse() * point;
+      own.observations.push_back({.pose = i,
+                                  .point = p,
+                                  .bearing = random.Noisy(seen.normalized(), 0.002),
+                                  .sigma = 0.002});
+    }
+  }
+  BundleProblem other = own;
+  const BundleOptions options{.max_iterations = 100, .function_tolerance = 1e-12};
+  const SolverReport ours = SolveBundle(options, &own);
+  const SolverReport by_ceres = SolveBundleCeres(options, &other);
   ASSERT_TRUE(ours.usable && by_ceres.usable);
   EXPECT_LT(ours.final_cost, 0.9 * ours.initial_cost);
   EXPECT_NEAR(ours.final_cost, by_ceres.final_cost, 1e-8 * by_ceres.final_cost);
@@ -72,8 +102,8 @@ TEST_P(BundleSolvers, ComeEquallyFarInFewSteps) {
   BundleProblem own = NoisyWalk(4);
   BundleProblem other = own;
   const BundleOptions options{.max_iterations = 4, .loss = GetParam()};
-  const BundleReport ours = SolveBundle(options, &own);
-  const BundleReport by_ceres = SolveBundleByCeres(options, &other);
+  const SolverReport ours = SolveBundle(options, &own);
+  const SolverReport by_ceres = SolveBundleCeres(options, &other);
   ASSERT_TRUE(ours.usable);
   EXPECT_LE(ours.iterations, 4);
   EXPECT_LT(ours.final_cost, 0.9 * ours.initial_cost);
@@ -83,16 +113,37 @@ TEST_P(BundleSolvers, ComeEquallyFarInFewSteps) {
 INSTANTIATE_TEST_SUITE_P(Losses, BundleSolvers,
                          testing::Values(BundleLoss::kHuber, BundleLoss::kArctan));
 
-TEST(SolveBundle, HoldsFixedPoses) {
+class EitherOptimizer : public testing::TestWithParam<Optimizer> {
+ protected:
+  BundleOptions options() const { return {.optimizer = GetParam()}; }
+};
+
+INSTANTIATE_TEST_SUITE_P(Optimizers, EitherOptimizer,
+                         testing::Values(Optimizer::kSchur, Optimizer::kCeres));
+
+bool IsSame(const Rigid3& a, const Rigid3& b) {
+  return a.translation == b.translation && a.rotation.coeffs() == b.rotation.coeffs();
+}
+
+TEST_P(EitherOptimizer, MovesThePosesThatAreNotFixedAndNoOther) {
   const BundleProblem before = NoisyWalk(5);
   BundleProblem problem = before;
-  ASSERT_TRUE(SolveBundle({}, &problem).usable);
+  ASSERT_TRUE(SolveBundle(options(), &problem).usable);
   for (size_t i = 0; i < before.world_from_camera.size(); ++i) {
-    const Rigid3& was = before.world_from_camera[i];
-    const Rigid3& is = problem.world_from_camera[i];
-    const bool is_same =
-        is.translation == was.translation && is.rotation.coeffs() == was.rotation.coeffs();
-    EXPECT_EQ(is_same, before.pose_fixed[i] != 0) << i;
+    EXPECT_EQ(IsSame(problem.world_from_camera[i], before.world_from_camera[i]),
+              before.pose_fixed[i] != 0)
+        << i;
+  }
+}
+
+TEST_P(EitherOptimizer, GivesTheSameBitsTwice) {
+  BundleProblem problem = NoisyWalk(5);
+  BundleProblem again = problem;
+  const SolverReport report = SolveBundle(options(), &problem);
+  EXPECT_EQ(SolveBundle(options(), &again).final_cost, report.final_cost);
+  EXPECT_EQ(problem.points, again.points);
+  for (size_t i = 0; i < problem.world_from_camera.size(); ++i) {
+    EXPECT_TRUE(IsSame(problem.world_from_camera[i], again.world_from_camera[i])) << i;
   }
 }
 
@@ -102,25 +153,25 @@ TEST_P(BundleSolvers, ComeAsFarFarAwayFromTheOrigin) {
   const Eigen::Vector3d away(2000, -500, 100);
   for (Rigid3& pose : far.world_from_camera) pose.translation += away;
   for (Eigen::Vector3d& point : far.points) point += away;
-  for (const auto solve : {SolveBundle, SolveBundleByCeres}) {
+  for (const auto solve : {SolveBundle, SolveBundleCeres}) {
     BundleProblem near_copy = near;
     BundleProblem far_copy = far;
     const BundleOptions options{.max_iterations = 3, .loss = GetParam()};
-    const BundleReport near_report = solve(options, &near_copy);
-    const BundleReport far_report = solve(options, &far_copy);
+    const SolverReport near_report = solve(options, &near_copy);
+    const SolverReport far_report = solve(options, &far_copy);
     EXPECT_LT(near_report.final_cost, 0.95 * near_report.initial_cost);
     EXPECT_NEAR(far_report.final_cost, near_report.final_cost, 1e-6 * near_report.final_cost);
   }
 }
 
-TEST(SolveBundle, LeavesTheProblemAsItIsWhereAResidualHasNoValue) {
+TEST_P(EitherOptimizer, LeavesTheProblemAsItIsWhereAResidualHasNoValue) {
   BundleProblem problem = NoisyWalk(6);
   problem.points[0] = problem.world_from_camera[0].translation;  // sees it at range zero
   const BundleProblem before = problem;
-  EXPECT_FALSE(SolveBundle({}, &problem).usable);
+  EXPECT_FALSE(SolveBundle(options(), &problem).usable);
   EXPECT_EQ(problem.points, before.points);
   for (size_t i = 0; i < before.world_from_camera.size(); ++i) {
-    EXPECT_EQ(problem.world_from_camera[i].translation, before.world_from_camera[i].translation);
+    EXPECT_TRUE(IsSame(problem.world_from_camera[i], before.world_from_camera[i])) << i;
   }
 }
 
@@ -140,7 +191,7 @@ TEST(SolveBundle, BearsPointsWithoutParallax) {
       problem.observations.push_back({i, point, seen.normalized(), 0.001});
     }
   }
-  const BundleReport report = SolveBundle({.max_iterations = 50}, &problem);
+  const SolverReport report = SolveBundle({.max_iterations = 50}, &problem);
   ASSERT_TRUE(report.usable);
   EXPECT_LT(report.final_cost, 0.9 * report.initial_cost);
   for (size_t o = first_far; o < problem.observations.size(); ++o) {
@@ -153,8 +204,8 @@ TEST(SolveBundle, ComesDownFromAFarStart) {
   BundleProblem problem = FarStart(9);
   BundleProblem other = problem;
   const BundleOptions options{.max_iterations = 300, .function_tolerance = 1e-12};
-  const BundleReport report = SolveBundle(options, &problem);
-  const BundleReport by_ceres = SolveBundleByCeres(options, &other);
+  const SolverReport report = SolveBundle(options, &problem);
+  const SolverReport by_ceres = SolveBundleCeres(options, &other);
   ASSERT_TRUE(report.usable && by_ceres.usable);
   EXPECT_LT(report.final_cost, 0.5 * report.initial_cost);
   EXPECT_LT(report.final_cost, 1.2 * by_ceres.final_cost);
@@ -166,7 +217,7 @@ TEST(SolveBundle, RefusesAStepThatLeadsUpAndFindsOneThatLeadsDown) {
     BundleProblem problem = FarStart(seed);
     BundleOptions options{.max_iterations = 1, .loss = BundleLoss::kArctan};
     for (int step = 1; step <= 3; ++step) {
-      const BundleReport report = SolveBundle(options, &problem);
+      const SolverReport report = SolveBundle(options, &problem);
       EXPECT_LE(report.final_cost, report.initial_cost) << seed;
       if (report.final_cost < report.initial_cost) continue;
       ++refused;
@@ -182,27 +233,27 @@ TEST(SolveBundle, RefusesAStepThatLeadsUpAndFindsOneThatLeadsDown) {
 TEST(SolveBundle, StopsWhereNothingIsToBeGained) {
   BundleProblem problem = NoisyWalk(12);
   SolveBundle({.max_iterations = 200, .function_tolerance = 1e-12}, &problem);
-  const BundleReport again =
+  const SolverReport again =
       SolveBundle({.max_iterations = 200, .function_tolerance = 1e-6}, &problem);
   EXPECT_EQ(again.iterations, 1);
 }
 
-TEST(SolveBundle, NothingToMoveAndNothingSeenAreNoError) {
-  BundleProblem held = NoisyWalk(10);
-  held.pose_fixed.assign(held.pose_fixed.size(), 1);
-  const BundleReport report = SolveBundle({}, &held);
+TEST_P(EitherOptimizer, TakesProblemsWithoutFreePosesOrWithoutObservations) {
+  BundleProblem all_fixed = NoisyWalk(10);
+  all_fixed.pose_fixed.assign(all_fixed.pose_fixed.size(), 1);
+  const SolverReport report = SolveBundle(options(), &all_fixed);
   EXPECT_TRUE(report.usable);
   EXPECT_LT(report.final_cost, report.initial_cost);  // points move
 
   BundleProblem empty;
   empty.world_from_camera = {Rigid3()};
   empty.pose_fixed = {0};
-  EXPECT_TRUE(SolveBundle({}, &empty).usable);
+  EXPECT_TRUE(SolveBundle(options(), &empty).usable);
 
   BundleProblem blind = NoisyWalk(11);
   blind.world_from_camera.push_back({Eigen::Quaterniond::Identity(), {1, 2, 3}});
   blind.pose_fixed.push_back(0);
-  EXPECT_TRUE(SolveBundle({}, &blind).usable);
+  EXPECT_TRUE(SolveBundle(options(), &blind).usable);
   EXPECT_EQ(blind.world_from_camera.back().translation, Eigen::Vector3d(1, 2, 3));
 }
 

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <array>
+
+namespace orb360 {
+
+/// The solver of bundle adjustment problems and pose graphs. Both minimize the same cost with the
+/// same damping and stopping rule, on one thread, and give the same bytes every time.
+enum class Optimizer {
+  kSchur,  ///< The own solver (schur/), several times as fast.
+  kCeres,  ///< Ceres (ceres/), to compare with.
+};
+
+/// Names of the optimizers in a configuration file, in the order of the enumeration.
+inline constexpr std::array<const char*, 2> kOptimizerNames = {"schur", "ceres"};
+
+}  // namespace orb360
