@@ -138,8 +138,7 @@ BlockCholesky<kSize>::BlockCholesky(const BlockStructure& structure)
     }
   }
   for (std::vector<int>& rows : below) {
-    std::ranges::sort(rows);
-    rows.erase(std::ranges::unique(rows).begin(), rows.end());
+    SortUnique(&rows);
     // The elimination tree: a column's parent is the row of its first block below the diagonal, and
     // has blocks in all further rows of the column.
     if (rows.empty()) continue;

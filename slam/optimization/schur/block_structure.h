@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -12,5 +13,11 @@ struct BlockStructure {
 
   size_t num_rows() const { return first.size() - 1; }
 };
+
+/// Sorts indices and removes duplicates.
+inline void SortUnique(std::vector<int>* indices) {
+  std::sort(indices->begin(), indices->end());
+  indices->erase(std::unique(indices->begin(), indices->end()), indices->end());
+}
 
 }  // namespace orb360

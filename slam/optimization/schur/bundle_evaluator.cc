@@ -7,6 +7,7 @@
 
 #include "slam/geometry/so3.h"
 #include "slam/optimization/bundle_loss.h"
+#include "slam/optimization/schur/block_structure.h"
 
 namespace orb360 {
 namespace {
@@ -40,8 +41,7 @@ PosePointPairs FindPairs(const std::vector<int>& free_index, size_t num_points,
   }
   PosePointPairs pairs;
   for (std::vector<int>& poses : poses_of) {
-    std::ranges::sort(poses);
-    poses.erase(std::ranges::unique(poses).begin(), poses.end());
+    SortUnique(&poses);
     pairs.pose.insert(pairs.pose.end(), poses.begin(), poses.end());
     pairs.first.push_back(pairs.pose.size());
   }

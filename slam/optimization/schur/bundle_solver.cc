@@ -63,9 +63,9 @@ class BundleMinimization {
   const BundleState& state() const { return state_; }
 
  private:
-  // Where there are fewer points than poses, as in a long shot that follows a few tracks, all points
-  // are kept and the poses are eliminated first: the elimination of a point would link all poses
-  // that see it.
+  // Where there are fewer points than poses, as in a long shot that follows a few tracks, all
+  // points are kept and the poses are eliminated first: the elimination of a point would link all
+  // poses that see it.
   static size_t MaxPoses(const BundleProblem& problem) {
     return problem.points.size() < problem.world_from_camera.size()
                ? 0

@@ -39,8 +39,7 @@ BlockStructure MakeStructure(int num_free, std::vector<EdgeTerm>* terms) {
   }
   BlockStructure structure;
   for (std::vector<int>& row : rows) {
-    std::ranges::sort(row);
-    row.erase(std::ranges::unique(row).begin(), row.end());
+    SortUnique(&row);
     structure.column.insert(structure.column.end(), row.begin(), row.end());
     structure.first.push_back(structure.column.size());
   }

@@ -1,7 +1,5 @@
 #include "slam/optimization/schur/schur_complement.h"
 
-#include <algorithm>
-
 #include <Eigen/Cholesky>
 
 #include "slam/optimization/schur/levenberg_marquardt.h"
@@ -88,11 +86,6 @@ Eigen::Matrix3d InverseOfLower(const Eigen::Matrix3d& l) {
       low, b, 0,       //
       -c * (l(2, 0) * a + l(2, 1) * low), -c * l(2, 1) * b, c;
   return inverse;
-}
-
-void SortUnique(std::vector<int>* values) {
-  std::ranges::sort(*values);
-  values->erase(std::ranges::unique(*values).begin(), values->end());
 }
 
 }  // namespace
