@@ -9,7 +9,7 @@
 namespace orb360 {
 
 /// Noise of a bearing that a patch was aligned at, as a share of a corner's on the same level; less
-/// makes trajectories no better (docs/features.md).
+/// makes trajectories no better (docs/results/features.md).
 inline constexpr double kAlignedNoise = 0.35;
 
 /// How a picture shows a landmark's patch: what AlignPatch starts from.

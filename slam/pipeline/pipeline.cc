@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <memory>
+#include <span>
 #include <thread>
 #include <utility>
 
@@ -184,7 +184,8 @@ Reconstruction Pipeline::Finish() {
   if (!result.up && !grounds.empty() && grounds.front()) result.up = grounds.front()->up;
   if (dense_) {
     for (const int frame : dense_->frames()) {
-      result.depth_scales[frame] = atlas_.anchors().at(frame).unit_scale;
+      const auto anchor = atlas_.anchors().find(frame);  // none where its map was lost
+      if (anchor != atlas_.anchors().end()) result.depth_scales[frame] = anchor->second.unit_scale;
     }
   }
   const FrontEnd::Events& events = front_end_.events();

@@ -1,5 +1,6 @@
 // The jobs that run beside tracking: when they start, and how their results are adopted.
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -98,8 +99,7 @@ void Pipeline::AdoptDepth() {
   }
 }
 
-// --- loops
-// ----------------------------------------------------------------------------------------
+// --- loops --------------------------------------------------------------------------------------
 
 void Pipeline::StartLoopCorrection() {
   const FrontEnd::Tracking* tracking = front_end_.tracking();
