@@ -4,7 +4,6 @@
 //   build/slam_benchmarks --benchmark_filter=Optimizers
 // It is run from the root of the checkout, since the problems of libmv are read from
 // ../shared/data/libmv_ba.
-#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <filesystem>
@@ -14,6 +13,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "nn/base/statistics.h"
 #include "slam/optimization/bundle_adjustment.h"
 #include "slam/optimization/pose_graph.h"
 #include "tests/slam/geometry/random_geometry.h"
@@ -27,12 +27,6 @@ double ThreadSeconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 // Calls solve(optimizer, copy of `problem`), which returns a SolverReport, by turns.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "nn/base/check.h"
+#include "nn/base/statistics.h"
 
 namespace orb360 {
 namespace {
@@ -82,9 +83,7 @@ double ChooseVoxelSize(std::span<const DenseView> views, const DepthLoader& load
     if (median > 0) medians.push_back(median);
   }
   if (medians.empty()) return 1.0;  // There will be no point.
-  const auto middle = medians.begin() + static_cast<std::ptrdiff_t>(medians.size() / 2);
-  std::ranges::nth_element(medians, middle);
-  return 0.01 * *middle;
+  return 0.01 * Median(medians);
 }
 
 }  // namespace
@@ -101,17 +100,14 @@ double MedianRange(const cv::Mat& range) {
       if (value > 0) ranges.push_back(value);
     }
   }
-  if (ranges.empty()) return 0.0;
-  const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
-  std::ranges::nth_element(ranges, middle);
-  return *middle;
+  return ranges.empty() ? 0.0 : Median(ranges);
 }
 
 std::vector<size_t> ChooseNeighbours(std::span<const DenseView> views, size_t view,
                                      double median_range, int max_neighbours) {
   struct Candidate {
     size_t index;
-    double distance;  // logarithm of the fraction of the median range
+    double distance;  // logarithm of the ratio to the median range
   };
   std::vector<Candidate> sides[2];  // before and after the view
   for (const size_t index : views[view].neighbours) {

@@ -8,6 +8,7 @@
 #include <hwy/cache_control.h>
 
 #include "nn/base/check.h"
+#include "nn/base/statistics.h"
 
 namespace orb360 {
 namespace {
@@ -141,9 +142,7 @@ std::vector<Voxel> VoxelGrid::TakeOldest() {
   for (const Voxel& voxel : slots_) {
     if (voxel.key != 0) views.push_back(voxel.last_view);
   }
-  const auto middle = views.begin() + static_cast<std::ptrdiff_t>(views.size() / 2);
-  std::ranges::nth_element(views, middle);
-  return Take(*middle);
+  return Take(Median(views));
 }
 
 std::vector<Voxel> VoxelGrid::TakeAll() { return Take(std::numeric_limits<std::int32_t>::max()); }

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "nn/base/check.h"
+#include "nn/base/statistics.h"
 #include "slam/depth/geometric_consistency.h"
 
 namespace orb360 {
@@ -173,11 +174,7 @@ CloudErrors CompareCloud(std::span<const Eigen::Vector3f> cloud, std::span<const
   errors.accuracy = FractionsWithin(distances);
   errors.completeness = FractionsWithin(gaps);
   errors.median_distance = std::numeric_limits<double>::quiet_NaN();
-  if (!distances.empty()) {
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-    std::ranges::nth_element(distances, middle);
-    errors.median_distance = std::min(*middle, kFarthest);
-  }
+  if (!distances.empty()) errors.median_distance = std::min(Median(distances), kFarthest);
   return errors;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "nn/base/check.h"
+#include "nn/base/statistics.h"
 #include "slam/evaluation/chart.h"
 
 namespace orb360 {
@@ -27,13 +28,10 @@ Eigen::AlignedBox1d Bulk(std::span<const Eigen::Vector2d> points, int axis) {
   std::vector<double> values;
   values.reserve(points.size());
   for (const Eigen::Vector2d& p : points) values.push_back(p[axis]);
-  const auto low = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 20);
-  std::nth_element(values.begin(), low, values.end());
-  const double minimum = *low;
-  const auto high = values.end() - 1 - static_cast<std::ptrdiff_t>(values.size() / 20);
-  std::nth_element(values.begin(), high, values.end());
-  return Eigen::AlignedBox1d(Eigen::Matrix<double, 1, 1>(minimum),
-                             Eigen::Matrix<double, 1, 1>(*high));
+  const size_t outermost = values.size() / 20;
+  const double low = OrderStatistic(values, outermost);
+  const double high = OrderStatistic(values, values.size() - 1 - outermost);
+  return Eigen::AlignedBox1d(Eigen::Matrix<double, 1, 1>(low), Eigen::Matrix<double, 1, 1>(high));
 }
 
 /// Returns the box of the keyframes and of most landmarks, extended by at most the extent of the

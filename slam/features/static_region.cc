@@ -1,12 +1,12 @@
 #include "slam/features/static_region.h"
 
-#include <algorithm>
 #include <numbers>
 #include <vector>
 
 #include <opencv2/imgproc.hpp>
 
 #include "nn/base/check.h"
+#include "nn/base/statistics.h"
 
 namespace orb360 {
 namespace {
@@ -137,8 +137,7 @@ bool StaticRegionDetector::HasEvidence() const {
     }
   }
   if (textured.size() < 100) return false;
-  std::nth_element(textured.begin(), textured.begin() + textured.size() / 2, textured.end());
-  return textured[textured.size() / 2] > kMinMotion;
+  return Median(textured) > kMinMotion;
 }
 
 cv::Mat StaticRegionDetector::Mask(cv::Size size) const {
@@ -154,8 +153,7 @@ cv::Mat StaticRegionDetector::Mask(cv::Size size) const {
         if (textured.at<uint8_t>(y, x) != 0) motion.push_back(ratio.at<float>(y, x));
       }
     }
-    std::nth_element(motion.begin(), motion.begin() + motion.size() / 2, motion.end());
-    cv::Mat still = (ratio < kStaticRatio * motion[motion.size() / 2]) & textured;
+    cv::Mat still = (ratio < kStaticRatio * Median(motion)) & textured;
     const int first_row = static_cast<int>((0.5 - kMaxLatitude / std::numbers::pi) * kHeight);
     still.rowRange(0, first_row).setTo(0);
     // Smooth parts between static texture belong to the same body.

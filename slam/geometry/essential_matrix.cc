@@ -9,6 +9,7 @@
 #include <opengv/relative_pose/methods.hpp>
 
 #include "nn/base/check.h"
+#include "nn/base/statistics.h"
 #include "slam/geometry/bearing.h"
 
 namespace orb360 {
@@ -123,9 +124,7 @@ double SquaredParallaxBound(const Correspondences& data, const Model& model,
         (data.bearings1[i] - model.rotation * data.bearings2[i]).squaredNorm());
   }
   if (squared_parallax.empty()) return 0.0;
-  const auto middle = squared_parallax.begin() + squared_parallax.size() / 2;
-  std::nth_element(squared_parallax.begin(), middle, squared_parallax.end());
-  return kTimesMedian * kTimesMedian * *middle;
+  return kTimesMedian * kTimesMedian * Median(squared_parallax);
 }
 
 /// One Gauss-Newton step on all correspondences, weighted by the loss. The rotation is updated on

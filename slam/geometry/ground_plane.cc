@@ -6,6 +6,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "nn/base/statistics.h"
+
 namespace orb360 {
 namespace {
 
@@ -39,9 +41,7 @@ double NarrowTolerance(const Plane& plane, std::span<const Eigen::Vector3d> poin
     if (error < tolerance) errors.push_back(error);
   }
   if (errors.empty()) return tolerance;
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::nth_element(errors.begin(), middle, errors.end());
-  return tolerance * std::clamp(kBiweightReach * *middle / tolerance, kMinTolerance, 1.0);
+  return tolerance * std::clamp(kBiweightReach * Median(errors) / tolerance, kMinTolerance, 1.0);
 }
 
 // Returns the sum of all weights, or a number below `least` if the sum cannot reach `least`.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "nn/base/check.h"
+#include "nn/base/statistics.h"
 #include "slam/features/hamming.h"
 
 namespace orb360 {
@@ -21,10 +22,9 @@ const Descriptor& MostTypical(std::span<const Descriptor> descriptors) {
   int best_median = NearestTwo::kNone;
   for (size_t i = 0; i < descriptors.size(); ++i) {
     HammingDistances(descriptors[i], descriptors, distances);
-    const auto middle = distances.begin() + distances.size() / 2;
-    std::nth_element(distances.begin(), middle, distances.end());
-    if (*middle < best_median) {
-      best_median = *middle;
+    const uint16_t median = Median(distances);
+    if (median < best_median) {
+      best_median = median;
       best = i;
     }
   }
@@ -240,10 +240,7 @@ double Map::MedianRange(KeyframeId id) const {
     if (seen == kNoId) continue;
     ranges.push_back((landmark(seen).position - observer.world_from_camera.translation).norm());
   }
-  if (ranges.empty()) return 0;
-  const auto middle = ranges.begin() + ranges.size() / 2;
-  std::nth_element(ranges.begin(), middle, ranges.end());
-  return *middle;
+  return ranges.empty() ? 0 : Median(ranges);
 }
 
 void Map::Transform(const Similarity3& target_from_world) {

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 
+#include "nn/base/statistics.h"
 #include "slam/geometry/ground_plane.h"
 #include "slam/optimization/bearing_residual.h"
 
@@ -96,11 +97,10 @@ void LevelRanges(BundleProblem* problem) {
       const BundleProblem::Range& range = problem->ranges[i];
       ratios.push_back((problem->points[range.point] - center).norm() / range.range);
     }
-    const auto middle = ratios.begin() + ratios.size() / 2;
-    std::nth_element(ratios.begin(), middle, ratios.end());
+    const double median = Median(ratios);
     const double factor = std::sqrt(std::max(1.0, ratios.size() / kIndependentRanges));
     for (const size_t i : ranges_of[pose]) {
-      problem->ranges[i].range *= *middle;
+      problem->ranges[i].range *= median;
       problem->ranges[i].sigma *= factor;
     }
   }

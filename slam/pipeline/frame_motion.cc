@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "nn/base/statistics.h"
 #include "slam/geometry/essential_matrix.h"
 
 namespace orb360 {
@@ -57,9 +58,7 @@ std::optional<Rigid3> PoseFromMotion(const Features& features, const TrackedFram
   Rigid3 last_from_frame = motion->camera1_from_camera2;
   std::vector<double> lengths = Lengths(last_from_frame, features, last, local, matches);
   if (static_cast<int>(lengths.size()) < kMinLengths) return std::nullopt;
-  const auto middle = lengths.begin() + static_cast<ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  last_from_frame.translation *= *middle;
+  last_from_frame.translation *= Median(lengths);
   return last.world_from_camera * last_from_frame;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "nn/base/statistics.h"
 #include "slam/geometry/ground_plane.h"
 
 namespace orb360 {
@@ -56,9 +57,7 @@ std::optional<KnownGround> EstimateGround(const Map& map, std::span<const Keyfra
     planes.push_back(std::move(*plane));
   }
   if (planes.size() < kMinKeyframes) return std::nullopt;
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::nth_element(heights.begin(), middle, heights.end());
-  KnownGround ground{Eigen::Vector3d::Zero(), *middle};
+  KnownGround ground{Eigen::Vector3d::Zero(), Median(heights)};
   size_t agreeing = 0;
   for (const GroundPlane& plane : planes) {
     if (std::abs(plane.height / ground.camera_height - 1) > kSameHeight) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nn/base/statistics.h"
 #include "slam/features/matching.h"
 #include "slam/geometry/essential_matrix.h"
 #include "slam/geometry/triangulation.h"
@@ -54,9 +55,7 @@ double MedianParallax(const Features& features1, const Features& features2,
     if (parallax > options.min_landmark_parallax) parallaxes.push_back(parallax);
   }
   if (static_cast<int>(parallaxes.size()) < options.min_landmarks) return 0;
-  const auto middle = parallaxes.begin() + parallaxes.size() / 2;
-  std::nth_element(parallaxes.begin(), middle, parallaxes.end());
-  return *middle;
+  return Median(parallaxes);
 }
 
 // Points and camera 2 refined together; camera 1 is the gauge, and the free scale does no harm to

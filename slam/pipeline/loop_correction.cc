@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "nn/base/statistics.h"
 #include "slam/map/covisibility.h"
 #include "slam/optimization/pose_graph.h"
 #include "slam/pipeline/landmark_fusion.h"
@@ -79,10 +80,7 @@ double ScaleOfChange(const Keyframe& before, const Map& map_before, const Map& m
         (map_after.landmark(id).position - after).norm() /
         (map_before.landmark(id).position - before.world_from_camera.translation).norm());
   }
-  if (ratios.empty()) return 1.0;
-  const auto middle = ratios.begin() + ratios.size() / 2;
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  return *middle;
+  return ratios.empty() ? 1.0 : Median(ratios);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nn/base/statistics.h"
 #include "slam/pipeline/reconstruction.h"
 
 namespace orb360 {
@@ -162,7 +163,7 @@ std::optional<Revisit> LoopDetector::Verify(
   const std::optional<TrackResult> result =
       TrackAt(*keyframe.features, place_map, MakeLocalMap(place_map, place, local_keyframes_));
   if (!result) return std::nullopt;
-  // The scale is the middle of the ratios of how far both maps have the same feature away.
+  // The scale is the median ratio of the ranges that the two maps give the same feature.
   std::vector<double> ratios;
   for (size_t f = 0; f < keyframe.landmarks.size(); ++f) {
     if (keyframe.landmarks[f] == kNoId || result->landmarks[f] == kNoId) continue;
@@ -173,8 +174,7 @@ std::optional<Revisit> LoopDetector::Verify(
   }
   constexpr size_t kMinRatios = 15;
   if (ratios.size() < kMinRatios) return std::nullopt;
-  const auto middle = ratios.begin() + ratios.size() / 2;
-  std::nth_element(ratios.begin(), middle, ratios.end());
+  const double scale = Median(ratios);
   // Images are alike over a few metres: what looked most like this one need not be the nearest.
   const auto distance = [&](KeyframeId id) {
     return (place_map.keyframe(id).world_from_camera.translation -
@@ -191,7 +191,7 @@ std::optional<Revisit> LoopDetector::Verify(
       place_map.keyframe(nearest).world_from_camera.Inverse() * result->world_from_camera;
   return Revisit{newest,
                  nearest,
-                 {*middle, place_from_camera.rotation, place_from_camera.translation},
+                 {scale, place_from_camera.rotation, place_from_camera.translation},
                  result->num_inliers};
 }
 

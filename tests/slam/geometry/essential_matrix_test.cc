@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "nn/base/check.h"
+#include "nn/base/statistics.h"
 #include "tests/slam/geometry/two_views.h"
 
 namespace orb360 {
@@ -190,9 +191,7 @@ TEST(EstimateRelativePose, PureRotationShowsAsParallaxOfTheNoise) {
     parallax.push_back(AngleBetween(views.bearings1[i],
                                     found->camera1_from_camera2.rotation * views.bearings2[i]));
   }
-  const auto middle = parallax.begin() + parallax.size() / 2;
-  std::nth_element(parallax.begin(), middle, parallax.end());
-  EXPECT_LT(*middle, 2.0 * kSigma);
+  EXPECT_LT(Median(parallax), 2.0 * kSigma);
   EXPECT_LT(RotationError(found->camera1_from_camera2, views.camera1_from_camera2), kSigma);
 }
 

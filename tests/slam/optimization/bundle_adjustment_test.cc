@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "nn/base/statistics.h"
 #include "slam/optimization/local_bundle_adjustment.h"
 #include "tests/slam/pipeline/synthetic_scene.h"
 
@@ -165,8 +166,7 @@ TEST(LocalBundleAdjustment, RoughRangesHelpWithPointsOfLittleParallax) {
           std::abs(std::log(map->landmark(id).position.norm() / scene.points[id].position.norm())));
     }
     EXPECT_GT(errors.size(), 250u);
-    std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
-    return errors[errors.size() / 2];
+    return Median(errors);
   };
   const double without = median_error(&plain);
   EXPECT_LT(median_error(&with_ranges), 0.8 * without);

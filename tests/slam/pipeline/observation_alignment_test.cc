@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "nn/base/statistics.h"
 #include "slam/geometry/so3.h"
 #include "tests/slam/pipeline/patch_scene.h"
 
@@ -70,11 +71,7 @@ TEST(AlignObservations, LearnsHowSurfacesLieAndTakesThemForThat) {
     before.push_back(truth.norm() / landmark.patch->spacing);
   }
   ASSERT_GT(errors.size(), 60u);
-  const auto median = [](std::vector<double> v) {
-    std::nth_element(v.begin(), v.begin() + v.size() / 2, v.end());
-    return v[v.size() / 2];
-  };
-  EXPECT_LT(median(errors), 0.5 * median(before));
+  EXPECT_LT(Median(errors), 0.5 * Median(before));
 }
 
 TEST(AlignObservations, ExpectsTheGroundToLieLikeTheGround) {

@@ -7,6 +7,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "nn/base/statistics.h"
 #include "slam/features/feature_index.h"
 #include "slam/features/sphere_pyramid.h"
 #include "slam/geometry/bearing.h"
@@ -91,9 +92,7 @@ struct PatchScene {
       }
     }
     if (fraction != nullptr) *fraction = errors.size() / static_cast<double>(map.num_landmarks());
-    if (errors.empty()) return -1;
-    std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
-    return errors[errors.size() / 2];
+    return errors.empty() ? -1 : Median(errors);
   }
 };
 
