@@ -6,8 +6,9 @@
 
 namespace orb360 {
 
-/// A source view of a comparison; `source_from_reference` transforms the points into it. Two ranges
-/// agree up to `tolerance_errors` expected errors plus `relative_tolerance` of the range.
+/// A source view with which the points of a reference view are compared. `source_from_reference`
+/// transforms the points into the camera frame of the source view. Two ranges agree if they differ
+/// by at most `tolerance_errors` expected errors plus `relative_tolerance` times the range.
 struct SourceView {
   const DepthView* view;
   Rigid3 source_from_reference;

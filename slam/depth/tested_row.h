@@ -26,7 +26,7 @@ struct TestedRow {
   std::array<Array, 3> bearing;  // camera frame, unit
   Array range;                   // world units
   std::array<Array, 3> normal;   // camera frame, unit, towards the camera; zero where there is none
-  Array variance;  // of the point along its normal, to be expected; 0: it is not to be confirmed
+  Array variance;  // of the point along its normal, to be expected; 0: it is not tested
   // What source views and the point's own keyframe say of the points:
   Array support;      // how many see the same surface there
   Array conflict;     // how many look through it

@@ -20,8 +20,8 @@ struct Zone {
 };
 constexpr std::array<Zone, 6> kZones = {{{0, 4}, {4, 6}, {6, 8}, {8, 10}, {10, 12}, {12, 16}}};
 
-// Multiple of its even quota that a band or a cell may contribute before weaker corners elsewhere
-// are preferred. With 1 the corners would be distributed most evenly, but the choice would depend
+// Number of even quotas that a band or a cell may fill before weaker corners elsewhere are
+// preferred. With 1 the corners would be distributed most evenly, but the choice would depend
 // on the position of the cells. When a textured sphere is pitched by 45 degrees, 63 % of the
 // features are found again with 1, 72 % with 3, 74 % with 4, and at most 75 % without a limit.
 constexpr double kMaxQuotas = 4.0;
