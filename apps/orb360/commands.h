@@ -6,11 +6,12 @@
 
 namespace orb360 {
 
-/// What a subcommand does once the command line is parsed; gives the program's exit status.
+/// The work of a subcommand after the command line has been parsed. Returns the exit status of the
+/// program.
 using Command = std::function<int()>;
 
-/// Each adds a subcommand with its options to `app`. When the user asks for it, `*chosen` becomes
-/// the command to run.
+/// Each of these adds a subcommand with its options to `app`. When the user chooses the subcommand,
+/// `*chosen` receives the command to run.
 void AddRunCommand(CLI::App* app, Command* chosen);
 void AddEvaluateCommand(CLI::App* app, Command* chosen);
 void AddConfigCommand(CLI::App* app, Command* chosen);

@@ -36,7 +36,7 @@ struct CompleteOptions {
   bool json = false;
 };
 
-/// Ranges with their confidence, CV_32F; the image they belong to where the file has it.
+/// Ranges with their confidence, CV_32F, and the image of them where the file contains it.
 struct SparseInput {
   cv::Mat image;
   SparseDepth depth;
@@ -50,7 +50,7 @@ SparseInput ReadSparse(const std::filesystem::path& path) {
   }
   const cv::Mat range = ReadDepthImage(path);
   cv::Mat confidence;
-  // A depth image has no confidences: every point counts the same.
+  // A depth image contains no confidences, so all points have the same.
   cv::Mat(range > 0).convertTo(confidence, CV_32F, 1.0 / 255.0);
   return {{}, {range, confidence}};
 }
@@ -61,7 +61,7 @@ cv::Mat ReadImage(const std::string& path) {
   return loaded.image;
 }
 
-/// "DIR/NAME_WHAT.png" for "DIR/NAME.png".
+/// Returns "DIR/NAME_WHAT.png" for "DIR/NAME.png".
 std::filesystem::path Beside(const std::filesystem::path& depth, const char* what) {
   std::filesystem::path name = depth.stem();
   name += what;
@@ -69,17 +69,17 @@ std::filesystem::path Beside(const std::filesystem::path& depth, const char* wha
   return depth.parent_path() / name;
 }
 
-/// 16-bit PNG of what lies between 0 and 1, times 65535.
+/// Writes values between 0 and 1, times 65535, as a 16-bit PNG.
 void WriteFractionImage(const std::filesystem::path& path, const cv::Mat& fraction) {
   constexpr double kOne = 65535;
   cv::Mat units;
-  fraction.convertTo(units, CV_16U, kOne);  // rounds, and keeps what is outside 0..1 inside
+  fraction.convertTo(units, CV_16U, kOne);  // It rounds, and clamps to 0..65535.
   std::vector<unsigned char> png;
   cv::imencode(".png", units, png);
   WriteFileAtomically(path, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
-/// The network, made ready for images of one size after the other.
+/// The network, prepared again whenever the size of the images changes.
 class Completer {
  public:
   explicit Completer(const CompleteOptions& options) : options_(options) {}
@@ -107,7 +107,7 @@ class Completer {
   std::optional<DepthCompleter> completer_;
 };
 
-/// Completes one sparse input and writes the result to `out`; gives what is told about it.
+/// Completes one sparse input, writes the result to `out` and returns a description of it.
 nlohmann::json CompleteOne(const CompleteOptions& options, const std::filesystem::path& sparse_path,
                            const std::filesystem::path& out, Completer* completer) {
   const SparseInput sparse = ReadSparse(sparse_path);
@@ -146,7 +146,7 @@ nlohmann::json CompleteOne(const CompleteOptions& options, const std::filesystem
   return result;
 }
 
-/// The files of `run --save-sparse` in a folder, by name.
+/// Returns the files of `run --save-sparse` in a folder, ordered by name.
 std::vector<std::filesystem::path> SparseFiles(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

@@ -15,9 +15,9 @@ namespace {
 
 constexpr int kCloudImageSide = 1600;   // pixels
 constexpr int kDepthImageWidth = 1024;  // pixels
-/// Keyframes that are drawn, spread over the run.
+/// Number of keyframes that are drawn. They are spread over the run.
 constexpr size_t kDrawnKeyframes = 3;
-/// What is drawn in the colours of near and far, in median ranges.
+/// Ranges that are drawn in the colours of near and far, as multiples of the median range.
 constexpr double kNear = 0.25;
 constexpr double kFar = 8.0;
 

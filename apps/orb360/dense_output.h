@@ -21,8 +21,8 @@ struct DenseOutput {
 DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMapStore& store,
                              std::span<const DenseView> views, const DenseCloudOptions& options);
 
-/// Writes the range of every view into `folder`/depth, a 16-bit PNG (WriteDepthImage) named by the
-/// frame's index, in the world's unit at the end.
+/// Writes the ranges of every view, in the final unit of the world, into `folder`/depth as a 16-bit
+/// PNG (WriteDepthImage), which is named by the index of the frame.
 void SaveDepth(const std::filesystem::path& folder, const DepthMapStore& store,
                std::span<const DenseView> views);
 

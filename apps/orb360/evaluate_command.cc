@@ -33,20 +33,22 @@ struct EvaluateOptions {
   std::string plot;
 };
 
-/// The trajectory file that `path` names: itself, or `file_name` in the folder that it is.
+/// Returns the trajectory file that `path` names: `path` itself, or `file_name` in it if it is a
+/// folder.
 std::filesystem::path TrajectoryFile(const std::filesystem::path& path, const char* file_name) {
   if (!std::filesystem::exists(path)) throw UserError(path.string() + ": no such file or folder");
   return std::filesystem::is_directory(path) ? path / file_name : path;
 }
 
-/// The summary of the run that made the estimate; null where there is none to read.
+/// Returns the summary of the run that made the estimate; null where it cannot be read.
 nlohmann::json RunSummary(const std::filesystem::path& estimate) {
   std::ifstream file(estimate / "summary.json");
   return file ? nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false) : nlohmann::json();
 }
 
-/// The fraction of the frames that have a pose, by the run's own account, else of the ground
-/// truth's poses that are paired; and what only the run's summary knows.
+/// Adds the fraction of the frames that have a pose according to the summary of the run, or without
+/// a summary the fraction of the true poses that are paired; and the figures that only the summary
+/// contains.
 void AddRunFigures(const std::filesystem::path& estimate, double paired_fraction,
                    nlohmann::json* report) {
   const nlohmann::json summary = RunSummary(estimate);
@@ -60,7 +62,7 @@ void AddRunFigures(const std::filesystem::path& estimate, double paired_fraction
   }
 }
 
-/// The loops that the run has closed beside those of the ground truth, by the run's own account.
+/// Compares the loops that the run has closed, according to its summary, with the true ones.
 void AddLoopErrors(const EvaluateOptions& options, const std::vector<StampedPose>& truth,
                    nlohmann::json* report) {
   const nlohmann::json summary = RunSummary(options.estimate);
@@ -76,7 +78,7 @@ void AddLoopErrors(const EvaluateOptions& options, const std::vector<StampedPose
   (*report)["loops"] = ToJson(CompareLoops(truth, loops));
 }
 
-/// Depth errors, where both folders have depth images of the same frames.
+/// Adds depth errors where both folders contain depth images of the same frames.
 void AddDepthErrors(const std::filesystem::path& truth, const std::filesystem::path& estimate,
                     nlohmann::json* report) {
   const std::filesystem::path true_images = truth / Dataset::kDepthName;
@@ -86,7 +88,7 @@ void AddDepthErrors(const std::filesystem::path& truth, const std::filesystem::p
   if (depth.images > 0) (*report)["depth"] = ToJson(depth);
 }
 
-/// Errors of the dense cloud, where the estimate has one and the truth has depth images.
+/// Adds errors of the dense cloud where the estimate has one and the truth has depth images.
 void AddCloudErrors(const EvaluateOptions& options, const std::vector<StampedPose>& truth,
                     const std::vector<PosePair>& pairs, nlohmann::json* report) {
   const std::filesystem::path cloud = std::filesystem::path(options.estimate) / "cloud.ply";

@@ -9,13 +9,13 @@
 namespace orb360 {
 namespace {
 
-/// A line of the table: what a key of the report means.
+/// A line of the table, which describes a key of the report.
 struct Row {
   const char* key;
   const char* label;
   const char* unit;
   int decimals;
-  double factor = 1.0;  // from the report's unit to the table's
+  double factor = 1.0;  // from the unit of the report to that of the table
 };
 
 constexpr Row kRows[] = {
@@ -38,14 +38,14 @@ constexpr Row kRows[] = {
     {"rpe_frame_rot_deg", "  rotation", "deg", 5},
 };
 
-/// Of the loops.
+/// The lines about loops.
 constexpr Row kLoopRows[] = {
     {"revisits", "places that the camera comes back to", "", 0},
     {"closed", "  loops closed there", "", 0},
     {"wrong", "  wrong loops", "", 0},
 };
 
-/// Of the cloud.
+/// The lines about the cloud.
 constexpr Row kCloudRows[] = {
     {"points", "cloud, points compared", "", 0},
     {"median_distance", "  median distance from the surface", "m", 3},

@@ -11,20 +11,21 @@
 
 namespace orb360 {
 
-/// The report of `orb360 evaluate --json`: lengths in metres, angles in degrees.
+/// Returns the report of `orb360 evaluate --json`, with lengths in metres and angles in degrees.
 nlohmann::json ToJson(const TrajectoryErrors& errors);
 
-/// The part under its key "depth". Bins that no pixel falls into have null for errors.
+/// Returns the part of the report under the key "depth". The errors of bins without pixels are
+/// null.
 nlohmann::json ToJson(const DepthFolderErrors& depth);
 
-/// The part under its key "cloud": fractions of points near the surface (accuracy) and of the
-/// surface near points (completeness), at two distances.
+/// Returns the part under the key "cloud": the fractions of the points that are near the surface
+/// (accuracy) and of the surface that is near points (completeness), for two distances.
 nlohmann::json ToJson(const CloudErrors& errors);
 
-/// The part under its key "loops".
+/// Returns the part under the key "loops".
 nlohmann::json ToJson(const LoopErrors& errors);
 
-/// A report as a table for people.
+/// Prints a report as tables.
 void PrintReport(const nlohmann::json& report, std::ostream& out);
 
 }  // namespace orb360

@@ -2,11 +2,11 @@
 
 namespace orb360 {
 
-/// From now on the first SIGINT (Ctrl-C) or SIGTERM is remembered instead of ending the program;
-/// the second ends it as usual.
+/// From this call on the first SIGINT (Ctrl-C) or SIGTERM is recorded and does not end the program.
+/// The second one ends it as usual.
 void CatchInterrupts();
 
-/// The signal that was caught, 0 if none.
+/// Returns the signal that was caught, or 0.
 int CaughtInterrupt();
 
 }  // namespace orb360

@@ -17,10 +17,10 @@
 namespace {
 
 constexpr int kUserError = 1;
-constexpr int kUsageError = 2;      // as shells and most tools have it
+constexpr int kUsageError = 2;      // as in shells and most tools
 constexpr int kInternalError = 70;  // EX_SOFTWARE of sysexits.h
 
-/// The first line of CLI11's message, and where to read more.
+/// Returns the first line of CLI11's message and a hint at the help.
 std::string UsageMessage(const CLI::App* app, const CLI::Error& error) {
   std::string what = error.what();
   what = what.substr(0, what.find('\n'));
@@ -51,7 +51,7 @@ int Main(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // What OpenCV has to say about files it cannot read is said by UserErrors.
+  // UserErrors report the files that OpenCV cannot read, so its own messages are switched off.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   // A closed pipe must not end a run whose results go to files.
   std::signal(SIGPIPE, SIG_IGN);

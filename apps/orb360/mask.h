@@ -8,18 +8,19 @@
 
 namespace orb360 {
 
-/// Reads a mask image, black where features are not wanted, and scales it to `size`: CV_8UC1, 0
-/// for excluded (darker than half), 255 for the rest. Throws UserError if it cannot be read or is
-/// no full sphere.
+/// Reads a mask image, which is black where features are excluded, and scales it to `size`. The
+/// result is CV_8UC1: 0 where the image is darker than half of the full brightness, 255 elsewhere.
+/// Throws UserError if the image cannot be read or is not a full sphere.
 cv::Mat LoadMask(const std::string& file, cv::Size size);
 
-/// The mask that --mask asks for: `auto` looks for what moves with the camera at the start of
-/// `input` (FindSelfMask), in a rendered one for nothing; `none` is an empty mask, all else is an
-/// image's name. `sequence` is the input as opened with `options`.
+/// Returns the mask for the argument of --mask. `auto` searches everything that moves with the
+/// camera at the start of `input` (FindSelfMask); for a rendered input it gives an empty mask, as
+/// `none` does. Everything else is the name of a mask image. `sequence` is the input as opened with
+/// `options`.
 cv::Mat ChooseMask(const std::string& choice, const std::string& input,
                    const SequenceOptions& options, const Sequence& sequence);
 
-/// The fraction of the sphere that a mask excludes; 0 for an empty one.
+/// Returns the fraction of the sphere's solid angle that a mask excludes; 0 for an empty mask.
 double ExcludedFraction(const cv::Mat& mask);
 
 }  // namespace orb360

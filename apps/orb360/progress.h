@@ -8,21 +8,22 @@
 
 namespace orb360 {
 
-/// Shows on standard output how far a run is: a bar that is redrawn on a terminal, elsewhere a
-/// line every few seconds; and a line whenever the state changes (first map, lost, found again).
+/// Shows the progress of a run on standard output: on a terminal a bar that is redrawn, elsewhere a
+/// line every few seconds. In addition it prints a line whenever the state changes (first map,
+/// tracking lost, camera found again).
 class Progress {
  public:
-  /// `frame_count` as Sequence estimates it. Quiet: nothing is shown.
+  /// `frame_count` is the estimate of Sequence. With `is_quiet` nothing is shown.
   Progress(std::optional<int> frame_count, bool is_quiet);
-  /// Ends the bar's line.
+  /// Ends the line of the bar.
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// After each frame; `index` is its Frame::index.
+  /// Shows the state after a frame; `index` is its Frame::index.
   void Update(int index, const FrameReport& report);
 
-  /// A line for standard error that must not end up in the middle of the bar.
+  /// Prints a line on standard error and keeps it apart from the bar.
   void Warn(const std::string& line);
 
   int num_frames() const { return num_frames_; }

@@ -60,7 +60,7 @@ double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The size that --resize asks for; empty for "".
+/// Returns the size that --resize asks for; empty for "".
 cv::Size ParseSize(const std::string& text) {
   if (text.empty()) return {};
   const size_t x = std::min(text.find('x'), text.size() - 1);
@@ -71,7 +71,7 @@ cv::Size ParseSize(const std::string& text) {
                   "` is not WIDTHxHEIGHT with a width of twice the height, such as 2048x1024");
 }
 
-/// Sets the number of threads everything below uses, and gives it.
+/// Sets the number of threads of OpenMP and OpenCV and returns it.
 int SetThreads(int wanted) {
   const int threads =
       wanted > 0 ? wanted : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -80,7 +80,7 @@ int SetThreads(int wanted) {
   return threads;
 }
 
-/// Tracks frame by frame to the end, an interrupt, or a failure of input or disk.
+/// Tracks frame by frame until the end of the input, an interrupt, or a failure of input or disk.
 RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, bool is_quiet) {
   RunRecord record;
   Progress progress(sequence->frame_count(), is_quiet);
@@ -108,27 +108,30 @@ RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, b
   return record;
 }
 
-/// Fuses the keyframes' depth. A failure of the disk is noted, so that the trajectory is written.
+/// Fuses the depth of the keyframes. A failure of the disk is recorded and not thrown, so that the
+/// trajectory is written.
 std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction, const System& system,
                                      const RunOptions& options, int num_threads,
                                      const RunOutput& output, RunRecord* record) {
   const auto start = Clock::now();
   std::optional<DenseOutput> dense;
-  if (reconstruction.depth_scales.empty()) return dense;  // nothing could be completed
+  if (reconstruction.depth_scales.empty()) return dense;  // No keyframe has dense depth.
 #ifdef __GLIBC__
-  malloc_trim(0);  // what tracking and the last bundle adjustment needed would stay beside fusion's
+  // Without this the memory of tracking and of the last bundle adjustment would remain in use
+  // beside that of fusion.
+  malloc_trim(0);
 #endif
   try {
     dense =
         output.WriteDense(reconstruction, *system.depth_maps(), options.saves_depth, num_threads);
-  } catch (const std::exception&) {  // the trajectory is written all the same
+  } catch (const std::exception&) {  // The trajectory is written nevertheless.
     if (!record->failure) record->failure = std::current_exception();
   }
   record->fusion_seconds = SecondsSince(start);
   return dense;
 }
 
-/// The map that a run is to begin in, for images of this width; none for "".
+/// Reads the map in which a run begins. Its images must have the given width, pixels. None for "".
 std::optional<StoredMap> ReadMapFor(int width, const std::string& path) {
   if (path.empty()) return std::nullopt;
   StoredMap stored = ReadMap(path);
@@ -138,20 +141,20 @@ std::optional<StoredMap> ReadMapFor(int width, const std::string& path) {
                   std::to_string(stored.width) + "x" + std::to_string(stored.width / 2));
 }
 
-/// Of several maps, which nothing relates, the largest is kept.
+/// Writes the largest of several maps, because their relative poses are unknown.
 void WriteLargestMap(const std::string& path, int width, const Rigid3& file_world_from_map,
                      const System& system) {
   const std::span<const Map> maps = system.maps();
   const auto largest = std::ranges::max_element(maps, {}, &Map::num_keyframes);
   if (largest == maps.end()) return;
   std::optional<KnownGround> ground = system.grounds()[largest - maps.begin()];
-  if (ground && ground->is_rough) ground.reset();  // the next run may find it
+  if (ground && ground->is_rough) ground.reset();  // The next run may find it.
   WriteMap(path, {width, file_world_from_map, ground, *largest});
 }
 
-/// What was left open, and what cannot be done, before any work.
+/// Completes options that were left open, and refuses what cannot be done, before any work.
 RunOptions Settle(RunOptions options) {
-  if (options.localizes) options.weights = "none";  // no keyframe is made that could be completed
+  if (options.localizes) options.weights = "none";  // No keyframes are made.
   if (options.weights.empty()) options.weights = nn::DefaultWeights().string();
   if (options.saves_depth && options.weights == "none") {
     throw UserError("--save-depth: without a network there is no dense depth; leave it out");
@@ -172,7 +175,7 @@ int Run(const RunOptions& options) {
   std::optional<StoredMap> stored = ReadMapFor(sequence->image_size().width, options.map_in);
   RunOutput output(options.out);
   if (stored) output.SetWorld(stored->file_world_from_map);
-  // Throws now where the map could not be written in the end; it may lie in the output's folder.
+  // This throws now if the map could not be written at the end. It may be in the output folder.
   if (!options.map_out.empty()) AtomicFile{options.map_out};
   const int threads = SetThreads(options.threads);
   const cv::Mat mask = ChooseMask(options.mask, options.input, sequence_options, *sequence);

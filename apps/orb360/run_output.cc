@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kJournalName = "trajectory.journal";
 
-/// Creates a folder and those above it; false if it was there.
+/// Creates a folder and its parents. False if it existed.
 bool Create(const std::filesystem::path& folder) {
   std::error_code error;
   const bool is_new = std::filesystem::create_directories(folder, error);
@@ -22,7 +22,7 @@ bool Create(const std::filesystem::path& folder) {
   return is_new;
 }
 
-/// Without those of earlier runs, whose indices are negative.
+/// Leaves out the frames of earlier runs, whose indices are negative.
 std::vector<StampedPose> ToStamped(const std::vector<FramePose>& frames) {
   std::vector<StampedPose> poses;
   poses.reserve(frames.size());
@@ -32,14 +32,14 @@ std::vector<StampedPose> ToStamped(const std::vector<FramePose>& frames) {
   return poses;
 }
 
-/// The frame of the written files, once everything is known.
+/// Returns the transformation into the world frame of the finished files.
 Rigid3 FinalFileWorldFromMap(const Reconstruction& reconstruction) {
   if (reconstruction.frames.empty()) return {};
   return FileWorldFromMap(reconstruction.frames.front().world_from_camera, reconstruction.up);
 }
 
-/// The map from above, in the frame of the written files. The more landmarks two keyframes share,
-/// the darker their link.
+/// Draws the map from above, in the frame of the written files. The more landmarks two keyframes
+/// share, the darker is their link.
 std::string DrawMap(const Reconstruction& reconstruction, const Rigid3& file_world_from_map) {
   std::vector<Eigen::Vector2d> keyframes;
   std::vector<Eigen::Vector2d> landmarks;

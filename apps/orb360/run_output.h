@@ -11,31 +11,33 @@
 
 namespace orb360 {
 
-/// The folder a run writes into. While the run lasts it holds `trajectory.journal`, each pose as
-/// it is first known; at the end the finished files take its place.
+/// The folder into which a run writes. During the run it contains `trajectory.journal`, with each
+/// pose as it was first known. At the end the finished files replace the journal.
 class RunOutput {
  public:
-  /// Creates the folder if need be and begins the journal. Throws UserError where that fails.
+  /// Creates the folder if it does not exist and starts the journal. Throws UserError where that
+  /// fails.
   explicit RunOutput(const std::filesystem::path& folder);
-  /// Removes a journal without a pose, and the folder if it was made for that.
+  /// Removes a journal without a pose, and the folder if it was created for this run.
   ~RunOutput();
   RunOutput(const RunOutput&) = delete;
   RunOutput& operator=(const RunOutput&) = delete;
 
-  /// Files are written in this world instead of that of the first pose.
+  /// Sets the world frame of the files, which is otherwise that of the first pose.
   void SetWorld(const Rigid3& file_world_from_map) { given_world_ = file_world_from_map; }
 
-  /// Adds to the journal. Its world is that of the first pose, not levelled, unless one is given.
+  /// Adds a pose to the journal; `timestamp` is in seconds. Unless SetWorld has been called, the
+  /// world frame of the journal is that of the first pose, which is not levelled.
   void Append(double timestamp, const Rigid3& map_from_camera);
 
-  /// Writes the dense cloud of the keyframes in the store, cloud.ply, and with `saves_depth` their
-  /// ranges (SaveDepth).
+  /// Writes cloud.ply, the dense cloud of the keyframes in the store, and with `saves_depth` the
+  /// ranges of the keyframes (SaveDepth).
   DenseOutput WriteDense(const Reconstruction& reconstruction, const DepthMapStore& store,
                          bool saves_depth, int num_threads) const;
 
   /// Writes trajectory.txt, keyframes.txt, the landmarks as cloud.ply (as landmarks.ply where there
   /// is a dense cloud), map.svg (where there is a keyframe), summary.json and the report
-  /// (WriteRunReport), then removes the journal. Returns the world of the files from the map's.
+  /// (WriteRunReport), then removes the journal. Returns file_world_from_map.
   Rigid3 Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,
                 const std::optional<DenseOutput>& dense);
 
@@ -48,7 +50,8 @@ class RunOutput {
   const bool is_new_folder_;
   TrajectoryJournal journal_;
   std::optional<Rigid3> given_world_;
-  std::optional<Rigid3> file_world_from_map_;  // of the journal, from its first pose on
+  /// The world of the journal's poses, known from the first pose on.
+  std::optional<Rigid3> file_world_from_map_;
 };
 
 }  // namespace orb360

@@ -13,7 +13,7 @@
 namespace orb360 {
 namespace {
 
-/// 1234567 as "1,234,567".
+/// Returns 1234567 as "1,234,567".
 std::string Grouped(double value) {
   const std::string digits = Decimal(value, 0);
   std::string text;
@@ -31,7 +31,7 @@ std::string WithUnit(double value, int decimals, const char* unit) {
   return text;
 }
 
-/// Along the frames; a step from one map to the next does not count.
+/// Returns the length of the path along the frames. Steps from one map to the next do not count.
 double PathLength(const std::vector<FramePose>& frames) {
   double length = 0;
   for (size_t i = 1; i < frames.size(); ++i) {

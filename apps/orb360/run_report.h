@@ -11,18 +11,18 @@
 
 namespace orb360 {
 
-/// Images of dense depth, CV_8UC3, BGR; empty where there is none.
+/// Images of dense depth, CV_8UC3, BGR; empty where there is no dense depth.
 struct DenseImages {
-  cv::Mat cloud;  // CloudImage
+  cv::Mat cloud;  ///< The cloud from above (CloudImage).
   struct OfKeyframe {
     int frame_index = 0;
-    cv::Mat image;  // DrawDepth
+    cv::Mat image;  ///< A keyframe's depth (DrawDepth).
   };
   std::vector<OfKeyframe> keyframes;
 };
 
-/// Writes `report/` in the folder of a run: the images as PNG, and report.html, which holds all
-/// of them, the map (`map_svg`, empty where there is none) and what `summary` says. Throws
+/// Writes `report/` in the folder of a run: the images as PNG, and report.html, which contains the
+/// images, the map (`map_svg`, empty where there is none) and the figures of `summary`. Throws
 /// UserError where that fails.
 void WriteRunReport(const std::filesystem::path& run_folder, const Reconstruction& reconstruction,
                     const nlohmann::json& summary, const std::string& map_svg,

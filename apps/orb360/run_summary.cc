@@ -18,7 +18,8 @@ double PeakMemoryMb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;  // KiB on Linux
 }
 
-/// Where metres come from. Of several maps the first counts: the others continue it.
+/// Describes the source of the metric scale. Of several maps the first one counts, because the
+/// others continue its scale.
 nlohmann::json DescribeScale(const Reconstruction& reconstruction, const ScaleOptions& options) {
   const bool is_metric = !reconstruction.maps.empty() && reconstruction.maps.front().is_metric;
   if (!is_metric) return {{"source", "none"}, {"value", nullptr}};
@@ -27,21 +28,21 @@ nlohmann::json DescribeScale(const Reconstruction& reconstruction, const ScaleOp
           {"rough", reconstruction.maps.front().is_rough}};
 }
 
-/// Pairs of the frame that came back and the frame of the place.
+/// Returns pairs of the frame that came back and the frame of the place.
 nlohmann::json FramesOf(const std::vector<ClosedLoop>& loops) {
   nlohmann::json pairs = nlohmann::json::array();
   for (const ClosedLoop& loop : loops) pairs.push_back({loop.frame, loop.place});
   return pairs;
 }
 
-/// The same in seconds.
+/// Returns the same pairs as timestamps, seconds.
 nlohmann::json TimesOf(const std::vector<ClosedLoop>& loops, const std::vector<FramePose>& frames) {
   const auto time_of = [&](int index) {
     return std::ranges::lower_bound(frames, index, {}, &FramePose::index)->timestamp;
   };
   nlohmann::json pairs = nlohmann::json::array();
   for (const ClosedLoop& loop : loops) {
-    // A place of a map made earlier is no frame of this run.
+    // A place in a loaded map is not a frame of this run.
     if (loop.place < frames.front().index) continue;
     pairs.push_back({time_of(loop.frame), time_of(loop.place)});
   }

@@ -15,33 +15,38 @@
 
 namespace orb360 {
 
-/// What the loop over the frames leaves behind.
+/// The record of a run, collected while its frames are processed.
 struct RunRecord {
   int frames = 0;
-  double seconds = 0.0;            // from the first frame to the finished map
-  double finishing_seconds = 0.0;  // of those, after the last frame
-  double fusion_seconds = 0.0;     // of the dense cloud
+  /// Wall time from the first frame to the finished map, s.
+  double seconds = 0.0;
+  /// The part of it after the last frame, s.
+  double finishing_seconds = 0.0;
+  /// Wall time of fusing the dense cloud, s.
+  double fusion_seconds = 0.0;
   StageTimes times;
   std::vector<std::string> warnings;
-  std::exception_ptr failure;  // of the input or the disk, in the middle
+  /// What stopped the run before its end: a failure of the input or the disk. Null where there was
+  /// none.
+  std::exception_ptr failure;
 };
 
-/// What a run was asked for, and what it found before the first frame.
+/// The options of a run, and what was determined before the first frame.
 struct RunDescription {
   std::string input;
   std::string mask;
-  double masked_fraction = 0;  // of the sphere
+  double masked_fraction = 0;  ///< Fraction of the sphere's solid angle.
   std::string weights;
   ScaleOptions scale;
   int threads = 0;
 };
 
-/// The content of summary.json.
+/// Returns the content of summary.json.
 nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& record,
                          const std::optional<DenseOutput>& dense,
                          const RunDescription& description);
 
-/// The last lines of a run: what was tracked, and where the results are.
+/// Prints the last lines of a run, which tell how much was tracked and where the results are.
 void PrintResult(const nlohmann::json& summary, const std::filesystem::path& folder);
 
 }  // namespace orb360

@@ -26,7 +26,8 @@ std::filesystem::path SampleName(int frame_index) {
 
 void WriteSparseKeyframes(const std::filesystem::path& folder, std::span<const Map> maps,
                           Sequence* sequence) {
-  // By frame index; a frame is in one map only. Negative ones are of earlier runs.
+  // The keyframes by frame index. A frame is in one map only; frames of earlier runs have negative
+  // indices.
   std::map<int, KeyframeOfMap> keyframes;
   for (const Map& map : maps) {
     for (const KeyframeId id : map.KeyframeIds()) {

@@ -8,14 +8,14 @@
 
 namespace orb360 {
 
-/// The wall times of a run's stages, frame by frame.
+/// The wall times of the stages of a run, for every frame.
 class StageTimes {
  public:
-  /// Milliseconds by stage, of one frame.
+  /// Adds the wall times of one frame, ms by stage.
   void Add(const std::map<std::string, double>& timing_ms);
 
-  /// {"stage": {"median": ms, "p95": ms}, ...}; the p95 is the least time that 95 % of the frames
-  /// do not exceed.
+  /// Returns {"stage": {"median": ms, "p95": ms}, ...}. The p95 is the least time that 95 % of the
+  /// frames do not exceed.
   nlohmann::json Summary() const;
 
  private:

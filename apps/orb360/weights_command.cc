@@ -15,7 +15,7 @@ namespace {
 
 struct InspectOptions {
   std::string file;
-  std::vector<int> size = {1024, 512};  // width, height: pixels
+  std::vector<int> size = {1024, 512};  // width and height, pixels
 };
 
 std::string ToText(const nn::Shape& shape) {
@@ -36,7 +36,7 @@ std::string Formatted(const char* format, double value) {
 void PrintRow(const std::vector<std::string>& cells, const std::vector<std::size_t>& widths,
               std::ostream& out) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    // Text to the left, numbers to the right.
+    // Text is aligned to the left, numbers to the right.
     const std::string fill(widths[i] - std::min(widths[i], cells[i].size()), ' ');
     const bool is_number = i >= 3;
     out << (i == 0 ? "" : "  ") << (is_number ? fill : "") << cells[i]

@@ -16,26 +16,28 @@ struct BundleProblem {
   struct Observation {
     int pose;
     int point;
-    Eigen::Vector3d bearing;  // unit, camera frame
-    double sigma;             // angular noise, rad
+    Eigen::Vector3d bearing;  ///< Unit, camera frame.
+    double sigma;             ///< Angular noise, rad.
   };
   /// A point of the ground lies `height` below the camera. See HeightResidual.
   struct Height {
     int pose;
     int point;
-    Eigen::Vector3d normal;  // of the ground, unit, towards the camera, camera frame
-    double height;           // in the world's unit
-    double sigma;            // standard deviation as a fraction of the height
+    /// Normal of the ground, unit, towards the camera, camera frame.
+    Eigen::Vector3d normal;
+    double height;  ///< World units.
+    double sigma;   ///< Standard deviation as a fraction of the height.
   };
   /// A range is known roughly from completed depth. See RangeResidual.
   struct Range {
     int pose;
     int point;
-    double range;  // in the world's unit
-    double sigma;  // standard deviation of the range's logarithm
+    double range;  ///< World units.
+    double sigma;  ///< Standard deviation of ln(range).
   };
   std::vector<Rigid3> world_from_camera;
-  std::vector<uint8_t> pose_fixed;  // by pose; at least one, or the gauge is free
+  /// By pose. At least one pose is fixed, since the gauge is free otherwise.
+  std::vector<uint8_t> pose_fixed;
   std::vector<Eigen::Vector3d> points;
   std::vector<Observation> observations;
   std::vector<Height> heights;

@@ -14,13 +14,15 @@ namespace orb360 {
 /// Drift-Aware Large Scale Monocular SLAM, RSS 2010).
 struct PoseGraph {
   struct Edge {
-    int first;  // index of a node
+    /// Indices of two nodes.
+    int first;
     int second;
-    Similarity3 first_from_second;  // as measured
-    double weight;                  // of the squared residuals
+    Similarity3 first_from_second;  ///< The measurement.
+    double weight;                  ///< Factor of the squared residuals.
   };
   std::vector<Similarity3> world_from_node;
-  std::vector<uint8_t> fixed;  // by node; at least one
+  /// By node. At least one node is fixed, since the gauge is free otherwise.
+  std::vector<uint8_t> fixed;
   std::vector<Edge> edges;
   /// Length of an error of translation that weighs as much as a rotation by one radian and as a
   /// scale by e: the range of what the cameras see.

@@ -12,14 +12,14 @@ namespace orb360 {
 
 /// A landmark that the image whose pose is sought shows.
 struct PoseObservation {
-  Eigen::Vector3d point;    // world
-  Eigen::Vector3d bearing;  // unit, camera frame
-  double sigma;             // angular noise, rad
+  Eigen::Vector3d point;    ///< World frame.
+  Eigen::Vector3d bearing;  ///< Unit, camera frame.
+  double sigma;             ///< Angular noise, rad.
 };
 
 struct RefinedPose {
   Rigid3 world_from_camera;
-  std::vector<uint8_t> inliers;  // by observation
+  std::vector<uint8_t> inliers;  ///< By observation.
   int num_inliers = 0;
   /// Root mean square of the inliers' residuals in sigmas (1 when the noise is as assumed).
   double rms = 0;

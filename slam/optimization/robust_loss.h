@@ -17,7 +17,8 @@ struct RobustLoss {
   };
   struct Value {
     double rho;
-    double slope;  // rho'(s), positive: the weight of the residual in iteratively reweighted steps
+    /// rho'(s), positive: the weight of the residual in iteratively reweighted least squares.
+    double slope;
   };
 
   Kind kind = kTrivial;

@@ -13,19 +13,19 @@
 
 namespace orb360 {
 
-/// The present map and what recognises its places. A job that changes the map has both until it
-/// ends.
+/// The present map and the detector that recognises its places. A job that changes the map owns
+/// both until it ends.
 struct ActiveMap {
   Map map;
   LoopDetector places;
 };
 
-/// All maps, what was anchored to them, and the scale of each. The only place where poses of the
-/// past change.
+/// All maps, the frames that are anchored to them, and the ground under each map. Poses of earlier
+/// frames change nowhere else.
 ///
 /// Maps are numbered in the order in which they were begun. The present map, which grows, has the
-/// largest number; the ones before it are finished and stay as they are while a job has the present
-/// one.
+/// largest number. The maps before it are finished; they do not change while a job owns the present
+/// map.
 class Atlas {
  public:
   explicit Atlas(LoopDetector places);
@@ -33,48 +33,52 @@ class Atlas {
   std::span<const Map> maps() const { return maps_; }
   std::span<const Map> finished() const { return maps().first(maps_.size() - 1); }
   int present_number() const { return static_cast<int>(maps_.size()) - 1; }
-  /// The present map; not while it is lent.
+  /// The present map. Contract: it is not lent.
   Map& map();
   const Map& map() const;
   LoopDetector& places();
 
-  /// Hands the present map to a job, and takes it back. Finished() stays valid in the meantime.
+  /// Hands the present map to a job, and takes it back. `finished()` stays valid in the meantime.
   ActiveMap Lend();
   void Return(ActiveMap active);
   bool is_lent() const { return !places_.has_value(); }
 
-  /// Moves everything that refers to the present map, which has been changed already.
+  /// Adapts everything that refers to the present map after that map has changed.
   void Apply(const MapUpdate& update);
-  /// Makes a finished map the present one. The present one takes its number, without images.
+  /// Makes a finished map the present one and the present one a finished one, whose images are
+  /// dropped. The two exchange their numbers.
   MapUpdate SwitchTo(int finished, KeyframeId reference);
-  /// Finishes the present map, unless it is empty, and goes on with another.
+  /// Finishes the present map, unless it is empty, and makes `map` the present one.
   void Begin(Map map);
-  /// Ends the present map for good, and drops it where it is empty, or lost with the job that had
-  /// it, with all that was anchored to it.
+  /// Finishes the present map at the end of a run. The map is dropped, with everything that is
+  /// anchored to it, where it is empty or was lost because its job threw an exception.
   void Finish();
 
-  /// The ground under each map, by number; where it is known, the map is in metres.
+  /// The ground under each map, by number. Where it is known, the map is in metres.
   std::span<const std::optional<KnownGround>> grounds() const { return grounds_; }
   const std::optional<KnownGround>& ground() const { return grounds_.back(); }
   void SetGround(const std::optional<KnownGround>& ground) { grounds_.back() = ground; }
-  /// The same, where landmarks show it: good enough to hold the scale by.
+  /// The ground under the present map where landmarks show it. Only then is it accurate enough to
+  /// constrain the scale.
   std::optional<KnownGround> ReliableGround() const;
 
   const FrameAnchors& anchors() const { return anchors_; }
   void Anchor(int frame_index, FrameAnchor anchor);
 
-  /// A loop that was found and is not closed so far. It follows changes of the map.
+  /// A loop that was found and is not closed yet. It follows changes of the map.
   std::optional<Loop> found_loop;
-  std::vector<ClosedLoop> loops;   // closed within a map
-  std::vector<ClosedLoop> merges;  // by which a map was merged into an older one
+  std::vector<ClosedLoop> loops;   ///< Loops that were closed within a map.
+  std::vector<ClosedLoop> merges;  ///< Loops by which a map was merged into an older one.
 
  private:
   void ScaleAnchors(std::span<const Similarity3> corrections);
   void RenumberMaps(const MapRenumbering& renumbering);
 
-  std::vector<Map> maps_;  // the last is the present one, empty while it is lent
+  /// The last one is the present map. It is empty while it is lent.
+  std::vector<Map> maps_;
   std::vector<std::optional<KnownGround>> grounds_;
-  std::optional<LoopDetector> places_;  // none while it is lent
+  /// Empty while the present map is lent.
+  std::optional<LoopDetector> places_;
   FrameAnchors anchors_;
 };
 

@@ -6,15 +6,16 @@
 
 namespace orb360 {
 
-/// When the result of a job is adopted. It depends on frames and matches only, never on whether the
-/// job is done: that would make results depend on the machine.
+/// When the result of a job is adopted. This depends on frames and matches only, never on whether
+/// the job has ended, because results would otherwise depend on the speed of the machine.
 struct AdoptionTime {
-  int num_frames = 0;  // processed so far when it is due ...
-  /// ... or due earlier, when the last frame found fewer landmarks than this.
+  /// The result is due when this many frames have been processed ...
+  int num_frames = 0;
+  /// ... or as soon as a frame has fewer inliers among the landmarks than this.
   double min_inliers = 0;
 };
 
-/// Work on a thread of its own. The destructor waits for it.
+/// Work that runs on a thread of its own. The destructor waits for it.
 template <typename Result>
 class BackgroundJob {
  public:
@@ -28,7 +29,8 @@ class BackgroundJob {
   bool IsRunning() const {
     return result_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
   }
-  /// Waits for the result, or throws what the work has thrown. Once only.
+  /// Waits for the result and returns it, or throws what the work has thrown. It may be called
+  /// once.
   Result Take() { return result_.get(); }
 
  private:

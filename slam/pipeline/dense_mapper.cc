@@ -17,8 +17,8 @@ DenseMapper::DenseMapper(const std::filesystem::path& weights, const std::filesy
           [this](int frame_index, const DenseDepth& depth) { Store(frame_index, depth); },
           options) {}
 
-// Called on other threads, one call at a time. A full disk takes the dense cloud, but not the
-// trajectory.
+// It is called on other threads, one call at a time. On a full disk only the dense cloud is lost,
+// not the trajectory.
 void DenseMapper::Store(int frame_index, const DenseDepth& depth) {
   if (failure_) return;
   try {
@@ -37,7 +37,7 @@ void DenseMapper::Start(const Keyframe& keyframe, const cv::Mat& color,
 
 std::optional<KnownGround> DenseMapper::Ground() const {
   constexpr size_t kEnough = 10;      // keyframes
-  constexpr double kMaxSigma = 0.05;  // of the logarithm of the height
+  constexpr double kMaxSigma = 0.05;  // standard deviation of ln(height)
   if (grounds_.size() < kEnough) return std::nullopt;
   const DenseGround fused = FuseGrounds(grounds_).value();
   if (fused.sigma > kMaxSigma) return std::nullopt;

@@ -11,21 +11,21 @@
 
 namespace orb360 {
 
-/// Gives keyframes dense depth, beside tracking, and keeps it on disk. While no landmarks show the
-/// ground, it collects what the depth shows of it.
+/// Completes the depth of keyframes beside tracking and stores it on disk. While no landmarks show
+/// the ground, it collects measurements of the ground from the dense depth.
 class DenseMapper {
  public:
-  /// `weights`: a network file. `folder` holds the depth maps as long as this lives; it is made,
-  /// and removed in the end. Throws UserError where the network cannot be read or the folder not
-  /// made.
+  /// `weights` is a network file. `folder` contains the depth maps during the lifetime of the
+  /// object; it is created here and removed by the destructor. Throws UserError where the network
+  /// cannot be read or the folder cannot be created.
   DenseMapper(const std::filesystem::path& weights, const std::filesystem::path& folder,
               const DepthOptions& options, int num_threads);
 
-  /// Of the images that are completed.
+  /// The camera of the images that are completed.
   const EquirectangularCamera& camera() const { return completer_.camera(); }
   bool Wants(KeyframeId id) const { return id % options_.every_keyframes == 0; }
 
-  /// Begins with a keyframe, see KeyframeCompletion. Contract: none is pending.
+  /// Starts the completion of a keyframe (KeyframeCompletion::Start). Contract: none is pending.
   void Start(const Keyframe& keyframe, const cv::Mat& color, std::vector<SparsePoint> points,
              int num_frames);
   std::optional<int> pending() const { return completion_.pending(); }
@@ -35,17 +35,20 @@ class DenseMapper {
   /// Waits until all depth is on disk.
   void Flush() { completion_.Flush(); }
 
-  /// Adds a keyframe's measurement of the ground under the present map: world, today's unit.
+  /// Adds a keyframe's measurement of the ground under the present map, in the map's world frame
+  /// and its present unit of length.
   void AddGround(const DenseGround& ground) { grounds_.push_back(ground); }
-  /// After a change of the map or of its unit.
+  /// Drops the measurements after a change of the map or of its unit of length.
   void ForgetGrounds() { grounds_.clear(); }
-  /// The ground by all measurements; none where they are too few or too uncertain.
+  /// Returns the ground that all measurements give together. None where they are too few or too
+  /// uncertain.
   std::optional<KnownGround> Ground() const;
 
-  /// Frame indices of the keyframes that were given depth, in their order.
+  /// Frame indices of the keyframes that have dense depth, in the order of the keyframes.
   const std::vector<int>& frames() const { return frames_; }
   const DepthMapStore& depth_maps() const { return depth_maps_; }
-  /// Why depth could not be kept (a full disk); null where it was. Not before Flush.
+  /// The error because of which depth could not be stored, such as a full disk; null where there
+  /// was none. Contract: Flush has been called.
   std::exception_ptr failure() const { return failure_; }
 
  private:
@@ -57,7 +60,8 @@ class DenseMapper {
   std::exception_ptr failure_;
   DepthMapStore depth_maps_;
   DepthCompleter completer_;
-  KeyframeCompletion completion_;  // last: it ends before what it uses
+  /// Declared last, so that its threads end before the members that they use.
+  KeyframeCompletion completion_;
 };
 
 }  // namespace orb360

@@ -9,30 +9,32 @@
 
 namespace orb360 {
 
-/// A frame's pose relative to a keyframe of a map, so that it follows every correction of the
-/// keyframe.
+/// The pose of a frame relative to a keyframe of a map, so that the frame follows every correction
+/// of the keyframe.
 struct FrameAnchor {
-  double timestamp = 0;  // s
-  int map = 0;           // its number in the atlas
+  double timestamp = 0;  ///< Seconds.
+  int map = 0;           ///< Number of the map in the atlas.
   KeyframeId reference = kNoId;
-  Rigid3 reference_from_camera = {};     // translation in the map's unit
-  std::vector<Sighting> sightings = {};  // landmarks of the map by which the pose was found
-  /// Units of the map of today in one unit of the map when the frame was anchored.
+  /// Its translation is in the map's unit of length.
+  Rigid3 reference_from_camera = {};
+  /// Landmarks of the map from which the pose was estimated.
+  std::vector<Sighting> sightings = {};
+  /// Number of present units of the map in one unit of the map when the frame was anchored.
   double unit_scale = 1.0;
 };
 
 /// The anchors of all frames that have a pose, by frame index.
 using FrameAnchors = std::map<int, FrameAnchor>;
 
-/// How maps are numbered after one has been merged into another, or changed places with it.
+/// New numbers of maps after one has been merged into another or has exchanged places with it.
 struct MapRenumbering {
-  std::vector<int> number_of;  // new by old
-  int shifted = 0;             // old number of the map whose ids grow
+  std::vector<int> number_of;  ///< New number of each map, by old number.
+  int shifted = 0;             ///< Old number of the map whose ids grow.
   KeyframeId keyframe_shift = 0;
   LandmarkId landmark_shift = 0;
 };
 
-/// Lets an anchor follow its map, its keyframe and its landmarks.
+/// Gives an anchor the new numbers of its map, its keyframe and its landmarks.
 inline void Renumber(const MapRenumbering& maps, FrameAnchor* anchor) {
   if (anchor->map == maps.shifted) {
     anchor->reference += maps.keyframe_shift;

@@ -11,13 +11,13 @@ namespace {
 
 constexpr int kMinMatches = 50;
 constexpr int kMinLengths = 5;
-// Sine of the least angle between a bearing and the motion: nearer to the epipole a landmark says
-// little of the length.
+// Sine of the least angle between a bearing and the direction of the motion. Nearer to the epipole
+// a landmark hardly constrains the length of the motion.
 constexpr double kMinSine = 0.1;
 
-// Length of the motion, by landmark with a match: with X the landmark in the last camera, t the
-// direction of the motion and c the frame's bearing turned into the last camera, X - s t is along
-// c for s = ((c x t) . (c x X)) / |c x t|^2.
+// Returns the length of the motion that each landmark with a match gives. With X the landmark in
+// the last camera's frame, t the direction of the motion and c the frame's bearing rotated into the
+// last camera's frame, X - s t is parallel to c for s = ((c x t) . (c x X)) / |c x t|^2.
 std::vector<double> Lengths(const Rigid3& last_from_frame, const Features& features,
                             const TrackedFrame& last, const LocalMap& local,
                             std::span<const Match> matches) {

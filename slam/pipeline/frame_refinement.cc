@@ -24,8 +24,9 @@ Rigid3 RefineFrame(const Map& map, const Rigid3& world_from_camera,
         {map.landmark(id).position, sighting.bearing.cast<double>(), sighting.sigma});
   }
   const RefinedPose refined = RefinePose(world_from_camera, observations);
-  // Few landmarks, or the smaller part of them, may agree on a wrong pose: as many as tracking asks
-  // for before it goes on (TrackerOptions::min_motion_inliers), and half of those that were seen.
+  // A few landmarks, or the smaller part of them, may agree on a wrong pose. The refined pose needs
+  // as many inliers as tracking does (TrackerOptions::min_motion_inliers), and half of the
+  // sightings.
   constexpr int kEnough = 20;
   const bool is_sure = refined.num_inliers >= kEnough &&
                        2 * refined.num_inliers >= static_cast<int>(sightings.size());

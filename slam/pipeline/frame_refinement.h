@@ -9,19 +9,20 @@
 
 namespace orb360 {
 
-/// A landmark as a frame saw it.
+/// The observation of a landmark in a frame.
 struct Sighting {
-  LandmarkId landmark;      // as it was called then
-  Eigen::Vector3f bearing;  // unit, camera frame
-  float sigma;              // angular noise, rad
+  LandmarkId landmark;      ///< Its id when the frame was tracked.
+  Eigen::Vector3f bearing;  ///< Unit, camera frame.
+  float sigma;              ///< Angular noise, rad.
 };
 
-/// The landmarks of a tracked frame.
+/// Returns the observations of landmarks in a tracked frame.
 std::vector<Sighting> SightingsOf(const TrackedFrame& frame);
 
-/// Pose of a frame in the finished map. While it was tracked its landmarks were young, and only
-/// those that were known by then gave its pose; where most are still there, they give a better one
-/// now. `world_from_camera`: what came of the first one, also the result where they are not.
+/// Refines the pose of a frame in the finished map. While the frame was tracked, its landmarks had
+/// been adjusted only a few times. Where most of them still exist, they give a better pose now.
+/// `world_from_camera` is the tracked pose after all corrections of the map; it is also the result
+/// where too few landmarks are left.
 Rigid3 RefineFrame(const Map& map, const Rigid3& world_from_camera,
                    std::span<const Sighting> sightings);
 

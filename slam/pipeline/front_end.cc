@@ -19,7 +19,7 @@ void SampleColors(const cv::Mat& bgr, Features* features) {
   }
 }
 
-/// The pose at a time, by constant velocity in the camera's frame.
+/// Predicts the pose at a time (seconds) with constant velocity in the camera's frame.
 Rigid3 PredictPose(const FrontEnd::Tracking& tracking, double timestamp) {
   const TrackedFrame& last = tracking.last;
   if (!tracking.before_last) return last.world_from_camera;
@@ -150,7 +150,7 @@ std::optional<Relocalization> FrontEnd::Find(const PendingFrame& frame, int num_
 void FrontEnd::Resume(const PendingFrame& frame, Relocalization found, int num_threads,
                       Atlas* atlas) {
   local_ = std::move(found.local);
-  if (!events_.initialized_at) events_.initialized_at = frame.index;  // in a map made earlier
+  if (!events_.initialized_at) events_.initialized_at = frame.index;  // in a loaded map
   ++events_.num_relocalized;
   counts_.Add(found.result);
   const TrackedFrame tracked = MakeTracked(frame, std::move(found.result));
@@ -195,7 +195,7 @@ void FrontEnd::TrackPendingBackwards(TrackedFrame last, int num_threads, Atlas* 
 // --- initialization -----------------------------------------------------------------------------
 
 std::optional<InitialMap> FrontEnd::Initialize(const PendingFrame& frame, int num_threads) {
-  constexpr int kAttempts = 2;  // with the reference, then with the frame just before
+  constexpr int kAttempts = 2;  // with the reference, then with the frame before this one
   for (int attempt = 0; attempt < kAttempts && !pending_.empty(); ++attempt) {
     const PendingFrame& reference = pending_.Reference();
     const InitializationResult result =
@@ -203,7 +203,7 @@ std::optional<InitialMap> FrontEnd::Initialize(const PendingFrame& frame, int nu
                                options_.mapper.bundle.optimizer, num_threads);
     if (result.map) {
       InitialMap initial = MakeInitialMap(reference, frame, *result.map, options_.mapper);
-      // Gauge: the surroundings are one unit of length away.
+      // The gauge: the median range of the landmarks is one unit of length.
       Similarity3 gauge;
       gauge.scale = 1.0 / initial.map.MedianRange(InitialMap::kSecond);
       if (const Lost* before = lost()) {

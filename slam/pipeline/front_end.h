@@ -17,76 +17,83 @@
 
 namespace orb360 {
 
-/// From a frame to its features and pose. It is in one of three states; what moves the world
-/// changes all that it holds (Apply).
+/// Extracts the features of frames and estimates their poses. It is in one of three states. When
+/// the map moves, Apply moves all poses and points that the front end holds.
 ///
 /// `num_threads` is the number of OpenMP threads; no result depends on it.
 class FrontEnd {
  public:
-  struct Initializing {};  // no map so far
+  struct Initializing {};  ///< There is no map yet.
   struct Tracking {
     TrackedFrame last;
     std::optional<TrackedFrame> before_last = {};
   };
   struct Lost {
-    Rigid3 last_world_from_camera = {};  // the last pose that was known
-    int since = 0;                       // number of frames processed when it was lost
-    KeyframeId next_keyframe = 0;        // see Relocalize
+    /// The last pose that was known.
+    Rigid3 last_world_from_camera = {};
+    /// Number of frames that had been processed when the camera was lost.
+    int since = 0;
+    /// The keyframe at which Relocalize goes on.
+    KeyframeId next_keyframe = 0;
   };
-  /// What happened so far.
+  /// Events so far.
   struct Events {
-    std::optional<int> initialized_at;  // frame index
+    std::optional<int> initialized_at;  ///< Index of the frame at which the first pose was known.
     int num_lost = 0;
     int num_relocalized = 0;
   };
 
-  /// `mask`: CV_8U of the frames' size, 0 where features are left out; may be empty.
+  /// `mask` is CV_8U of the frames' size, 0 where features are left out, or empty.
   FrontEnd(const EquirectangularCamera& camera, const Options& options, const cv::Mat& mask);
 
-  /// `image`: CV_8UC3, BGR, of the camera's size.
+  /// Extracts the features of an image, CV_8UC3, BGR, of the camera's size. `timestamp` is in
+  /// seconds.
   PendingFrame Extract(int index, double timestamp, const cv::Mat& image, int num_threads);
-  /// The image pyramid of the last frame, which is then no longer here.
+  /// Moves the image pyramid of the last frame out.
   SpherePyramid TakePyramid() { return extractor_.TakePyramid(); }
 
   bool is_initializing() const { return std::holds_alternative<Initializing>(state_); }
-  /// Null in other states.
+  /// The data of a state; null in other states.
   const Tracking* tracking() const { return std::get_if<Tracking>(&state_); }
   const Lost* lost() const { return std::get_if<Lost>(&state_); }
   const Events& events() const { return events_; }
   const LocalMap& local() const { return local_; }
-  double pixel_sigma() const { return pixel_sigma_; }  // rad, on pyramid level 0
+  /// Angular noise of a feature on pyramid level 0, rad.
+  double pixel_sigma() const { return pixel_sigma_; }
 
-  /// Tracks a frame in the local map. False where it is not found. State: tracking.
+  /// Tracks a frame in the local map. False where that fails. State: tracking.
   bool Track(const PendingFrame& frame, int num_threads, Atlas* atlas);
-  /// Gives up, at a frame that is remembered. State: tracking, then lost.
+  /// Ends tracking at a frame without a pose, which is remembered. State: tracking, then lost.
   void Lose(PendingFrame frame, int num_frames, const Map& map);
-  /// Begins in a map made earlier, in which the camera is to be found.
+  /// Begins in a loaded map, in which the camera has to be relocalized. State: then lost.
   void StartLost(const Map& map);
 
-  /// Looks for the camera. State: lost.
+  /// Relocalizes the camera. State: lost.
   std::optional<Relocalization> Find(const PendingFrame& frame, int num_threads, Atlas* atlas);
-  /// Goes on tracking where the camera was found, in the present map, and tracks what was
-  /// remembered backwards. State: lost, then tracking.
+  /// Resumes tracking at the pose that was found in the present map, and tracks the remembered
+  /// frames backwards from there. State: lost, then tracking.
   void Resume(const PendingFrame& frame, Relocalization found, int num_threads, Atlas* atlas);
   void Remember(PendingFrame frame) { pending_.Remember(std::move(frame)); }
 
-  /// Makes a map of the frame and an earlier one, if they show enough motion; otherwise the frame
-  /// is remembered. After a loss the new map begins at the last pose and in the scale of the one
-  /// before. State: initializing or lost.
+  /// Makes a map from the frame and an earlier one if there is enough motion between them;
+  /// otherwise the frame is remembered. After a loss the new map begins at the last known pose and
+  /// with the scale of the map before. State: initializing or lost.
   std::optional<InitialMap> Initialize(const PendingFrame& frame, int num_threads);
-  /// Goes on tracking in the map just made, which is the present one. State: tracking.
+  /// Starts tracking in the map just made, which is the present one. State: then tracking.
   void StartTracking(const InitialMap& initial, int num_threads, Atlas* atlas);
 
-  /// Whether the last frame is to become a keyframe. State: tracking.
+  /// Whether the last frame should become a keyframe. State: tracking.
   bool NeedsKeyframe() const;
-  /// Looks for the keyframe that shares most with the last frame. State: tracking.
+  /// Adds the collected counts to the landmarks of the map, and makes the local map anew where
+  /// another keyframe than its reference shares most landmarks with the last frame. State:
+  /// tracking.
   void UpdateLocalMap(Map* map);
-  /// The depth of a keyframe of the map is completed.
+  /// Uses the completed depth of a keyframe of the map.
   void UseDepth(const Keyframe& keyframe);
-  /// Leaves the present map, to go on in another.
+  /// Leaves the present map before tracking goes on in another one.
   void LeaveMap(Map* map) { counts_.MoveTo(map); }
 
-  /// Moves everything held here, after the map has changed.
+  /// Moves all poses and points held here after the map has changed.
   void Apply(const MapUpdate& update, Map* map);
 
  private:

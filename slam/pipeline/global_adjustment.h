@@ -8,7 +8,7 @@
 
 namespace orb360 {
 
-/// Bundle adjustment of a copy of the whole map, beside tracking and mapping.
+/// A job that adjusts a copy of the whole map, beside tracking and mapping.
 struct GlobalAdjustment {
   Map map;
   std::optional<KnownGround> ground;
@@ -21,8 +21,8 @@ struct AdjustedMap {
 
 AdjustedMap AdjustMap(GlobalAdjustment job, const Options& options);
 
-/// Takes the result over into the map that was copied, which has changed in the meantime.
-/// `reference`: the keyframe around which tracking goes on.
+/// Applies the result to the map that was copied, which has changed in the meantime. `reference` is
+/// the keyframe around which tracking goes on.
 MapUpdate TakeOver(const AdjustedMap& adjusted, KeyframeId reference, Map* map);
 
 }  // namespace orb360

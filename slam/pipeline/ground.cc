@@ -10,20 +10,23 @@
 namespace orb360 {
 namespace {
 
-// Keyframes whose landmarks are looked at as well: its own are few, below.
+// Number of neighbouring keyframes whose landmarks are used as well, because a keyframe has only
+// few landmarks below it.
 constexpr size_t kNeighbours = 5;
-constexpr double kSameHeight = 0.1;    // as a fraction
-constexpr double kMinAgreement = 0.6;  // fraction of the keyframes with the same height
+// Largest difference between heights of the camera that count as equal, as a fraction.
+constexpr double kSameHeight = 0.1;
+// Least fraction of the keyframes that must have the same height.
+constexpr double kMinAgreement = 0.6;
 constexpr size_t kMinKeyframes = 3;
 
-// Before anything is known of the ground.
+// Options for the first fit, before anything is known about the ground.
 constexpr GroundPlaneOptions kFirstLook{.min_below = 0.35,
                                         .max_tilt = 0.7854,
                                         .tolerance = 0.08,
                                         .min_points = 20,
                                         .min_fraction = 0.25};
 
-// Landmarks around a keyframe, relative to its camera in the axes of the world.
+// Returns the landmarks around a keyframe, relative to its camera, in the axes of the world frame.
 std::vector<Eigen::Vector3d> PointsAround(const Map& map, const Keyframe& keyframe) {
   std::vector<LandmarkId> ids = keyframe.landmarks;
   const std::vector<Map::Covisible> neighbours =

@@ -7,7 +7,7 @@
 
 namespace orb360 {
 
-/// A map of two keyframes, and the frames that they are.
+/// A map of two keyframes, and the frames from which they were made.
 struct InitialMap {
   static constexpr KeyframeId kFirst = 0;
   static constexpr KeyframeId kSecond = 1;
@@ -17,8 +17,8 @@ struct InitialMap {
   PendingFrame second;
 };
 
-/// Makes two views into a map and refines it. The first camera is the world's origin; the unit of
-/// length is arbitrary.
+/// Makes a map from two views and refines it. The first camera is the origin of the world; the unit
+/// of length is arbitrary.
 InitialMap MakeInitialMap(const PendingFrame& first, const PendingFrame& second,
                           const TwoViewMap& views, const MapperOptions& options);
 

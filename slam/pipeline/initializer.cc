@@ -40,9 +40,9 @@ MatchedViews EstimateMotion(const Features& features1, const Features& features2
   return {std::move(matches), std::move(pose)};
 }
 
-// Median parallax of the matches that agree with the motion and are near enough to become
-// landmarks, radians; 0 where there are too few. Clouds and distant hills have none, however far
-// the camera moves, and under an open sky they are the majority.
+// Returns the median parallax, radians, of the matches that agree with the motion and are near
+// enough to become landmarks; 0 where there are too few of them. Clouds and distant hills have no
+// parallax however far the camera moves, and under an open sky they are the majority.
 double MedianParallax(const Features& features1, const Features& features2,
                       const MatchedViews& views, const InitializerOptions& options) {
   std::vector<double> parallaxes;
@@ -58,8 +58,9 @@ double MedianParallax(const Features& features1, const Features& features2,
   return Median(parallaxes);
 }
 
-// Points and camera 2 refined together; camera 1 is the gauge, and the free scale does no harm to
-// Levenberg-Marquardt. Points whose residuals are too large afterwards are dropped.
+// Refines the points and camera 2 together. Camera 1 fixes the gauge except for the scale, which
+// Levenberg-Marquardt's damping can leave free. Points whose residuals are too large afterwards are
+// dropped.
 bool Refine(const Features& features1, const Features& features2, Optimizer optimizer,
             TwoViewMap* map) {
   BundleProblem problem;

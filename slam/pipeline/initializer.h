@@ -25,7 +25,8 @@ struct InitializerOptions {
   double min_inlier_ratio = 0.5;
 };
 
-/// Two views of a rigid scene: frame 1's camera is the world's origin; unit of length arbitrary.
+/// Two views of a rigid scene. Camera 1 is the origin of the world; the unit of length is
+/// arbitrary.
 struct TwoViewMap {
   Rigid3 world_from_camera2;
   struct Point {
@@ -37,22 +38,23 @@ struct TwoViewMap {
 };
 
 enum class InitializationFailure {
-  kFewMatches,      // the views have too little in common: take another reference
-  kLittleParallax,  // wait for more motion
+  kFewMatches,      ///< The views have too little in common. Another reference is needed.
+  kLittleParallax,  ///< The camera has not moved enough yet.
 };
 
 struct InitializationResult {
   std::optional<TwoViewMap> map;
-  InitializationFailure failure = InitializationFailure::kFewMatches;  // where there is no map
+  /// The reason where there is no map.
+  InitializationFailure failure = InitializationFailure::kFewMatches;
   int num_inliers = 0;
-  /// camera1_from_camera2, where there is little parallax.
+  /// Rotation camera1_from_camera2, where there is little parallax.
   std::optional<Eigen::Quaterniond> turn;
 };
 
 /// Matches two frames, estimates their motion (five points in RANSAC), triangulates and refines by
-/// bundle adjustment. The points' parallax is measured after the rotation is taken out, so that a
-/// turning camera is not taken for a moving one. Runs on `num_threads` OpenMP threads; the result
-/// does not depend on how many.
+/// bundle adjustment. The parallax of the points is measured after the rotation is removed, so that
+/// a turning camera is not taken for a moving one. Runs on `num_threads` OpenMP threads; the result
+/// does not depend on their number.
 InitializationResult InitializeFromTwoViews(const Features& features1, const Features& features2,
                                             const InitializerOptions& options,
                                             Optimizer optimizer = Optimizer::kSchur,

@@ -14,37 +14,37 @@
 
 namespace orb360 {
 
-/// Where completed depth goes: each keyframe's frame index and depth.
+/// Receives the frame index and the completed depth of each keyframe.
 using DepthSink = std::function<void(int frame_index, DenseDepth depth)>;
 
-/// What completion tells of a keyframe.
+/// The result of completion that mapping uses.
 struct CompletedKeyframe {
   int frame_index;
-  std::vector<RangePrior> priors;  // by feature
+  std::vector<RangePrior> priors;  ///< By feature.
   std::optional<DenseGround> ground;
 };
 
 /// Completes the depth of keyframes beside tracking, one keyframe at a time.
 class KeyframeCompletion {
  public:
-  /// `sink` is called in the order of the keyframes, one at a time, on other threads; `completer`
-  /// must outlive this.
+  /// `sink` is called on other threads, one call at a time, in the order of the keyframes.
+  /// `completer` must outlive the object.
   KeyframeCompletion(DepthCompleter* completer, DepthSink sink, const DepthOptions& options);
 
-  /// Begins with a keyframe, and says whether it shows enough points for that; none may be under
-  /// way. `color` and `points` are of the completer's camera. It is due when as many frames as
-  /// configured have followed `num_frames`.
+  /// Starts the completion of a keyframe. False where the keyframe shows too few points. `color`
+  /// (CV_8UC3, BGR) and `points` are those of the completer's camera. The result is due when the
+  /// configured number of frames have followed `num_frames`. Contract: no keyframe is pending.
   bool Start(const Keyframe& keyframe, const cv::Mat& color, std::vector<SparsePoint> points,
              int num_frames);
-  /// Frame index of the keyframe that is pending; none where there is none.
+  /// Frame index of the pending keyframe, if there is one.
   std::optional<int> pending() const;
   bool IsDue(int num_frames) const { return job_ && num_frames >= job_->due; }
   bool IsRunning() const;
-  /// Waits for the keyframe that is pending, but not for its sink. `unit_scale`: units of the map
-  /// of today in one unit of the map when it was started. Throws what went wrong, with the sinks of
-  /// those before as well.
+  /// Waits for the pending keyframe, but not for its sink. `unit_scale` is the number of present
+  /// units of the map in one unit of the map when the completion was started. Throws what the
+  /// completion or the sink of an earlier keyframe has thrown.
   CompletedKeyframe Take(double unit_scale);
-  /// Waits for all sinks. Throws what the last one has thrown.
+  /// Waits for all sinks. Throws what the last of them has thrown.
   void Flush();
 
  private:
@@ -62,7 +62,8 @@ class KeyframeCompletion {
   const DepthSink sink_;
   const DepthOptions options_;
   std::optional<Job> job_;
-  std::future<void> stored_;  // of the newest keyframe: the sink is done
+  /// Ready when the sink has returned for the newest keyframe.
+  std::future<void> stored_;
 };
 
 }  // namespace orb360

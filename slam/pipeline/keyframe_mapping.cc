@@ -7,8 +7,8 @@
 namespace orb360 {
 namespace {
 
-/// The ground as the newest keyframes see it: to be found at first, then to be followed uphill and
-/// downhill.
+/// Returns the ground that the newest keyframes see. It is searched at first; once it is known, its
+/// normal is updated, because roads go uphill and downhill.
 std::optional<KnownGround> LookForGround(const Map& map, const std::optional<KnownGround>& known,
                                          const ScaleOptions& options) {
   if (!options.from_ground) return std::nullopt;
@@ -18,7 +18,8 @@ std::optional<KnownGround> LookForGround(const Map& map, const std::optional<Kno
     if (keyframes.size() < kEnough) return std::nullopt;
     return EstimateGround(map, std::span(keyframes).last(kEnough));
   }
-  constexpr double kWeight = 0.2;  // of a new normal: roads bend slowly
+  // Weight of a new normal. It is small, because the slope of a road changes slowly.
+  constexpr double kWeight = 0.2;
   const std::optional<Eigen::Vector3d> normal = GroundNormal(map, keyframes.back(), known->up);
   if (!normal) return known;
   return KnownGround{.up = ((1 - kWeight) * known->up + kWeight * *normal).normalized(),

@@ -15,27 +15,31 @@
 
 namespace orb360 {
 
-/// Takes a tracked frame into the map as a keyframe, beside tracking.
+/// A job that adds a tracked frame to the map as a keyframe, beside tracking.
 struct KeyframeMapping {
   ActiveMap active;
   std::span<const Map> finished;
   TrackedFrame frame;
-  std::shared_ptr<const SpherePyramid> pyramid;  // of the frame's image
-  std::optional<KnownGround> ground;             // as landmarks show it so far
-  /// The camera of the image in the size in which it is to be completed, and that image (CV_8UC3);
-  /// none and empty where it is not.
+  std::shared_ptr<const SpherePyramid> pyramid;  ///< Image pyramid of the frame.
+  std::optional<KnownGround> ground;             ///< The ground that landmarks have shown so far.
+  /// The camera and the image (CV_8UC3, BGR) in the size in which depth is completed. None and
+  /// empty where the keyframe gets no dense depth.
   std::optional<EquirectangularCamera> completed_camera = {};
   cv::Mat color = {};
 };
 
-/// What came of it.
+/// The result of KeyframeMapping.
 struct MappedKeyframe {
   ActiveMap active;
-  MapUpdate update = {};                   // `reference` is the new keyframe
-  std::vector<SparsePoint> sparse = {};    // what it sees, where it is to be completed
-  cv::Mat color = {};                      // as above
-  std::optional<KnownGround> ground = {};  // as it sees it
-  std::optional<Loop> loop = {};           // that it closes
+  MapUpdate update = {};  ///< Its `reference` is the new keyframe.
+  /// The landmarks that the keyframe sees, for the camera in which it is completed.
+  std::vector<SparsePoint> sparse = {};
+  /// The image of KeyframeMapping.
+  cv::Mat color = {};
+  /// The ground with the new keyframe taken into account.
+  std::optional<KnownGround> ground = {};
+  /// The loop that the keyframe closes.
+  std::optional<Loop> loop = {};
 };
 
 MappedKeyframe MapKeyframe(KeyframeMapping job, const Options& options);

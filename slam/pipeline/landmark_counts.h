@@ -7,14 +7,14 @@
 
 namespace orb360 {
 
-/// How often landmarks should have been seen, and were (Landmark::visible, Landmark::found), while
-/// a job has the map.
+/// Collects how often landmarks should have been seen and were found (Landmark::visible,
+/// Landmark::found) while a job owns the map.
 class LandmarkCounts {
  public:
   void Add(const TrackResult& result);
-  /// Lets the landmarks' ids grow, after their map was merged into another.
+  /// Adds `shift` to the ids of the landmarks after their map was merged into another one.
   void Shift(LandmarkId shift);
-  /// Adds all to the landmarks of the map that still exist, and begins anew.
+  /// Adds the counts to those landmarks of the map that still exist, and clears them here.
   void MoveTo(Map* map);
   void Clear();
 

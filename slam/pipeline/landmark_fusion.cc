@@ -10,8 +10,8 @@
 namespace orb360 {
 namespace {
 
-// Search window in standard deviations among neighbours: both the landmark and the poses are
-// already estimated.
+// Search window among neighbouring keyframes, in standard deviations. It is narrow, because both
+// the landmark and the poses have been estimated.
 constexpr double kSearchSigmas = 3.0;
 constexpr int kMaxDistance = 50;  // differing bits
 

@@ -7,17 +7,17 @@
 
 namespace orb360 {
 
-/// Exchanges landmarks between a keyframe and its `max_neighbours` best neighbours: each one's
-/// landmarks are searched in the other, where they become a further observation or, at a feature
-/// that has a landmark of its own already, are merged with it.
+/// Fuses the landmarks of a keyframe with those of its `max_neighbours` best neighbours. The
+/// landmarks of each are searched in the other. A landmark that is found there gets a further
+/// observation, or is merged with the landmark that the feature has already.
 void FuseWithNeighbours(KeyframeId keyframe, int max_neighbours, Map* map);
 
-/// The same in one direction: searches `landmarks` in one keyframe, within `radius_sigmas` standard
-/// deviations of where they should be. Ids that are gone are passed over.
+/// Does the same in one direction: searches `landmarks` in one keyframe, within `radius_sigmas`
+/// standard deviations of their predicted positions. Ids of removed landmarks are ignored.
 void FuseLandmarks(KeyframeId keyframe, std::span<const LandmarkId> landmarks, double radius_sigmas,
                    Map* map);
 
-/// All landmarks that some keyframes see, ordered.
+/// Returns the ids of all landmarks that some keyframes see, in increasing order.
 std::vector<LandmarkId> LandmarksSeenBy(std::span<const KeyframeId> keyframes, const Map& map);
 
 }  // namespace orb360

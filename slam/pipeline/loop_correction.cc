@@ -11,14 +11,16 @@
 namespace orb360 {
 namespace {
 
-// Landmarks that two keyframes share to hold each other in the pose graph.
+// Least number of landmarks that two keyframes share to have an edge in the pose graph.
 constexpr int kHeldShared = 30;
-// How much heavier a revisit is: it is right to centimetres, while the pairs on the way, many times
-// as many and all of the same landmarks, share an error of metres.
+// Weight of a revisit relative to an edge of covisibility, for each landmark. A revisit is accurate
+// to centimetres. The edges along the way are many times as many, but depend on the same landmarks
+// and share an error of metres.
 constexpr double kRevisitWeight = 1000.0;
-// Keyframes on either side of a loop whose landmarks are exchanged, for each revisit.
+// Number of keyframes on either side of a loop whose landmarks are fused, for each revisit.
 constexpr int kFusedNeighbours = 6;
-// Search window for them, in standard deviations: both sides may be a little bent still.
+// Search window for that, in standard deviations. It is wide, because both sides may still be
+// deformed.
 constexpr double kFusionSigmas = 10.0;
 
 void AddSurroundings(const Map& map, KeyframeId center, std::vector<KeyframeId>* keyframes) {
@@ -35,7 +37,7 @@ void SortUnique(std::vector<KeyframeId>* ids) {
   ids->erase(std::unique(ids->begin(), ids->end()), ids->end());
 }
 
-/// What both ends of a loop see becomes one.
+/// Fuses the landmarks that both ends of a loop see.
 void FuseEnds(const std::vector<Revisit>& revisits, Map* map) {
   std::vector<KeyframeId> present;
   std::vector<KeyframeId> past;
@@ -60,8 +62,8 @@ void FillRemoved(const Map& map, std::vector<Similarity3>* corrections) {
   }
 }
 
-/// The present map, whose number is `num_finished`, takes the place of the finished one; the maps
-/// after that move up.
+/// Returns the numbers of the maps after a merge. The present map, whose number is `num_finished`,
+/// replaces the finished one, and the numbers of the maps after that one decrease by one.
 MapRenumbering NumbersAfterMerge(size_t num_finished, int merged) {
   const int present = static_cast<int>(num_finished);
   MapRenumbering renumbering{.number_of = std::vector<int>(num_finished + 1), .shifted = present};
@@ -70,7 +72,7 @@ MapRenumbering NumbersAfterMerge(size_t num_finished, int merged) {
   return renumbering;
 }
 
-/// How much larger the surroundings of a keyframe became.
+/// Returns the factor by which the surroundings of a keyframe have grown.
 double ScaleOfChange(const Keyframe& before, const Map& map_before, const Map& map_after) {
   const Eigen::Vector3d& after = map_after.keyframe(before.id).world_from_camera.translation;
   std::vector<double> ratios;
@@ -100,7 +102,7 @@ std::vector<Similarity3> CloseLoop(const Loop& loop, Map* map, Optimizer optimiz
   const auto link = [&](int a, int b, double weight) {
     graph.edges.push_back({a, b, before[a].Inverse() * before[b], weight});
   };
-  // The chain of keyframes holds what shares little with the rest.
+  // Edges along the chain of keyframes connect those that share few landmarks with others.
   for (size_t i = 1; i < ids.size(); ++i) {
     link(static_cast<int>(i) - 1, static_cast<int>(i), 1.0);
   }
@@ -139,7 +141,7 @@ Map MergeMaps(const Loop& loop, Map present, Map finished, Similarity3* correcti
 
 std::vector<Similarity3> AdoptAdjustment(const Map& before, const Map& adjusted, Map* map) {
   std::vector<Similarity3> corrections(map->keyframe_end());
-  KeyframeId latest = kNoId;  // that was adjusted and is still there
+  KeyframeId latest = kNoId;  // the newest adjusted keyframe that still exists
   for (const KeyframeId id : before.KeyframeIds()) {
     const Keyframe& old = before.keyframe(id);
     const Rigid3& then = old.world_from_camera;
@@ -163,7 +165,7 @@ std::vector<Similarity3> AdoptAdjustment(const Map& before, const Map& adjusted,
   }
   FillRemoved(*map, &corrections);
 
-  // Landmarks that were adjusted go exactly there, apart from what has moved them since.
+  // Adjusted landmarks move to their adjusted positions, with all changes since the copy was made.
   struct Target {
     LandmarkId id;
     Eigen::Vector3d position;

@@ -11,34 +11,37 @@
 
 namespace orb360 {
 
-/// Closes a loop of the map: a pose graph of all keyframes (covisibility, and the loop's revisits)
-/// brings the ends together, landmarks go along with their keyframes, and those that both ends have
-/// are fused. Returns by keyframe id what moved the world around each (removed keyframes: around
-/// the one that stands for them); nothing, and the map as it was, where that fails numerically.
+/// Closes a loop of the map. A pose graph of all keyframes, with edges for covisibility and for the
+/// revisits of the loop, brings the ends together. Landmarks move with their keyframes, and those
+/// that both ends see are fused. Returns, by keyframe id, the similarity that moved the world
+/// around each keyframe (for a removed keyframe, that of the keyframe that replaces it). Where the
+/// solver fails numerically, the result is empty and the map is unchanged.
 std::vector<Similarity3> CloseLoop(const Loop& loop, Map* map,
                                    Optimizer optimizer = Optimizer::kSchur);
 
-/// Merges the present map into the finished one that a loop leads to, in the latter's world and
-/// scale. Ids of the finished map stay; those of the present one grow by keyframe_end() and
-/// landmark_end() of the finished one. `correction` receives what moved the present map's world.
+/// Merges the present map into the finished map of a loop, in the world frame and the scale of the
+/// latter. The ids of the finished map stay; those of the present one grow by keyframe_end() and
+/// landmark_end() of the finished one. `correction` receives the similarity that moved the world of
+/// the present map.
 Map MergeMaps(const Loop& loop, Map present, Map finished, Similarity3* correction);
 
-/// What a bundle adjustment of a copy of the map (`before` it, and `adjusted`) means for the map
-/// itself, which has changed in the meantime: everything moves with it, what is newer as well.
-/// Returns what moved the world around each keyframe, as above.
+/// Applies a bundle adjustment of a copy of the map (`before` and `adjusted`) to the map itself,
+/// which has changed in the meantime. Keyframes and landmarks that are newer than the copy move
+/// with their surroundings. Returns the similarity that moved the world around each keyframe, as
+/// above.
 std::vector<Similarity3> AdoptAdjustment(const Map& before, const Map& adjusted, Map* map);
 
-/// The correction of a loop, beside tracking: within the present map, or by a merge with the
-/// finished map that the place is in.
+/// A job that corrects a loop beside tracking: within the present map, or by a merge with the
+/// finished map to which the place belongs.
 struct LoopCorrection {
   ActiveMap active;
   std::span<const Map> finished;
   Loop loop;
-  KeyframeId reference;  // around which tracking goes on
+  KeyframeId reference;  ///< The keyframe around which tracking goes on.
 };
 
-/// What came of it. `closed` is empty, and the map as it was, where the correction fails
-/// numerically.
+/// The result of LoopCorrection. Where the correction fails numerically, `closed` is empty and the
+/// map is unchanged.
 struct CorrectedLoop {
   ActiveMap active;
   MapUpdate update = {};

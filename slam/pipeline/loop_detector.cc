@@ -11,7 +11,8 @@ namespace {
 
 double Angle(const Eigen::Quaterniond& turn) { return LogSo3(turn).norm(); }
 
-/// Keyframes that see what the newest sees, or what those see: nothing is to be learned from them.
+/// Marks the keyframes that share landmarks with the newest one, and those that share landmarks
+/// with them. They cannot close a loop.
 std::vector<uint8_t> FindConnected(const Map& map, KeyframeId newest) {
   std::vector<uint8_t> is_connected(map.keyframe_end(), 0);
   is_connected[newest] = 1;
@@ -26,7 +27,8 @@ std::vector<uint8_t> FindConnected(const Map& map, KeyframeId newest) {
   return is_connected;
 }
 
-/// Length of the way from each keyframe to the newest, by id; 0 for removed ones.
+/// Returns the length of the path from each keyframe to the newest, by id, world units; 0 for
+/// removed ones.
 std::vector<double> FindWays(const Map& map) {
   std::vector<double> ways(map.keyframe_end(), 0.0);
   double way = 0;
@@ -40,7 +42,8 @@ std::vector<double> FindWays(const Map& map) {
   return ways;
 }
 
-/// What lasts from view to view: descriptors of the corners that are landmarks.
+/// Returns the descriptors of the features that observe landmarks, because these are found again
+/// from other positions.
 std::vector<Descriptor> LandmarkDescriptors(const Keyframe& keyframe) {
   std::vector<Descriptor> descriptors;
   for (size_t f = 0; f < keyframe.landmarks.size(); ++f) {
@@ -100,7 +103,7 @@ std::vector<std::pair<double, int>> LoopDetector::Rank(const std::vector<double>
   std::sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) {
     return a.first > b.first || (a.first == b.first && a.second > b.second);
   });
-  // Neighbours of a candidate see the same and tell nothing more.
+  // The neighbours of a candidate see the same landmarks and would add no information.
   constexpr int kApart = 4;  // places
   std::vector<std::pair<double, int>> best;
   for (const auto& candidate : ranked) {
@@ -118,7 +121,7 @@ std::optional<TrackResult> LoopDetector::TrackAt(const Features& features, const
   std::optional<TrackResult> result =
       TrackWithoutPrediction(features, local, pixel_sigma_, tracker_, num_threads);
   if (!result || result->num_inliers < options_.min_inliers) return std::nullopt;
-  // What has been seen now and then tells nothing when it is missing.
+  // A landmark that is often not found says nothing when it is not found here.
   const auto is_sure = [&](LandmarkId id) {
     constexpr size_t kObservations = 4;
     if (id == kNoId) return false;
@@ -175,7 +178,7 @@ std::optional<Revisit> LoopDetector::Verify(
   constexpr size_t kMinRatios = 15;
   if (ratios.size() < kMinRatios) return std::nullopt;
   const double scale = Median(ratios);
-  // Images are alike over a few metres: what looked most like this one need not be the nearest.
+  // Images are similar over a few metres, so the most similar place need not be the nearest one.
   const auto distance = [&](KeyframeId id) {
     return (place_map.keyframe(id).world_from_camera.translation -
             result->world_from_camera.translation)
@@ -204,7 +207,7 @@ std::optional<Loop> LoopDetector::Observe(const Map& map, KeyframeId newest,
   const double min_way = options_.min_length * map.MedianRange(newest);
   const auto is_apart = [&](KeyframeId id) { return !is_connected[id] && ways[id] >= min_way; };
   std::vector<uint8_t> excluded(places_.size(), 0);
-  double similarity_before = 0;  // of what the camera still sees
+  double similarity_before = 0;  // the largest one among the places that the camera still sees
   const std::vector<double> scores = index_.Score(LandmarkDescriptors(keyframe));
   for (size_t p = 0; p < places_.size(); ++p) {
     if (places_[p].map != present) continue;

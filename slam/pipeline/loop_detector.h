@@ -47,55 +47,58 @@ struct LoopOptions {
   double height_sigma = 0.02;
 };
 
-/// One keyframe that sees a place again.
+/// A keyframe that sees a place again.
 struct Revisit {
   KeyframeId keyframe;
-  KeyframeId place;  // a keyframe of the map that the place is in
-  /// From what surrounds `keyframe` to what surrounds `place`, both in the camera's frame.
+  KeyframeId place;  ///< A keyframe of the map to which the place belongs.
+  /// Transforms points from the camera frame of `keyframe` into that of `place`. Its scale is the
+  /// ratio of the units of length around the two.
   Similarity3 place_from_keyframe;
-  int shared;  // landmarks found
+  int shared;  ///< Number of the place's landmarks that were found.
 };
 
-/// The camera is where it was before.
+/// A loop: the camera has come back to a place.
 struct Loop {
-  std::optional<int> finished_map;  // none: the place is in the present map
-  std::vector<Revisit> revisits;    // by keyframe, the newest last
+  /// The finished map to which the place belongs. None where it belongs to the present map.
+  std::optional<int> finished_map;
+  std::vector<Revisit> revisits;  ///< Ordered by keyframe.
 };
 
-/// Lets a loop of the present map follow a change of its unit of length: `corrections` holds, by
-/// keyframe id, what moved the world around each keyframe.
+/// Adapts a loop of the present map to a change of the map's unit of length. `corrections`
+/// contains, by keyframe id, the similarity that moved the world around each keyframe.
 void Rescale(std::span<const Similarity3> corrections, Loop* loop);
 
-/// What moves the world around a revisiting keyframe to where the place is.
+/// Returns the similarity that moves the world around the revisiting keyframe to the place.
 Similarity3 CorrectionBy(const Revisit& revisit, const Map& map, const Map& place_map);
 
-/// Recognises places by the descriptors of keyframes, and finds out whether the camera really is
-/// there. Belongs to whoever has the present map.
+/// Recognises places by the descriptors of keyframes and verifies them geometrically. It is owned
+/// together with the present map (ActiveMap).
 ///
-/// Maps have numbers: the finished ones their index, the present one comes after them.
+/// The number of a finished map is its index; the present map has the number after them.
 class LoopDetector {
  public:
   LoopDetector(const LoopOptions& options, const TrackerOptions& tracker, int local_keyframes,
                double pixel_sigma);
 
-  /// Learns a keyframe of the present map. A loop is the result as soon as enough keyframes agree.
+  /// Adds a keyframe of the present map. Returns a loop as soon as enough keyframes agree on it.
   std::optional<Loop> Observe(const Map& map, KeyframeId newest, std::span<const Map> finished);
-  /// Learns all keyframes of a map.
+  /// Adds all keyframes of a map.
   void Learn(const Map& map, int number);
 
   struct FoundPose {
-    int map;  // number
+    int map;  ///< Number of the map.
     LocalMap local;
     TrackResult result;
   };
-  /// Where a lost camera is, if the places that look most like its image tell.
+  /// Returns the pose of a lost camera if it is found at one of the places that are most similar to
+  /// its image.
   std::optional<FoundPose> FindPose(const Features& features, const Map& map,
                                     std::span<const Map> finished, int num_threads = 1) const;
 
-  /// The present map has become another one. `number_of` gives maps their new numbers, and the
-  /// keyframes of map `shifted` have ids that are larger by `shift`.
+  /// Adapts the places after the present map has changed to another one. `number_of` contains the
+  /// new numbers of the maps, and the ids of the keyframes of map `shifted` grow by `shift`.
   void Renumber(std::span<const int> number_of, int shifted, KeyframeId shift);
-  /// Forgets what the last keyframes have seen, after a loss.
+  /// Forgets the sightings of the last keyframes after tracking was lost.
   void Restart() { sightings_.clear(); }
 
  private:
@@ -108,14 +111,15 @@ class LoopDetector {
     Revisit revisit;
   };
   void Learn(const Keyframe& keyframe, int number);
-  /// The `count` places most like the image, best first, with how much the mean of them and their
-  /// neighbours is; without `excluded` (by place).
+  /// Returns the `count` places with the highest similarity scores, best first. The score of a
+  /// place is the mean over the place and its neighbours. Places that `excluded` marks are left
+  /// out.
   std::vector<std::pair<double, int>> Rank(const std::vector<double>& scores,
                                            const std::vector<uint8_t>& excluded, int count) const;
   std::optional<TrackResult> TrackAt(const Features& features, const Map& map,
                                      const LocalMap& local, int num_threads = 1) const;
-  /// The newest keyframe at a place, told from the nearest of the keyframes there that `may_close`
-  /// allows.
+  /// Returns the pose of the newest keyframe at a place, relative to the nearest of the keyframes
+  /// there that `may_close` allows.
   std::optional<Revisit> Verify(const Map& map, KeyframeId newest, const Map& place_map,
                                 KeyframeId place,
                                 const std::function<bool(KeyframeId)>& may_close) const;
@@ -127,8 +131,8 @@ class LoopDetector {
   int local_keyframes_;
   double pixel_sigma_;
   PlaceIndex index_;
-  std::vector<Place> places_;        // by number in the index
-  std::vector<Sighting> sightings_;  // of the last keyframes, the newest last
+  std::vector<Place> places_;        ///< By number in the index.
+  std::vector<Sighting> sightings_;  ///< Of the last keyframes, in their order.
 };
 
 }  // namespace orb360

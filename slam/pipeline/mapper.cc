@@ -11,7 +11,7 @@ namespace orb360 {
 namespace {
 
 void CullRecentLandmarks(KeyframeId newest, const MapperOptions& options, Map* map) {
-  // Ids grow with time: landmarks on probation are among the last ones.
+  // Ids increase with time, so the landmarks on probation are among the last ones.
   for (LandmarkId id = map->landmark_end() - 1; id >= 0; --id) {
     if (!map->HasLandmark(id)) continue;
     const Landmark& landmark = map->landmark(id);
@@ -37,7 +37,7 @@ bool IsWellSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId obs
   return false;
 }
 
-// Whether others see `fraction` of a keyframe's landmarks as well.
+// Whether other keyframes see the given fraction of a keyframe's landmarks at least as well.
 bool IsRedundant(const Map& map, const Keyframe& keyframe, double fraction) {
   const auto total = static_cast<double>(
       std::ranges::count_if(keyframe.landmarks, [](LandmarkId l) { return l != kNoId; }));
@@ -53,9 +53,9 @@ bool IsRedundant(const Map& map, const Keyframe& keyframe, double fraction) {
 }
 
 void CullRedundantKeyframes(KeyframeId newest, const MapperOptions& options, Map* map) {
-  // What all keyframes see, like a cloud, makes none of them a neighbour.
+  // Something that all keyframes see, such as a cloud, does not make them neighbours.
   constexpr int kMinShared = 15;
-  const KeyframeId first = map->KeyframeIds().front();  // the gauge
+  const KeyframeId first = map->KeyframeIds().front();  // It fixes the gauge.
   for (const Map::Covisible& neighbour :
        map->FindCovisible(map->keyframe(newest).landmarks, kMinShared, newest)) {
     const Keyframe& keyframe = map->keyframe(neighbour.keyframe);
@@ -80,7 +80,7 @@ KeyframeId IntegrateKeyframe(const TrackedFrame& frame, std::shared_ptr<const Sp
   for (size_t f = 0; f < frame.landmarks.size(); ++f) {
     const LandmarkId landmark = frame.landmarks[f];
     if (landmark == kNoId) continue;
-    // Two landmarks of the frame may have become one since it was tracked.
+    // Two landmarks of the frame may have been fused since it was tracked.
     const std::vector<Observation>& observations = map->landmark(landmark).observations;
     if (!observations.empty() && observations.back().keyframe == id) continue;
     map->AddObservation(landmark, id, static_cast<int>(f));

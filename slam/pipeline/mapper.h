@@ -23,10 +23,11 @@ struct MapperOptions {
   int kept_images = 10;
 };
 
-/// Takes a tracked frame into the map as a keyframe: its observations, culling of doubtful
-/// landmarks, new ones by panoramic triangulation, fusion of duplicates with its neighbours,
-/// alignment with the landmarks' patches and search for more of them where `image` is not null,
-/// local bundle adjustment, culling of redundant keyframes. Returns the keyframe's id.
+/// Adds a tracked frame to the map as a keyframe. The steps are: adding its observations, culling
+/// of doubtful landmarks, panoramic triangulation of new ones, fusion of duplicates with
+/// neighbouring keyframes, alignment with the patches of landmarks and search for further landmarks
+/// (both where `image` is not null), local bundle adjustment, and culling of redundant keyframes.
+/// Returns the id of the keyframe.
 KeyframeId IntegrateKeyframe(const TrackedFrame& frame, std::shared_ptr<const SpherePyramid> image,
                              const MapperOptions& options, const std::optional<KnownGround>& ground,
                              Map* map);

@@ -10,20 +10,22 @@
 namespace orb360 {
 namespace {
 
-// The patch's own direction counts less than theirs: what is wrong with the patch moves all that
-// are aligned with it in the same way, and they agree with each other.
+// Noise of the patch's own bearing relative to that of an aligned one. An error of the patch moves
+// all observations that are aligned with it in the same way, so they remain consistent with each
+// other.
 constexpr double kPatchNoise = 0.5;
 
-// Standard deviation of the slope of a surface that nothing is known of: the tangent of the angle
-// between its normal and the view. And of the ground's normal, rad.
+// Standard deviation of the slope of an unknown surface, which is the tangent of the angle between
+// its normal and the viewing direction; and standard deviation of the ground's normal, rad.
 constexpr double kSlopeSigma = 2.0;
 constexpr double kGroundSigma = 0.05;
-// What lies this fraction of the camera's height above or below the ground may be the ground.
+// A landmark may be on the ground if its height above or below it is less than this fraction of the
+// camera's height.
 constexpr double kGroundTolerance = 0.15;
-// How much farther away, as a fraction, the ground may be at a patch's rim.
+// Largest relative difference between the ranges of the ground at a patch's rim and at its centre.
 constexpr double kMaxReach = 0.5;
 
-// Before any image is compared with the patch, which is `keyframe`'s.
+// Returns the slope of a patch of `keyframe` before any other image is aligned with it.
 PatchSlope ExpectSlope(const Keyframe& keyframe, const LandmarkPatch& patch,
                        const Eigen::Vector3d& position, const std::optional<KnownGround>& ground) {
   const auto slope = [&](const Eigen::Vector2d& tangent, double sigma) {
@@ -38,10 +40,11 @@ PatchSlope ExpectSlope(const Keyframe& keyframe, const LandmarkPatch& patch,
   const double cosine = -normal.dot(patch.bearing);
   const bool is_ground = std::abs(height / ground->camera_height - 1) < kGroundTolerance;
   const Eigen::Vector2d tangent = TangentBasis(patch.bearing).transpose() * normal / -cosine;
-  // Seen flatter, it would reach too far away within the patch.
+  // At a flatter angle the ranges within the patch would differ too much.
   const bool is_even = cosine > 0 && Patch::kRadius * patch.spacing * tangent.norm() < kMaxReach;
   if (!(is_ground && is_even)) return unknown;
-  return slope(tangent, kGroundSigma * (1 + tangent.squaredNorm()));  // derivative of the tangent
+  // The derivative of the tangent turns the error of the angle into one of the slope.
+  return slope(tangent, kGroundSigma * (1 + tangent.squaredNorm()));
 }
 
 void Align(const Map& map, Landmark* landmark, Observation* observation) {
@@ -60,7 +63,8 @@ void Align(const Map& map, Landmark* landmark, Observation* observation) {
   observation->aligned_sigma = static_cast<float>(kAlignedNoise * corner_noise);
 }
 
-// Bundle adjustment may have found since that the keyframe with the patch shows something else.
+// Drops the patch of a landmark whose keyframe no longer observes the landmark, because bundle
+// adjustment has rejected the observation.
 void DropWrongPatch(const Map& map, Landmark* landmark) {
   if (!landmark->patch || !map.HasKeyframe(landmark->patch->keyframe)) return;
   if (landmark->FindObservation(landmark->patch->keyframe) != nullptr) return;
@@ -71,7 +75,8 @@ void DropWrongPatch(const Map& map, Landmark* landmark) {
   }
 }
 
-// What was aligned with a patch that a stored map has not kept does not fit another one.
+// Observations that were aligned with a patch that a stored map does not contain would not be
+// consistent with another patch.
 bool MayGetPatch(const Landmark& landmark) {
   return !landmark.patch && std::ranges::all_of(landmark.observations, [](const Observation& o) {
     return o.aligned_sigma == 0;

@@ -7,15 +7,16 @@
 
 namespace orb360 {
 
-/// Finds where keyframes show the landmarks of keyframe `id` more exactly than corners do: corners
-/// are found for each image on its own, and move about by half a pixel; gray values that agree do
-/// not.
+/// Measures the observations of the landmarks of keyframe `id` more accurately than corners do.
+/// Corners are found in each image separately, so that their positions differ by about half a
+/// pixel; the alignment of gray values does not have this error.
 ///
-/// A landmark without a patch gets that of the keyframe. What any image that is kept shows of a
-/// landmark is aligned with its patch, once, as a plane whose slope is learned on the way: from
-/// that of the ground, where it is given, for what lies on it. Observations that do not look like
-/// the patch, lie near the poles or are seen from too far away stay as they are, and so does what
-/// was aligned with a patch that a stored map has not kept.
+/// A landmark without a patch gets the patch of the keyframe. Each observation in a keyframe whose
+/// image is kept is aligned with the patch once. The patch is taken as a plane, whose slope is
+/// estimated along with the positions; for landmarks on the ground the estimate starts from the
+/// slope of the ground, where that is given. Observations that do not look like the patch, lie near
+/// the poles or are seen from too far away do not change, nor do those that were aligned with a
+/// patch that a stored map does not contain.
 void AlignObservations(KeyframeId id, const std::optional<KnownGround>& ground, Map* map);
 
 }  // namespace orb360

@@ -12,7 +12,7 @@
 namespace orb360 {
 namespace {
 
-// The features of a keyframe whose corner is no landmark yet.
+// The features of a keyframe whose corners have no landmark yet.
 struct FreeFeatures {
   std::vector<int> index;
   BearingColumns columns;
@@ -40,8 +40,8 @@ struct EpipolarMatch {
   int distance = NearestTwo::kNone;
 };
 
-// Removes the candidates of keyframe 2 whose depth is known to be another one than the match would
-// have: fewer rivals, and fewer wrong matches.
+// Removes the candidates of keyframe 2 whose completed range contradicts the range that the match
+// would give. This leaves fewer competing candidates and fewer wrong matches.
 void RemoveByRange(const EpipolarArc& arc, double baseline, const Keyframe& keyframe2,
                    double max_sigmas, std::vector<int>* candidates) {
   if (keyframe2.range_priors.empty()) return;
@@ -53,14 +53,14 @@ void RemoveByRange(const EpipolarArc& arc, double baseline, const Keyframe& keyf
     if (prior.sigma == 0) return false;
     const double parallax = AngleBetween(arc.infinity, features2.bearings[f2]);
     const double noise = std::sqrt(arc.variance + std::pow(features2.keypoints[f2].sigma, 2));
-    // By the law of sines; its error is that of the parallax.
+    // The range follows from the law of sines; its error is that of the parallax.
     const double range = baseline * sine1 / std::max(std::sin(parallax), noise);
     const double sigma = std::hypot(prior.sigma, noise / std::max(parallax, noise));
     return std::abs(std::log(range / prior.range)) > max_sigmas * sigma;
   });
 }
 
-// Best match in keyframe 2 for each free feature of keyframe 1.
+// Returns the best match in keyframe 2 for each free feature of keyframe 1.
 std::vector<EpipolarMatch> MatchEpipolar(const Keyframe& keyframe1, const FreeFeatures& free1,
                                          const Keyframe& keyframe2, const FreeFeatures& free2,
                                          const Rigid3& camera1_from_camera2,
@@ -99,7 +99,7 @@ std::vector<EpipolarMatch> MatchEpipolar(const Keyframe& keyframe1, const FreeFe
   return matches;
 }
 
-// The triangulated point in camera 1, if it passes all checks.
+// Returns the triangulated point in the frame of camera 1 if it passes all checks.
 std::optional<Eigen::Vector3d> MakePoint(const Features& features1, int f1,
                                          const Features& features2, int f2,
                                          const Rigid3& camera1_from_camera2,
@@ -120,7 +120,7 @@ std::optional<Eigen::Vector3d> MakePoint(const Features& features1, int f1,
   const double error1 = AngleBetween(*point, bearing1) / keypoint1.sigma;
   const double error2 = AngleBetween(point2, bearing2) / keypoint2.sigma;
   if (std::max(error1, error2) > std::sqrt(kChiSquared95)) return std::nullopt;
-  // The same patch looks larger from nearer: ranges are in proportion to 1/(size in the image).
+  // The size of a patch in an image is inversely proportional to its range.
   const double scales = keypoint1.sigma / keypoint2.sigma;
   const double ranges = point2.norm() / point->norm();
   const double ratio = ranges / scales;
@@ -152,7 +152,7 @@ std::vector<LandmarkId> TriangulateNewLandmarks(KeyframeId id, const Triangulati
     FreeFeatures free2 = CollectFree(keyframe2);
     const std::vector<EpipolarMatch> matches =
         MatchEpipolar(keyframe1, free1, keyframe2, free2, camera1_from_camera2, options);
-    // One feature of keyframe 2 goes to the nearest descriptor only.
+    // A feature of keyframe 2 is matched with the nearest descriptor only.
     std::vector<int> owner(keyframe2.features->size(), -1);
     for (size_t i = 0; i < matches.size(); ++i) {
       const int f2 = matches[i].feature2;
@@ -166,7 +166,7 @@ std::vector<LandmarkId> TriangulateNewLandmarks(KeyframeId id, const Triangulati
       if (f2 < 0 || owner[f2] != static_cast<int>(i)) continue;
       uint8_t& is_mapped1 = free1.is_mapped[keyframe1.features->corners[f1]];
       uint8_t& is_mapped2 = free2.is_mapped[keyframe2.features->corners[f2]];
-      if (is_mapped1 || is_mapped2) continue;  // by the same corner on a finer level
+      if (is_mapped1 || is_mapped2) continue;  // The corner has a landmark from another level.
       const std::optional<Eigen::Vector3d> point = MakePoint(
           *keyframe1.features, f1, *keyframe2.features, f2, camera1_from_camera2, options);
       if (!point) continue;

@@ -12,17 +12,18 @@
 namespace orb360 {
 namespace {
 
-// Surfaces seen from more than 45 degrees (cosine) beside their usual direction look different.
+// Cosine of the largest angle between the viewing direction and the usual one (45 degrees).
+// Surfaces look different from farther aside.
 constexpr double kMinViewCosine = 0.7;
-// A patch found this near a corner, in standard deviations of the corner, is there because of it:
-// 95 % are nearer.
+// Distance up to which a corner and a patch belong together, in standard deviations of the corner
+// (95 % bound in two dimensions).
 constexpr double kCornerSigmas = 2.45;
 
 struct Sighting {
   Eigen::Vector3d bearing;  // unit, camera frame
   PatchSlope slope;
-  int level;     // of the pyramid, where a corner of the landmark would be found
-  double sigma;  // of that corner, rad
+  int level;     // pyramid level on which a corner of the landmark would be found
+  double sigma;  // angular noise of that corner, rad
 };
 
 std::optional<Sighting> LookFor(const Landmark& landmark, const Keyframe& keyframe,
@@ -43,10 +44,11 @@ std::optional<Sighting> LookFor(const Landmark& landmark, const Keyframe& keyfra
                   seen.sigma * RangeAtLevelZero(1.0, *level - seen.level)};
 }
 
-// What is at a place already.
+// The features at a position in the image.
 struct Occupant {
   bool has_landmark = false;
-  int free_corner = -1;  // the nearest without a landmark, on the sighting's level or next to it
+  // The nearest corner without a landmark, on the level of the sighting or next to it; -1 for none.
+  int free_corner = -1;
 };
 
 Occupant WhoIsAt(const Sighting& sighting, const Features& features,
@@ -68,7 +70,7 @@ Occupant WhoIsAt(const Sighting& sighting, const Features& features,
   return occupant;
 }
 
-// Gives the feature's number.
+// Appends a feature and returns its index.
 int AppendFeature(const Sighting& sighting, const Landmark& landmark,
                   const EquirectangularCamera& camera, Features* features) {
   const int feature = features->size();
@@ -92,7 +94,7 @@ void FindByPatches(KeyframeId id, int max_neighbours, Map* map) {
     if (static_cast<int>(others.size()) == max_neighbours) break;
     others.push_back(neighbour.keyframe);
   }
-  // Those who have the features do not see them change.
+  // The features are copied, because other threads may read them.
   auto features = std::make_shared<Features>(*keyframe.features);
   std::vector<uint8_t> is_mapped = FindMappedCorners(keyframe);
   struct Found {

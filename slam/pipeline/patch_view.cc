@@ -8,14 +8,15 @@
 namespace orb360 {
 namespace {
 
-// Samples to a pixel of the level on which the feature was found, in each direction: a patch of
-// 5 x 5 of these pixels rarely reaches beyond the surface its corner is on.
+// Number of samples for each pixel of the level on which the feature was found, in each direction.
+// The patch then covers 5 x 5 pixels and rarely extends beyond the surface of its corner.
 constexpr double kSamplesPerPixel = 2.0;
 
-// A patch seen from so much farther away is less than three pixels of the image wide.
-constexpr double kMinStep = 0.25;  // pixels of level 0
+// Least distance between samples, pixels of level 0. A patch that is seen from so far away that the
+// distance is smaller covers less than three pixels of the image.
+constexpr double kMinStep = 0.25;
 
-// The level on which samples `spacing` rad apart are nearest to one pixel apart.
+// Returns the level on which a distance of `spacing` rad between samples is nearest to one pixel.
 const PyramidLevel& LevelFor(const SpherePyramid& image, double spacing) {
   const double scale = spacing / image.front().camera.AngleOfPixels(1.0);
   const double level_ratio = RangeAtLevelZero(1.0, 1);
@@ -23,10 +24,10 @@ const PyramidLevel& LevelFor(const SpherePyramid& image, double spacing) {
   return image[static_cast<size_t>(std::clamp(level, 0.0, static_cast<double>(image.size()) - 1))];
 }
 
-// The patch around `point` whose samples are `steps` apart, seen by a camera at the origin, where
-// steps change by `by_slope` times the slope; `spacing` is their angle. None so near a pole that
-// lines are bent by half a sample at the patch's rim: by tan(latitude) / 2 times the square of
-// their length.
+// Returns the view of the patch around `point`, whose samples are `steps` apart, by a camera at the
+// origin. The steps change by `by_slope` times the slope, and `spacing` is their angle, rad. Empty
+// so near a pole that lines in the image deviate by half a sample at the patch's rim: their
+// deviation is tan(latitude) / 2 times the square of their length.
 std::optional<PatchView> ViewOf(const PyramidLevel& level, const Eigen::Vector3d& point,
                                 const Eigen::Matrix<double, 3, 2>& steps,
                                 const Eigen::Vector3d& by_slope, double spacing) {
@@ -69,9 +70,10 @@ std::optional<PatchView> ViewPatch(const Map& map, const Landmark& landmark,
   const double spacing = footprint / range;
   const double pixel = keyframe.image->front().camera.AngleOfPixels(1.0);
   if (!(range > 0 && spacing > kMinStep * pixel)) return std::nullopt;
-  // With a plane's inverse range 1 + slope^T s, as a fraction, at sample s of the reference, its
-  // point is at (footprint / spacing) (bearing + spacing basis s) / (1 + slope^T s) from there.
-  // Times that denominator, which does not change its direction, and seen from here:
+  // Let 1 + slope^T s be the inverse range of a plane at sample s of the reference, relative to
+  // that at its centre. The point of the plane is then, in the reference camera's frame, (footprint
+  // / spacing) (bearing + spacing basis s) / (1 + slope^T s). Multiplication by the denominator
+  // does not change the direction in which this camera sees the point, which is that of
   //   position + (footprint rotation basis + center slope^T) s.
   const Eigen::Vector3d center = camera_from_world * reference.translation;
   const Eigen::Matrix3d rotation =

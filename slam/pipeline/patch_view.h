@@ -8,22 +8,23 @@
 
 namespace orb360 {
 
-/// Noise of a bearing that a patch was aligned at, as a fraction of a corner's on the same level;
-/// less makes trajectories no better (docs/results/features.md).
+/// Angular noise of an aligned bearing as a fraction of that of a corner on the same level. Smaller
+/// values do not improve trajectories (docs/results/features.md).
 inline constexpr double kAlignedNoise = 0.35;
 
-/// How an image shows a landmark's patch: what AlignPatch starts from.
+/// The projection of a landmark's patch into an image, from which AlignPatch starts.
 struct PatchView {
-  const PyramidLevel* level;  // of the image
-  PatchGrid grid;             // its centre is where the landmark's position is projected
-  Eigen::Vector2d stretch;    // how the steps change with the surface's slope
+  const PyramidLevel* level;  ///< A level of the keyframe's image pyramid.
+  PatchGrid grid;             ///< Its centre is the projection of the landmark's position.
+  Eigen::Vector2d stretch;    ///< How the steps of the grid change with the surface's slope.
 };
 
-/// The patch around a feature of a keyframe, whose image must be kept. Null too near a pole.
+/// Returns the patch around a feature of a keyframe, whose image must be kept. Null where the
+/// feature is too near a pole.
 std::shared_ptr<const LandmarkPatch> CutPatch(const Keyframe& keyframe, int feature);
 
-/// The patch of a landmark, which must have one, in a keyframe whose image is kept. Empty too
-/// near a pole, and where it is seen from so far away that nothing of it is left.
+/// Projects the patch of a landmark, which must have one, into a keyframe whose image is kept.
+/// Empty where the patch is too near a pole, or so far away that it covers less than a few pixels.
 std::optional<PatchView> ViewPatch(const Map& map, const Landmark& landmark,
                                    const Keyframe& keyframe);
 

@@ -11,45 +11,47 @@
 
 namespace orb360 {
 
-/// A frame without a pose so far.
+/// A frame that has no pose yet.
 struct PendingFrame {
-  int index = 0;                                  // in the sequence
-  double timestamp = 0;                           // s
-  std::shared_ptr<const Features> features = {};  // null: forgotten
-  /// How the camera is turned against an earlier frame, from which it has hardly moved.
+  int index = 0;         ///< Index in the sequence.
+  double timestamp = 0;  ///< Seconds.
+  /// Null where the frame's features have been dropped.
+  std::shared_ptr<const Features> features = {};
+  /// The rotation of the camera relative to an earlier frame, from which it has hardly moved.
   struct Turn {
-    int reference;  // frame index
+    int reference;  ///< Index of that frame.
     Eigen::Quaterniond reference_from_camera;
   };
   std::optional<Turn> turn = {};
 };
 
 /// Frames that wait for a map, in which they are then tracked backwards. One of them is the
-/// reference: the first view of the map that is to be made.
+/// reference, which becomes the first view of the next map.
 class PendingFrames {
  public:
-  /// `max_frames`: more than these do not keep their features. Of those that are forgotten only how
-  /// the camera was turned is kept, if it has not moved.
+  /// `max_frames` is the number of frames that keep their features. Of older frames only the
+  /// rotation of the camera is kept, where the camera has not moved.
   explicit PendingFrames(int max_frames) : max_frames_(max_frames) {}
 
   bool empty() const { return frames_.empty(); }
   void Remember(PendingFrame frame);
   void Forget(int index);
 
-  /// The reference; the newest frame becomes it where there is none. Contract: not empty.
+  /// Returns the reference. Where there is none, the newest frame becomes the reference. Contract:
+  /// there is a frame.
   const PendingFrame& Reference();
-  /// Makes the newest frame the reference; false where it is already.
+  /// Makes the newest frame the reference. False where it is the reference already.
   bool AdvanceReference();
   void ResetReference() { reference_ = kNone; }
 
-  /// All of them, the newest first; none is left.
+  /// Moves all frames out, the newest first.
   std::vector<PendingFrame> TakeNewestFirst();
 
  private:
   static constexpr int kNone = -1;
 
   int max_frames_;
-  int reference_ = kNone;  // frame index
+  int reference_ = kNone;  ///< Index of the reference frame.
   std::deque<PendingFrame> frames_;
 };
 

@@ -39,7 +39,7 @@ Pipeline::Pipeline(const EquirectangularCamera& camera, const Options& options, 
 void Pipeline::LoadMap(const StoredMap& stored, bool keeps_map) {
   ORB360_CHECK(num_frames_ == 0 && stored.map.num_keyframes() > 0, num_frames_);
   Map map = stored.map;
-  // Frames of this run count from 0: those that the map was made of come before.
+  // The frames of this run are numbered from 0, those of the stored map have negative numbers.
   int first_free = 0;
   for (const KeyframeId id : map.KeyframeIds()) {
     first_free = std::max(first_free, map.keyframe(id).frame_index + 1);
@@ -105,7 +105,8 @@ void Pipeline::CountMap() {
   num_landmarks_ = atlas_.map().num_landmarks();
 }
 
-// Threads waiting for one that has no core cost more than they bring: each job has one.
+// Each running job uses one core. OpenMP threads that wait for one without a core would cost more
+// time than they save.
 int Pipeline::FreeThreads() const {
   const bool is_mapping = back_end_.IsMapping() || (dense_ && dense_->IsRunning());
   return std::max(1, num_threads_ - is_mapping - back_end_.IsAdjusting());
@@ -116,7 +117,7 @@ int Pipeline::FreeThreads() const {
 void Pipeline::Track(const PendingFrame& frame) {
   if (front_end_.Track(frame, free_threads_, &atlas_)) return;
   if (back_end_.has_map()) {
-    AdoptMap();  // the newest landmarks may save the day
+    AdoptMap();  // The newest landmarks may be sufficient to track the frame.
     if (front_end_.Track(frame, free_threads_, &atlas_)) return;
   }
   front_end_.Lose(frame, num_frames_, atlas_.map());
@@ -158,19 +159,19 @@ void Pipeline::Initialize(const PendingFrame& frame) {
 void Pipeline::FinishMap() {
   if (dense_ && dense_->pending()) AdoptDepth();
   if (back_end_.is_adjusting()) AdoptAdjustment();
-  if (atlas_.found_loop) {  // by the last keyframe
+  if (atlas_.found_loop) {  // The last keyframe has found it.
     StartLoopCorrection();
     AdoptMap();
   }
   if (atlas_.loops.empty() && atlas_.merges.empty()) return;
-  // What came after the last loop takes part as well.
+  // This adjustment includes the keyframes after the last loop.
   if (!back_end_.is_adjusting()) StartAdjustment();
   AdoptAdjustment();
 }
 
 Reconstruction Pipeline::Finish() {
   if (back_end_.has_map()) AdoptMap();
-  if (!atlas_.is_lent()) FinishMap();  // else a job has thrown, and its map is lost
+  if (!atlas_.is_lent()) FinishMap();  // Otherwise a job has thrown, and its map is lost.
   atlas_.Finish();
   if (dense_) dense_->Flush();
 
@@ -180,11 +181,11 @@ Reconstruction Pipeline::Finish() {
     result.maps[i].is_metric = grounds[i].has_value();
     result.maps[i].is_rough = grounds[i] && grounds[i]->is_rough;
   }
-  // Better the ground of another place than none.
+  // The ground of another place is better than none.
   if (!result.up && !grounds.empty() && grounds.front()) result.up = grounds.front()->up;
   if (dense_) {
     for (const int frame : dense_->frames()) {
-      const auto anchor = atlas_.anchors().find(frame);  // none where its map was lost
+      const auto anchor = atlas_.anchors().find(frame);  // None where its map was lost.
       if (anchor != atlas_.anchors().end()) result.depth_scales[frame] = anchor->second.unit_scale;
     }
   }

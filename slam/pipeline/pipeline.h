@@ -13,17 +13,17 @@
 
 namespace orb360 {
 
-/// Leads each frame through the parts of the system, each of which owns its state. What one part
-/// does to the world is told to the others by a MapUpdate.
+/// Passes each frame through the parts of the system, each of which owns its state. A MapUpdate
+/// tells the other parts about a change of the map.
 ///
-/// Deterministic for any number of threads: the map has one owner. While a new keyframe is mapped
-/// the map belongs to that job, which hands it back at a frame fixed when the job began; tracking
-/// meanwhile uses a copy of the map's neighbourhood.
+/// The results are the same for any number of threads, because the map has one owner. While a new
+/// keyframe is mapped, the map belongs to that job, which returns it at a frame that is fixed when
+/// the job starts. Tracking uses a copy of the map's neighbourhood in the meantime.
 class Pipeline {
  public:
   Pipeline(const EquirectangularCamera& camera, const Options& options, const cv::Mat& mask);
 
-  // See System.
+  // These are the functions of System.
   void LoadMap(const StoredMap& stored, bool keeps_map);
   void CompleteDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
   FrameReport Process(const Frame& frame);
@@ -33,16 +33,16 @@ class Pipeline {
   const std::optional<DenseMapper>& dense() const { return dense_; }
 
  private:
-  // What is due before a frame, and what is started after it.
+  // Results that are due are adopted before a frame; jobs are started after it.
   void AdoptDue();
   void StartDue(const cv::Mat& image);
 
-  // The frame in each state of the front end.
+  // One function for each state of the front end.
   void Track(const PendingFrame& frame);
   void Recover(const PendingFrame& frame);
   void Initialize(const PendingFrame& frame);
 
-  // Jobs, and what comes of them.
+  // Start of jobs and adoption of their results.
   void StartMapping(const cv::Mat& image);
   void StartLoopCorrection();
   void StartAdjustment();
@@ -51,10 +51,10 @@ class Pipeline {
   void Adopt(CorrectedLoop corrected);
   void AdoptAdjustment();
   void AdoptDepth();
-  /// Adopts all that is pending, and adjusts the map once more where loops were closed.
+  /// Adopts all pending results, and adjusts the map once more where loops were closed.
   void FinishMap();
 
-  /// Lets everything that holds a pose follow a change of the present map.
+  /// Adapts everything that refers to the present map to a change of the map.
   void Apply(const MapUpdate& update);
   void FollowGround(const KnownGround& ground);
   void LookForDenseGround();
@@ -65,13 +65,17 @@ class Pipeline {
   const Options options_;
   const int num_threads_;
   FrontEnd front_end_;
-  Atlas atlas_;                       // before the jobs, which look at it until they end
-  std::optional<DenseMapper> dense_;  // where keyframes get dense depth
+  /// Declared before the jobs, which refer to it until they end.
+  Atlas atlas_;
+  /// Empty where keyframes get no dense depth.
+  std::optional<DenseMapper> dense_;
   BackEnd back_end_;
-  bool keeps_map_ = false;  // frames are only located in a map made earlier
-  int num_frames_ = 0;      // processed
-  int free_threads_ = 1;    // for the frame in Process
-  int num_keyframes_ = 0;   // of the present map when it was last here
+  /// Whether frames are only localized in a loaded map, which stays as it is.
+  bool keeps_map_ = false;
+  int num_frames_ = 0;    ///< Number of frames processed.
+  int free_threads_ = 1;  ///< Number of OpenMP threads for the present frame.
+  /// Counts of the present map when it was last not lent to a job.
+  int num_keyframes_ = 0;
   int num_landmarks_ = 0;
 };
 

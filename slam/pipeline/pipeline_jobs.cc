@@ -84,7 +84,7 @@ void Pipeline::Adopt(MappedKeyframe mapped) {
 void Pipeline::AdoptDepth() {
   const int frame_index = dense_->pending().value();
   CompletedKeyframe completed = dense_->Take(atlas_.anchors().at(frame_index).unit_scale);
-  // It may have been removed, or be in another map by now.
+  // The keyframe may have been removed, or belong to another map by now.
   Map& map = atlas_.map();
   for (KeyframeId id = map.keyframe_end() - 1; id >= 0; --id) {
     if (!map.HasKeyframe(id) || map.keyframe(id).frame_index != frame_index) continue;
@@ -128,7 +128,7 @@ void Pipeline::Adopt(CorrectedLoop corrected) {
     ground.up = update.correction.rotation * ground.up;
     atlas_.SetGround(ground);
   }
-  if (dense_) dense_->ForgetGrounds();  // their unit may have been another
+  if (dense_) dense_->ForgetGrounds();  // The unit of length may have changed.
   StartAdjustment();
 }
 
@@ -151,7 +151,7 @@ void Pipeline::FollowGround(const KnownGround& ground) {
   const double height = options_.scale.height();
   if (!atlas_.ReliableGround()) {
     if (back_end_.is_adjusting()) AdoptAdjustment();
-    atlas_.found_loop.reset();  // measured in the unit before
+    atlas_.found_loop.reset();  // It was measured in the old unit of length.
     atlas_.places().Restart();
     Apply(RescaleMap(height / ground.camera_height, front_end_.local().reference, &atlas_.map()));
   }
@@ -159,8 +159,8 @@ void Pipeline::FollowGround(const KnownGround& ground) {
       KnownGround{.up = ground.up, .camera_height = height, .is_rough = ground.is_rough});
 }
 
-// Where too few landmarks lie on the ground (a smooth floor, a hand before it), what dense depth
-// shows of it is better than no metres at all.
+// Where too few landmarks lie on the ground, for example on a smooth floor or behind a hand, the
+// ground in the dense depth makes the map at least roughly metric.
 void Pipeline::LookForDenseGround() {
   if (!dense_ || atlas_.ground() || !options_.scale.from_ground) return;
   if (const std::optional<KnownGround> ground = dense_->Ground()) FollowGround(*ground);

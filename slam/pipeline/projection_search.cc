@@ -8,7 +8,8 @@
 namespace orb360 {
 namespace {
 
-// Levels of the pyramid, at most; and how far from the prediction a feature's level may be.
+// The coarsest level of the pyramid, and the largest difference between the level of a feature and
+// the predicted one.
 constexpr int kMaxLevel = 7;
 constexpr int kLevelTolerance = 1;
 
@@ -17,8 +18,8 @@ constexpr int kLevelTolerance = 1;
 std::optional<int> ExpectLevel(const Eigen::Vector3d& point, const Eigen::Vector3d& usual_direction,
                                double max_range, double min_view_cosine) {
   const double range = point.norm();
-  // Beyond the farthest range it would be smaller than on the finest level, much nearer than the
-  // coarsest level it would be too large.
+  // Beyond `max_range` the landmark would be too small for the finest level; from much nearer it
+  // would be too large for the coarsest one.
   const int level = PredictLevel(max_range, range);
   if (!(range > 0) || level < -kLevelTolerance || level > kMaxLevel + kLevelTolerance) {
     return std::nullopt;

@@ -24,29 +24,30 @@ struct ProjectionSearchOptions {
 };
 
 struct ProjectionMatches {
-  /// By feature: index into the landmarks, -1 where none.
+  /// By feature: index into the landmarks, or -1.
   std::vector<int> landmark_of_feature;
-  /// By landmark: whether it should be visible from the pose, by range and direction.
+  /// By landmark: whether it should be visible from the pose, judged by range and direction.
   std::vector<uint8_t> expected;
   int num_matches = 0;
 };
 
-/// Matches landmarks to features near to where the pose predicts them, on the predicted pyramid
-/// level or next to it. Features with `taken` set (by feature; may be empty) are left alone; where
-/// several landmarks want one feature the nearest descriptor gets it.
+/// Matches landmarks with features near their predicted positions, on the predicted pyramid level
+/// or a level next to it. Features that `taken` (by feature; may be empty) marks are not matched. A
+/// feature that matches several landmarks is given to the one with the nearest descriptor.
 ProjectionMatches SearchByProjection(const Features& features, const Rigid3& world_from_camera,
                                      std::span<const LocalLandmark> landmarks,
                                      std::span<const uint8_t> taken,
                                      const ProjectionSearchOptions& options);
 
-/// The pyramid level on which an image shows what lies at `point`, in the camera's frame, and is
-/// seen by others along `usual_direction` and up to `max_range` (Landmark), clamped. Empty where it
-/// should not be visible: too far away, too near, or from too far beside.
+/// Returns the pyramid level, clamped to the existing ones, on which an image shows a landmark at
+/// `point` (camera frame), which other keyframes see along `usual_direction` and at ranges up to
+/// `max_range` (Landmark). Empty where the landmark should not be visible, because it is too far
+/// away, too near, or seen from a direction that differs too much.
 std::optional<int> ExpectLevel(const Eigen::Vector3d& point, const Eigen::Vector3d& usual_direction,
                                double max_range, double min_view_cosine);
 
-/// The feature that best shows a landmark, -1 if none: the search above for a single landmark.
-/// `candidates` is scratch memory.
+/// Does the same search for a single landmark and returns the matching feature, or -1. `candidates`
+/// is scratch memory.
 int FindFeature(const Features& features, const Rigid3& camera_from_world,
                 const LocalLandmark& landmark, std::span<const uint8_t> taken,
                 const ProjectionSearchOptions& options, std::vector<int>* candidates, int* distance,

@@ -51,7 +51,7 @@ Reconstruction MakeReconstruction(std::span<const Map> maps, const FrameAnchors&
   }
   std::sort(result.keyframes.begin(), result.keyframes.end(),
             [](const FramePose& a, const FramePose& b) { return a.index < b.index; });
-  std::map<int, size_t> position_of;  // in result.keyframes, by frame index
+  std::map<int, size_t> position_of;  // index into result.keyframes, by frame index
   for (size_t i = 0; i < result.keyframes.size(); ++i) position_of[result.keyframes[i].index] = i;
   for (FramePose& frame : result.frames) {
     const auto place = position_of.find(frame.index);
@@ -72,7 +72,8 @@ Reconstruction MakeReconstruction(std::span<const Map> maps, const FrameAnchors&
     result.landmarks_per_keyframe = num_seen / count;
   }
   if (!maps.empty()) {
-    constexpr size_t kStart = 20;  // keyframes: the place where the world is levelled
+    // Number of first keyframes whose ground levels the world.
+    constexpr size_t kStart = 20;
     std::vector<KeyframeId> first = maps.front().KeyframeIds();
     first.resize(std::min(first.size(), kStart));
     if (const auto ground = EstimateGround(maps.front(), first)) result.up = ground->up;

@@ -15,9 +15,11 @@
 namespace orb360 {
 
 struct FramePose {
-  int index;         // in the sequence; negative: of a run that a loaded map was made in
-  double timestamp;  // s
-  int map;           // poses of different maps are related only by the motion assumed between them
+  /// Index in the sequence. It is negative for a frame of the run that made a loaded map.
+  int index;
+  double timestamp;  ///< Seconds.
+  /// Poses of different maps are related only by the motion that was assumed between the maps.
+  int map;
   Rigid3 world_from_camera;
 };
 
@@ -28,55 +30,64 @@ struct CloudPoint {
 
 /// Two keyframes that see the same landmarks.
 struct CovisibleFrames {
-  size_t first;  // indices into Reconstruction::keyframes
+  /// Indices into Reconstruction::keyframes.
+  size_t first;
   size_t second;
-  int shared;  // landmarks seen by both
+  int shared;  ///< Number of landmarks that both see.
 };
 
 /// One map of a reconstruction.
 struct MapSummary {
-  int first_frame = 0;  // indices of tracked frames
+  /// Indices of the first and the last tracked frame.
+  int first_frame = 0;
   int last_frame = 0;
   int tracked = 0;
   int keyframes = 0;
   int landmarks = 0;
-  bool is_metric = false;  // else in a scale of its own
-  bool is_rough = false;   // metres by completed depth only
+  bool is_metric = false;  ///< Whether the unit of length is the metre.
+  bool is_rough = false;   ///< Whether metres come from completed depth only.
 };
 
-/// The camera came back to a place; frame indices.
+/// Indices of the frame at which the camera came back to a place, and of the frame that saw the
+/// place before.
 struct ClosedLoop {
   int frame;
   int place;
 };
 
-/// Landmarks in common that link two keyframes in the covisibility graph.
+/// Number of landmarks in common that links two keyframes in the covisibility graph.
 inline constexpr int kCovisible = 15;
 
-/// Everything a run computed, in the internal conventions of frames (camera -X forward).
+/// Everything that a run computed, in the internal frames (camera: -X forward, +Y right, +Z up).
 struct Reconstruction {
-  std::vector<FramePose> frames;              // ordered by index
-  std::vector<FramePose> keyframes;           // ordered by index
-  std::vector<CovisibleFrames> covisibility;  // with at least kCovisible landmarks in common
+  std::vector<FramePose> frames;     ///< Ordered by index.
+  std::vector<FramePose> keyframes;  ///< Ordered by index.
+  /// Pairs with at least kCovisible landmarks in common.
+  std::vector<CovisibleFrames> covisibility;
   std::vector<CloudPoint> landmarks;
   std::vector<MapSummary> maps;
-  std::optional<int> initialized_at;  // frame at which the first map was made
-  int lost = 0;                       // times tracking was lost after that
-  int relocalized = 0;                // times a lost camera was found again
-  std::vector<ClosedLoop> loops;      // closed within a map
-  std::vector<ClosedLoop> merges;     // by which a map was merged into an older one
-  double features_per_keyframe = 0;   // mean number of corners that are landmarks
-  double landmarks_per_keyframe = 0;  // mean number it sees: a corner counts once
-  /// Of the keyframes that were given dense depth, by frame index: units of the result in one unit
-  /// of that depth.
+  /// Index of the frame at which the first map was made.
+  std::optional<int> initialized_at;
+  int lost = 0;                    ///< How often tracking was lost after that.
+  int relocalized = 0;             ///< How often a lost camera was found again.
+  std::vector<ClosedLoop> loops;   ///< Loops that were closed within a map.
+  std::vector<ClosedLoop> merges;  ///< Loops by which a map was merged into an older one.
+  /// Mean number of corners of a keyframe that are observations of landmarks.
+  double features_per_keyframe = 0;
+  /// Mean number of landmarks of a keyframe. A corner that has features on several levels counts
+  /// once.
+  double landmarks_per_keyframe = 0;
+  /// By frame index of the keyframes that have dense depth: number of units of the result in one
+  /// unit of that depth.
   std::map<int, double> depth_scales;
-  /// Normal of the ground in the world, unit, towards the sky; where one was found.
+  /// Normal of the ground, unit, world frame, towards the sky. None where no ground was found.
   std::optional<Eigen::Vector3d> up;
 };
 
-/// Everything but `initialized_at`, `depth_scales`, what is counted and which maps are metric.
-/// Keyframes have the pose that the map gives them, and the other frames the one in which they see
-/// its landmarks best (frame_refinement.h). Runs on `num_threads` OpenMP threads.
+/// Makes the reconstruction except for `initialized_at`, `depth_scales`, the counts of events, and
+/// the scale of the maps. Keyframes have their poses in the map; the poses of the other frames are
+/// refined on the landmarks that they see (frame_refinement.h). Runs on `num_threads` OpenMP
+/// threads.
 Reconstruction MakeReconstruction(std::span<const Map> maps, const FrameAnchors& anchors,
                                   int num_threads = 1);
 

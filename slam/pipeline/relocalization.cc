@@ -22,7 +22,7 @@ std::optional<Relocalization> Relocalize(const Features& features, const LocalMa
     }
   }
   for (int i = 0; i < options.recovery.keyframes_per_frame; ++i) {
-    constexpr int kStep = 3;  // neighbours see the same
+    constexpr int kStep = 3;  // Neighbouring keyframes see the same landmarks.
     if (*next_keyframe < 0) *next_keyframe = map.keyframe_end() - 1;
     const KeyframeId id = map.LivingKeyframe(*next_keyframe);
     *next_keyframe -= kStep;

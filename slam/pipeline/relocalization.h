@@ -10,16 +10,17 @@
 
 namespace orb360 {
 
-/// Where a lost camera was found.
+/// The pose at which a lost camera was found.
 struct Relocalization {
-  int map;  // its number in the atlas
+  int map;  ///< Number of the map in the atlas.
   LocalMap local;
   TrackResult result;
 };
 
-/// Looks for a lost camera: around `local`, where it was seen last; at the places of all maps that
-/// look most like its image; then around some keyframes of the present map, from the newest
-/// backwards, round and round. `next_keyframe` says where that goes on in the next frame.
+/// Searches a lost camera: in `local`, the map around its last pose; at those places of all maps
+/// that are most similar to its image; then around some keyframes of the present map, from the
+/// newest backwards and then from the newest again. `next_keyframe` is the keyframe at which the
+/// next frame continues. Empty where the camera is not found.
 std::optional<Relocalization> Relocalize(const Features& features, const LocalMap& local,
                                          double pixel_sigma, const Options& options,
                                          int num_threads, Atlas* atlas, KeyframeId* next_keyframe);

@@ -8,7 +8,8 @@
 namespace orb360 {
 
 cv::Mat FindSelfMask(const std::string& input, const SequenceOptions& options, double frame_rate) {
-  constexpr double kInterval = 0.2;  // s: walking and driving then show as pixels of motion
+  // Interval between the images, s. Walking and driving then cause motion of several pixels.
+  constexpr double kInterval = 0.2;
   constexpr double kLongest = 10.0;  // s
   SequenceOptions sampled = options;
   sampled.stride = std::max(options.stride, static_cast<int>(std::lround(kInterval * frame_rate)));

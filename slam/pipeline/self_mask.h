@@ -8,10 +8,10 @@
 
 namespace orb360 {
 
-/// Mask (CV_8U, 0 = leave out) of what moves with the camera, found in the first seconds of an
-/// input (static_region.h): images 0.2 s apart until there is evidence, 10 s at most.
-/// `options` as for the run itself, `frame_rate` as the opened sequence says. Throws UserError like
-/// OpenSequence.
+/// Returns the mask (CV_8U, 0 where features are left out) of everything that moves with the
+/// camera, found at the start of an input (static_region.h). It looks at images 0.2 s apart until
+/// there is evidence, for at most 10 s. `options` are those of the run, `frame_rate` (1/s) is that
+/// of the opened sequence. Throws UserError as OpenSequence does.
 cv::Mat FindSelfMask(const std::string& input, const SequenceOptions& options, double frame_rate);
 
 }  // namespace orb360

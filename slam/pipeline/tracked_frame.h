@@ -11,15 +11,16 @@ namespace orb360 {
 
 /// A frame whose pose is known.
 struct TrackedFrame {
-  int index = 0;         // in the sequence
-  double timestamp = 0;  // s
+  int index = 0;         ///< Index in the sequence.
+  double timestamp = 0;  ///< Seconds.
   std::shared_ptr<const Features> features;
   Rigid3 world_from_camera;
-  std::vector<LandmarkId> landmarks;  // by feature, inliers of the pose only; kNoId where none
+  /// By feature: the landmark of an inlier of the pose, kNoId elsewhere.
+  std::vector<LandmarkId> landmarks;
   int num_inliers = 0;
 };
 
-/// A keyframe as if it had just been tracked: all of its landmarks are inliers.
+/// Returns a keyframe as a tracked frame, all landmarks of which are inliers.
 TrackedFrame MakeTracked(const Keyframe& keyframe);
 
 }  // namespace orb360

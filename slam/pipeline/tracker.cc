@@ -12,7 +12,7 @@
 namespace orb360 {
 namespace {
 
-// Matches of one frame, feature to landmark of a list, and the pose they give.
+// Matches of features of a frame with landmarks of a list, and the pose that follows from them.
 struct PoseFit {
   RefinedPose pose;
   std::vector<int> feature;   // by inlier
@@ -45,8 +45,8 @@ PoseFit FitPose(const Features& features, const Rigid3& initial,
   return fit;
 }
 
-// The pose once more, with what the reference keyframe's completed depth adds. `fit` holds the
-// landmarks' inliers from a list.
+// Refines the pose again with the provisional points of the local map in addition (completed depth
+// of the reference keyframe). `fit` contains the inliers among the landmarks of a list.
 Rigid3 RefineWithProvisional(const Features& features, const PoseFit& fit, const LocalMap& local,
                              const ProjectionSearchOptions& search) {
   const Rigid3& start = fit.pose.world_from_camera;
@@ -66,7 +66,7 @@ Rigid3 RefineWithProvisional(const Features& features, const PoseFit& fit, const
   for (int f = 0; f < features.size(); ++f) {
     const int p = matches.landmark_of_feature[f];
     if (p < 0) continue;
-    // What the range may be wrong by is seen from here under the parallax.
+    // Seen from this camera, the error of the range is multiplied by the parallax.
     const double parallax = ParallaxAngle(points[p].position, start.translation,
                                           local.world_from_reference.translation);
     const double moved = parallax * local.provisional[p].range_sigma;
@@ -79,10 +79,10 @@ Rigid3 RefineWithProvisional(const Features& features, const PoseFit& fit, const
 
 struct LocalFit {
   TrackResult result;
-  double inlier_ratio = 0;  // of the matches with the local map
+  double inlier_ratio = 0;  // fraction of the matches with the local map
 };
 
-// From a pose known to a few sigmas: all of the local map.
+// Tracks the whole local map, starting from a pose that is accurate to a few standard deviations.
 std::optional<LocalFit> TrackLocalMap(const Features& features, const Rigid3& initial,
                                       const LocalMap& local, double pixel_sigma,
                                       const TrackerOptions& options, int num_threads) {
@@ -108,7 +108,7 @@ std::optional<LocalFit> TrackLocalMap(const Features& features, const Rigid3& in
                   fit.pose.num_inliers / static_cast<double>(matches.num_matches)};
 }
 
-// From the predicted pose, with the last frame's landmarks.
+// Estimates the pose from the last frame's landmarks, starting from the predicted pose.
 std::optional<Rigid3> FollowPrediction(const Features& features, const Rigid3& predicted,
                                        const TrackedFrame& last, const LocalMap& local,
                                        const TrackerOptions& options, int num_threads) {
@@ -126,7 +126,7 @@ std::optional<Rigid3> FollowPrediction(const Features& features, const Rigid3& p
   return fit.pose.world_from_camera;
 }
 
-// The pose from features paired with landmarks of the list, some of them wrongly.
+// Estimates the pose from features matched with landmarks of the list, some of them wrongly.
 std::optional<Rigid3> EstimatePose(const Features& features,
                                    std::span<const LocalLandmark* const> landmarks,
                                    std::span<const int> paired, const TrackerOptions& options) {
@@ -145,7 +145,8 @@ std::optional<Rigid3> EstimatePose(const Features& features,
   return pose->camera_from_world.Inverse();
 }
 
-// From landmarks of the last frame, matched from feature to feature, whatever the motion.
+// Estimates the pose from landmarks of the last frame, matched from feature to feature, for any
+// motion.
 std::optional<Rigid3> FollowLandmarks(const Features& features, const TrackedFrame& last,
                                       const LocalMap& local, std::span<const Match> matches,
                                       const TrackerOptions& options) {
@@ -168,7 +169,7 @@ std::optional<TrackResult> TrackFromPrediction(const Features& features,
                                                const TrackedFrame& last, const LocalMap& local,
                                                double pixel_sigma, const TrackerOptions& options,
                                                int num_threads) {
-  std::vector<Match> matches;  // with the last frame, once needed
+  std::vector<Match> matches;  // with the last frame, found when they are first needed
   const auto find_start = [&](int attempt) {
     if (attempt == 0) {
       return FollowPrediction(features, predicted_world_from_camera, last, local, options,

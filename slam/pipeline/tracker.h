@@ -30,26 +30,26 @@ struct TrackerOptions {
 
 struct TrackResult {
   Rigid3 world_from_camera;
-  std::vector<LandmarkId> landmarks;  // as in TrackedFrame
+  std::vector<LandmarkId> landmarks;  ///< As in TrackedFrame.
   int num_inliers = 0;
-  std::vector<LandmarkId> expected;  // landmarks that should have been seen, ordered by id
+  std::vector<LandmarkId> expected;  ///< Landmarks that should have been seen, ordered by id.
 };
 
-/// Pose of a frame that follows `last`. Landmarks of the last frame are searched around their
-/// predicted positions, the pose refined, then the same with the whole local map. Where too few
-/// matches agree, other starts are tried: P3P in RANSAC from landmarks of the last frame matched
-/// from feature to feature, then the motion between both frames (frame_motion.h); the pose with
-/// most landmarks wins. Empty where too little is found. `pixel_sigma` is the angular noise on
-/// pyramid level 0, rad. Runs on `num_threads` OpenMP threads; the result does not depend on how
-/// many.
+/// Estimates the pose of a frame that follows `last`. The landmarks of the last frame are searched
+/// around their predicted positions and the pose is refined, then the same is done with the whole
+/// local map. Where too few matches agree, other initial poses are tried: P3P in RANSAC from
+/// landmarks of the last frame matched from feature to feature, then the motion between both frames
+/// (frame_motion.h). The pose with most inliers is the result. Empty where too few landmarks are
+/// found. `pixel_sigma` is the angular noise on pyramid level 0, rad. Runs on `num_threads` OpenMP
+/// threads; the result does not depend on their number.
 std::optional<TrackResult> TrackFromPrediction(const Features& features,
                                                const Rigid3& predicted_world_from_camera,
                                                const TrackedFrame& last, const LocalMap& local,
                                                double pixel_sigma, const TrackerOptions& options,
                                                int num_threads = 1);
 
-/// Pose of a frame without any prediction: descriptors of the local map against all features,
-/// P3P in RANSAC, then as above.
+/// Estimates the pose of a frame without a prediction: the descriptors of the local map are matched
+/// with all features, P3P in RANSAC gives the initial pose, and the rest is as above.
 std::optional<TrackResult> TrackWithoutPrediction(const Features& features, const LocalMap& local,
                                                   double pixel_sigma, const TrackerOptions& options,
                                                   int num_threads = 1);

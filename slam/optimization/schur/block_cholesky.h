@@ -37,16 +37,17 @@ class BlockCholesky {
   bool FactorColumn(size_t column);
 
   // L has the rows and columns of the matrix in elimination order.
-  std::vector<int> matrix_row_;         // by row of L
-  std::vector<size_t> factor_block_;    // by block of the matrix: its block of L
-  std::vector<uint8_t> is_transposed_;  // by block of the matrix: whether L has its transpose there
+  std::vector<int> matrix_row_;       ///< By row of L.
+  std::vector<size_t> factor_block_;  ///< By block of the matrix: its block of L.
+  /// By block of the matrix: whether L contains its transpose.
+  std::vector<uint8_t> is_transposed_;
   // L by columns. The rows of a column's blocks increase; the first is on the diagonal.
   std::vector<size_t> first_ = {0};
   std::vector<int> row_;
   // A panel is a range of columns with blocks in the same rows, some of which may be zero. Its
   // columns update each later column together, so that a later column is loaded once for all.
-  std::vector<size_t> first_column_;  // by panel, and the end
-  std::vector<Block> blocks_;         // diagonal blocks are stored inverted
+  std::vector<size_t> first_column_;  ///< By panel, and the end.
+  std::vector<Block> blocks_;         ///< Diagonal blocks are stored inverted.
 };
 
 }  // namespace orb360

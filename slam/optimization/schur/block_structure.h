@@ -8,8 +8,8 @@ namespace orb360 {
 
 /// Which blocks of a symmetric block matrix are not zero: its lower triangle in compressed rows.
 struct BlockStructure {
-  std::vector<size_t> first = {0};  // block by row, and the end
-  std::vector<int> column;  // by block; they increase along a row, the last is on the diagonal
+  std::vector<size_t> first = {0};  ///< Block by row, and the end.
+  std::vector<int> column;  ///< By block; they increase along a row, the last is on the diagonal.
 
   size_t num_rows() const { return first.size() - 1; }
 };

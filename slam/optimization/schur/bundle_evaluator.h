@@ -23,7 +23,7 @@ struct BundleState {
 
 /// A change of a state.
 struct BundleStep {
-  std::vector<PaddedVector> poses;  // of those that are not fixed
+  std::vector<PaddedVector> poses;  ///< Of those that are not fixed.
   std::vector<Eigen::Vector3d> points;
 };
 
@@ -45,10 +45,10 @@ class BundleEvaluator {
  private:
   double Evaluate(const BundleState& state, NormalEquations* equations) const;
 
-  std::array<ResidualBlocks, 3> blocks_;  // by kind
-  std::array<RobustLoss, 3> losses_;      // by kind
+  std::array<ResidualBlocks, 3> blocks_;  ///< By kind.
+  std::array<RobustLoss, 3> losses_;      ///< By kind.
   PosePointPairs pairs_;
-  std::vector<int> free_index_;  // by pose: its index among those that are not fixed, or -1
+  std::vector<int> free_index_;  ///< By pose: its index among those that are not fixed, or -1.
   int num_free_poses_ = 0;
 };
 

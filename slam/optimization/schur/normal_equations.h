@@ -19,8 +19,8 @@ using PosePointBlock = PaddedBlock<3>;
 /// point. Each pair has one off-diagonal block in the Hessian. Poses are numbered without the fixed
 /// ones.
 struct PosePointPairs {
-  std::vector<int> pose;            // by pair; they increase within a point
-  std::vector<size_t> first = {0};  // pair by point, and the end
+  std::vector<int> pose;            ///< By pair; they increase within a point.
+  std::vector<size_t> first = {0};  ///< Pair by point, and the end.
 
   size_t num_points() const { return first.size() - 1; }
 };
@@ -29,11 +29,11 @@ struct PosePointPairs {
 /// the Hessian, whose blocks are called U (poses), V (points) and W (pairs) as in Triggs,
 /// McLauchlan, Hartley, Fitzgibbon, Bundle Adjustment: A Modern Synthesis, 2000.
 struct NormalEquations {
-  std::vector<PoseBlock> pose_hessian;  // U
+  std::vector<PoseBlock> pose_hessian;  ///< U
   std::vector<PaddedVector> pose_gradient;
-  std::vector<Eigen::Matrix3d> point_hessian;  // V
+  std::vector<Eigen::Matrix3d> point_hessian;  ///< V
   std::vector<Eigen::Vector3d> point_gradient;
-  std::vector<PosePointBlock> pair_hessian;  // W
+  std::vector<PosePointBlock> pair_hessian;  ///< W
 
   void SetZero(size_t num_poses, const PosePointPairs& pairs);
 

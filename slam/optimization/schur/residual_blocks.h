@@ -22,7 +22,7 @@ struct ResidualBlocks {
   size_t size = 0;
   std::vector<int> pose;
   std::vector<int> point;
-  std::vector<int> pair;  // see PosePointPairs; -1 where the pose is fixed
+  std::vector<int> pair;  ///< See PosePointPairs; -1 where the pose is fixed.
   /// The constants of the residuals, padded to a multiple of kMaxLanes. For a direction, the scaled
   /// basis of its tangent plane, column by column; for a height, its direction and offset; for a
   /// range, its logarithm and weight.
@@ -44,8 +44,8 @@ struct JacobianRow {
 
 /// Poses and points packed for gathering by vector instructions.
 struct PackedState {
-  std::vector<double> poses;   // camera_from_world: [R t] row by row, 12 numbers each
-  std::vector<double> points;  // 3 numbers each
+  std::vector<double> poses;   ///< camera_from_world: [R t] row by row, 12 numbers each.
+  std::vector<double> points;  ///< 3 numbers each.
 };
 
 /// Evaluates the blocks from `begin`, a multiple of kMaxLanes, on. `squared_norms` receives the

@@ -20,7 +20,7 @@ namespace orb360 {
 struct ReducedCameraStructure : BlockStructure {
   static constexpr size_t kMaxPoses = 80;
 
-  std::vector<int> row_of_point;  // -1 where the point is eliminated
+  std::vector<int> row_of_point;  ///< -1 where the point is eliminated.
 
   ReducedCameraStructure() = default;
   ReducedCameraStructure(size_t num_poses, const PosePointPairs& pairs,
@@ -31,11 +31,11 @@ struct ReducedCameraStructure : BlockStructure {
 /// b = -(g_pose - W V^-1 g_point), and what back substitution needs. With the Cholesky factor
 /// V = L L^T of each point, V^-1 = L^-T L^-1.
 struct ReducedCameraSystem {
-  std::vector<PoseBlock> blocks;                   // S, as the structure lists its blocks
-  std::vector<PaddedVector> rhs;                   // b, by row
-  std::vector<Eigen::Matrix3d> inverse_factors;    // L^-1, by point
-  std::vector<Eigen::Vector3d> reduced_gradients;  // L^-1 g_point, by point
-  std::vector<PosePointBlock> reduced_pairs;       // W L^-T, by pair
+  std::vector<PoseBlock> blocks;                   ///< S, as the structure lists its blocks.
+  std::vector<PaddedVector> rhs;                   ///< b, by row.
+  std::vector<Eigen::Matrix3d> inverse_factors;    ///< L^-1, by point.
+  std::vector<Eigen::Vector3d> reduced_gradients;  ///< L^-1 g_point, by point.
+  std::vector<PosePointBlock> reduced_pairs;       ///< W L^-T, by pair.
 
   /// Step of a point: -V^-1 (g_point + W^T x_pose), or its own unknowns where it was kept.
   /// `solution` is x, by row.
