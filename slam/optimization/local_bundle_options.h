@@ -22,9 +22,10 @@ struct LocalBundleOptions {
   Optimizer optimizer = Optimizer::kSchur;
 };
 
-/// Registers the keys of the section `bundle`.
+/// Registers the keys of the section `bundle`. `optimizer` is registered as an Optimizer.
 void RegisterOptions(OptionSchema* schema, LocalBundleOptions* options);
-/// Registers `scale.height_sigma`, which is in the section of ScaleOptions.
+/// Registers `scale.height_sigma`, separately since it stands after the keys of ScaleOptions in the
+/// configuration file.
 void RegisterHeightSigma(OptionSchema* schema, LocalBundleOptions* options);
 
 }  // namespace orb360
