@@ -19,14 +19,14 @@ std::size_t SizeOf(const Shape& shape) {
   return static_cast<std::size_t>(shape.channels) * Index(shape.height) * Index(shape.width);
 }
 
-void CheckPictureSize(const Graph& graph, int height, int width) {
+void CheckImageSize(const Graph& graph, int height, int width) {
   const auto is_allowed = [&](int side) {
-    return side > 0 && side <= limits::kPictureSide && side % graph.size_multiple == 0;
+    return side > 0 && side <= limits::kMaxImageSide && side % graph.size_multiple == 0;
   };
   if (is_allowed(height) && is_allowed(width)) return;
-  throw UserError("network \"" + graph.name + "\" takes pictures whose sides are multiples of " +
+  throw UserError("network \"" + graph.name + "\" takes images whose sides are multiples of " +
                   std::to_string(graph.size_multiple) + " and at most " +
-                  std::to_string(limits::kPictureSide) + ", not " + std::to_string(width) + "x" +
+                  std::to_string(limits::kMaxImageSide) + ", not " + std::to_string(width) + "x" +
                   std::to_string(height));
 }
 
@@ -44,18 +44,18 @@ TensorView DenseView(const float* data, const Shape& shape) {
 }  // namespace
 
 Executor::Workspace::Workspace(const Executor& executor) {
-  const Placement& placement = executor.placement_;
+  const BufferAssignment& assignment = executor.assignment_;
   try {
-    memory_.resize(placement.bytes);
+    memory_.resize(assignment.bytes);
   } catch (const std::bad_alloc&) {
-    throw UserError("a network needs " + std::to_string(placement.bytes >> 20) +
-                    " MiB of memory for a picture of this size, and there is less; use a smaller "
-                    "picture");
+    throw UserError("a network needs " + std::to_string(assignment.bytes >> 20) +
+                    " MiB of memory for an image of this size, and there is less; use a smaller "
+                    "image");
   }
   const Lowered& lowered = executor.lowered_;
   for (std::size_t i = 0; i < lowered.values.size(); ++i) {
     views_.push_back(
-        ViewOf(placement.places[i], lowered.values[i].format.shape.channels, memory_.data()));
+        ViewOf(assignment.buffers[i], lowered.values[i].format.shape.channels, memory_.data()));
   }
   const auto views = [&](const std::vector<int>& values) {
     std::vector<TensorView> list;
@@ -67,18 +67,18 @@ Executor::Workspace::Workspace(const Executor& executor) {
   for (std::size_t i = 0; i < lowered.instructions.size(); ++i) {
     const Instruction& instruction = lowered.instructions[i];
     bound_.push_back({views(instruction.inputs), views(instruction.outputs),
-                      memory.subspan(placement.scratch[i], instruction.step.scratch_bytes)});
+                      memory.subspan(assignment.scratch[i], instruction.step.scratch_bytes)});
   }
 }
 
 Executor::Executor(const Graph& graph, int height, int width, const ExecutorOptions& options) {
   ORB360_CHECK(options.threads >= 1, options.threads);
   threads_ = options.threads;
-  CheckPictureSize(graph, height, width);
+  CheckImageSize(graph, height, width);
   const CpuBackend backend(options.threads, options.precision);
   lowered_ = Lower(graph, options.keeps_tensors ? KeepNodes(graph) : FuseNodes(graph), backend,
                    height, width);
-  placement_ = PlaceValues(lowered_, options.keeps_tensors);
+  assignment_ = AssignBuffers(lowered_, options.keeps_tensors);
   const auto shape = [&](int tensor) {
     return ShapeFor(graph.tensors[Index(tensor)], height, width);
   };

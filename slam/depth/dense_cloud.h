@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "slam/depth/dense_depth.h"
-#include "slam/depth/surface_confirmation.h"
+#include "slam/depth/geometric_consistency.h"
 #include "slam/depth/voxel_grid.h"
 #include "slam/geometry/rigid3.h"
 
@@ -21,7 +21,7 @@ struct DenseCloudOptions {
   double max_error_voxels = 4;
   /// Number of keyframes with which each one is compared.
   int max_neighbours = 10;
-  ConfirmationOptions confirmation{};
+  GeometricConsistencyOptions consistency{};
   /// Keyframes held in memory, 4 MB each for 1024 x 512 pixels. Two keyframes and those that they
   /// are compared with are always held. Keyframes are read again if this is less than the part of
   /// the path over which max_neighbours extend.
@@ -46,8 +46,8 @@ struct DenseView {
 
 struct DenseCloudStatistics {
   int views = 0;
-  std::int64_t confirmed = 0;  // points, before they met in voxels
-  double voxel_size = 0;       // world units
+  std::int64_t consistent = 0;  // points, before they met in voxels
+  double voxel_size = 0;        // world units
 };
 
 /// Returns the depth of a frame, possibly several times for the same frame. The images must not
@@ -58,8 +58,8 @@ using DepthLoader = std::function<DenseDepth(int frame_index)>;
 using VoxelSink = std::function<void(std::span<const Voxel>)>;
 
 /// Fuses the dense depth of keyframes into one cloud: the points of each keyframe that are
-/// geometrically consistent with enough others (ConfirmSurface) are added up in voxels, in the
-/// order of the views. The result is the same for any number of threads.
+/// geometrically consistent with enough others (FindConsistentPoints) are added up in voxels, in
+/// the order of the views. The result is the same for any number of threads.
 DenseCloudStatistics FuseCloud(std::span<const DenseView> views, const DepthLoader& load,
                                const DenseCloudOptions& options, const VoxelSink& sink);
 

@@ -17,7 +17,7 @@ void RegisterOptions(OptionSchema* schema, LocalBundleOptions* options) {
 
 void RegisterHeightSigma(OptionSchema* schema, LocalBundleOptions* options) {
   schema->Add("scale.height_sigma", &options->height_sigma,
-              "standard deviation of the camera's height over the ground, a share of it", 0.001,
+              "standard deviation of the camera's height over the ground, a fraction of it", 0.001,
               1.0);
 }
 

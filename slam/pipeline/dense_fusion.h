@@ -23,7 +23,7 @@ DenseCloudOptions CloudOptionsFor(const Reconstruction& reconstruction, int num_
 /// that made the reconstruction. Throws UserError where the disk fails.
 DenseCloudSummary WriteDenseCloud(const std::filesystem::path& path,
                                   const Reconstruction& reconstruction,
-                                  const RangeStore& depth_maps, const Rigid3& target_from_world,
+                                  const DepthMapStore& depth_maps, const Rigid3& target_from_world,
                                   int num_threads);
 
 }  // namespace orb360

@@ -6,7 +6,7 @@ namespace orb360 {
 
 void RegisterOptions(OptionSchema* schema, DepthOptions* options) {
   schema->Add("depth.height", &options->height,
-              "height of the pictures that get dense depth, pixels; they are twice as wide", 32,
+              "height of the images that get dense depth, pixels; they are twice as wide", 32,
               4096);
   schema->Add("depth.every_keyframes", &options->every_keyframes,
               "every so many keyframes get dense depth", 1, 1000);

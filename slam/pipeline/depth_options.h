@@ -10,7 +10,7 @@ class OptionSchema;
 struct DepthOptions {
   SparseDepthOptions sparse = {};
   DenseGroundOptions ground = {};
-  /// Of the pictures that are completed, pixels; they are twice as wide.
+  /// Of the images that are completed, pixels; they are twice as wide.
   int height = 512;
   /// Every so many keyframes are completed.
   int every_keyframes = 1;

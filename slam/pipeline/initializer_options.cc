@@ -15,8 +15,8 @@ void RegisterOptions(OptionSchema* schema, InitializerOptions* options) {
               "the same, standard deviations of a feature", 0.0, 100.0);
   schema->Add("initializer.min_landmark_parallax", &options->min_landmark_parallax,
               "least parallax of a single landmark, radians", 0.001, 1.0);
-  schema->Add("initializer.min_inlier_share", &options->min_inlier_share,
-              "share of the matches that must agree with the motion", 0.1, 1.0);
+  schema->Add("initializer.min_inlier_ratio", &options->min_inlier_ratio,
+              "fraction of the matches that must agree with the motion", 0.1, 1.0);
 }
 
 }  // namespace orb360

@@ -73,7 +73,7 @@ class LoopDetector {
     Revisit revisit;
   };
   void Learn(const Keyframe& keyframe, int number);
-  /// The `count` places most like the picture, best first, with how much the mean of them and their
+  /// The `count` places most like the image, best first, with how much the mean of them and their
   /// neighbours is; without `excluded` (by place).
   std::vector<std::pair<double, int>> Rank(const std::vector<double>& scores,
                                            const std::vector<uint8_t>& excluded, int count) const;

@@ -7,24 +7,25 @@ namespace orb360 {
 void RegisterOptions(OptionSchema* schema, LoopOptions* options) {
   schema->Add("loop.enabled", &options->enabled,
               "recognise places: close loops, join maps, find a lost camera by what it sees");
-  schema->Add("loop.min_likeness", &options->min_likeness,
-              "a place is looked at when it is like the picture, share of the keyframe before", 0.0,
-              10.0);
+  schema->Add("loop.min_similarity", &options->min_similarity,
+              "a place is looked at when it is like the image, fraction of the keyframe before",
+              0.0, 10.0);
   schema->Add("loop.max_candidates", &options->max_candidates,
               "places looked at for each lost frame", 1, 100);
   schema->Add("loop.min_inliers", &options->min_inliers,
-              "landmarks of a place that must be found in the picture", 10, 10000);
-  schema->Add("loop.min_found_share", &options->min_found_share,
-              "share of the place's landmarks in view that must be found", 0.0, 1.0);
+              "landmarks of a place that must be found in the image", 10, 10000);
+  schema->Add("loop.min_found_fraction", &options->min_found_fraction,
+              "fraction of the place's landmarks in view that must be found", 0.0, 1.0);
   schema->Add("loop.min_agreeing", &options->min_agreeing,
               "keyframes that must lead to the same correction", 1, 100);
   schema->Add("loop.max_disagreement", &options->max_disagreement,
-              "difference of corrections: share of the median range, radians, log of the scale",
+              "difference of corrections: fraction of the median range, radians, log of the scale",
               0.0, 1.0);
   schema->Add("loop.min_length", &options->min_length,
               "least length of a loop, multiples of the median range", 0.0, 10000.0);
   schema->Add("loop.max_drift", &options->max_drift,
-              "farthest that a map can have drifted, share of the way round the loop", 0.0, 10.0);
+              "farthest that a map can have drifted, fraction of the way round the loop", 0.0,
+              10.0);
   schema->Add("loop.max_turn", &options->max_turn, "the same for directions, radians", 0.0, 3.2);
   schema->Add("loop.max_scale", &options->max_scale, "the same for the scale, a factor", 1.0,
               100.0);

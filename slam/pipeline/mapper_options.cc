@@ -9,14 +9,15 @@ void RegisterOptions(OptionSchema* schema, MapperOptions* options) {
   RegisterOptions(schema, &options->bundle);
   schema->Add("mapper.max_fusion_neighbours", &options->max_fusion_neighbours,
               "keyframes with which a new one exchanges landmarks", 1, 100);
-  schema->Add("mapper.redundant_share", &options->redundant_share,
-              "a keyframe is dropped when three others see this share of its landmarks", 0.5, 1.0);
+  schema->Add("mapper.redundant_fraction", &options->redundant_fraction,
+              "a keyframe is dropped when three others see this fraction of its landmarks", 0.5,
+              1.0);
   schema->Add("mapper.probation_keyframes", &options->probation_keyframes,
               "keyframes after which a landmark must have been seen three times", 1, 100);
-  schema->Add("mapper.min_found_share", &options->min_found_share,
-              "share of the frames in which a landmark on probation must be found", 0.0, 1.0);
-  schema->Add("mapper.kept_pictures", &options->kept_pictures,
-              "newest keyframes whose pictures are kept, to align what they show of landmarks", 1,
+  schema->Add("mapper.min_found_fraction", &options->min_found_fraction,
+              "fraction of the frames in which a landmark on probation must be found", 0.0, 1.0);
+  schema->Add("mapper.kept_images", &options->kept_images,
+              "newest keyframes whose images are kept, to align what they show of landmarks", 1,
               1000);
 }
 

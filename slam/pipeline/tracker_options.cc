@@ -14,9 +14,9 @@ void RegisterOptions(OptionSchema* schema, TrackerOptions* options) {
               "search window for the local map, standard deviations of a feature", 1.0, 50.0);
   schema->Add("tracker.min_motion_inliers", &options->min_motion_inliers,
               "landmarks of the last frame that must be found again", 6, 1000);
-  schema->Add("tracker.min_inlier_share", &options->min_inlier_share,
-              "share of matches with the local map that must agree, or another start is tried", 0.0,
-              1.0);
+  schema->Add("tracker.min_inlier_ratio", &options->min_inlier_ratio,
+              "fraction of matches with the local map that must agree, or another start is tried",
+              0.0, 1.0);
   schema->Add("tracker.min_inliers", &options->min_inliers,
               "landmarks of the local map that make a frame tracked", 6, 1000);
 }

@@ -8,7 +8,7 @@ void RegisterOptions(OptionSchema* schema, TriangulationOptions* options) {
   schema->Add("triangulation.max_neighbours", &options->max_neighbours,
               "keyframes with which a new one is matched", 1, 100);
   schema->Add("triangulation.min_baseline", &options->min_baseline,
-              "shortest baseline, share of the median range", 0.0, 1.0);
+              "shortest baseline, fraction of the median range", 0.0, 1.0);
   schema->Add("triangulation.max_plane_sigmas", &options->max_plane_sigmas,
               "farthest match from its epipolar plane, standard deviations", 0.5, 10.0);
   schema->Add("triangulation.min_epipole_angle", &options->min_epipole_angle,

@@ -31,7 +31,7 @@ struct BrushOptions {
 void RegisterOptions(OptionSchema* schema, BrushOptions* options) {
   schema->Add("brush.width", &options->width, "width of a stroke, pixels", 1, 64);
   schema->Add("brush.layers", &options->layers, "strokes above each other", 1);
-  schema->Add("brush.opacity", &options->opacity, "share of the light that is held back", 0.25,
+  schema->Add("brush.opacity", &options->opacity, "fraction of the light that is held back", 0.25,
               1.0);
   schema->Add("brush.angle", &options->angle, "direction of a stroke, radians");
   schema->Add("brush.is_round", &options->is_round, "round ends");
