@@ -1,6 +1,8 @@
 #include <iostream>
 
 #include "apps/orb360/commands.h"
+#include "nn/base/option_schema.h"
+#include "slam/io/config.h"
 #include "slam/pipeline/options.h"
 
 namespace orb360 {
@@ -11,7 +13,9 @@ void AddConfigCommand(CLI::App* app, Command* chosen) {
   command->callback([chosen] {
     *chosen = [] {
       Options options;
-      std::cout << MakeConfigSchema(&options).Document();
+      OptionSchema schema;
+      RegisterOptions(&schema, &options);
+      std::cout << DocumentConfig(schema);
       return EXIT_SUCCESS;
     };
   });

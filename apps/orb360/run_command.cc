@@ -23,11 +23,13 @@
 #include "apps/orb360/run_summary.h"
 #include "apps/orb360/sparse_output.h"
 #include "nn/base/check.h"
+#include "nn/base/number_text.h"
+#include "nn/base/option_schema.h"
 #include "nn/models/default_weights.h"
 #include "slam/io/atomic_file.h"
+#include "slam/io/config.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/map_file.h"
-#include "slam/io/number_text.h"
 #include "slam/io/sequence.h"
 #include "slam/pipeline/options.h"
 #include "slam/pipeline/system.h"
@@ -162,16 +164,32 @@ RunOptions Settle(RunOptions options) {
   return options;
 }
 
+/// Throws UserError for a camera height in the description of `input` that ScaleOptions excludes.
+void RequireInRange(const ScaleOptions& scale, const std::string& input) {
+  try {
+    ValidateOptions(scale);
+  } catch (const ContractError& error) {
+    throw UserError(input + ": " + error.what());
+  }
+}
+
 int Run(const RunOptions& options) {
   Options system_options;
-  if (!options.config.empty()) MakeConfigSchema(&system_options).Load(options.config);
+  if (!options.config.empty()) {
+    OptionSchema schema;
+    RegisterOptions(&schema, &system_options);
+    LoadConfig(options.config, schema);
+  }
   SequenceOptions sequence_options = options.sequence;
   sequence_options.resize = ParseSize(options.resize);
   if (options.loops == "off") system_options.loop.enabled = false;
   const std::unique_ptr<Sequence> sequence = OpenInput(options.input, sequence_options);
   double& camera_height = system_options.scale.camera_height;
   if (options.camera_height > 0) camera_height = options.camera_height;
-  if (camera_height == 0) camera_height = sequence->camera_height().value_or(0);
+  if (camera_height == 0) {
+    camera_height = sequence->camera_height().value_or(0);
+    RequireInRange(system_options.scale, options.input);
+  }
   std::optional<StoredMap> stored = ReadMapFor(sequence->image_size().width, options.map_in);
   RunOutput output(options.out);
   if (stored) output.SetWorld(stored->file_world_from_map);

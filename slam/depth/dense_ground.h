@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "slam/depth/dense_depth.h"
+#include "slam/depth/dense_ground_options.h"
 
 namespace orb360 {
 
@@ -15,17 +16,6 @@ struct DenseGround {
   Eigen::Vector3d up;     // its normal, unit
   double log_height = 0;  // ln of the camera's height over it, in the unit of the depth
   double sigma = 0;       // standard deviation of that
-};
-
-struct DenseGroundOptions {
-  /// Pixels are ground if the network gives them at least this probability.
-  double min_probability = 0.5;
-  /// Standard deviation of the logarithm of the height from one keyframe whose ground appears
-  /// perfectly flat, because roads are not flat and cameras sway.
-  double height_sigma = 0.01;
-  /// Largest difference of that logarithm between the plane and the network's own estimate. If they
-  /// differ more, neither is used.
-  double max_disagreement = 0.3;
 };
 
 /// Fits the plane through the pixels of the ground, or, if the network does not give them, through

@@ -7,10 +7,10 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "nn/base/check.h"
+#include "nn/base/number_text.h"
 #include "slam/io/dataset.h"
 #include "slam/io/depth_image.h"
 #include "slam/io/full_sphere.h"
-#include "slam/io/number_text.h"
 #include "slam/io/ply.h"
 
 namespace orb360 {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "nn/base/check.h"
+#include "nn/base/option_schema.h"
 #include "slam/features/corner_selection.h"
 #include "slam/features/feature_index.h"
 #include "slam/features/patch_descriptor.h"
@@ -34,9 +35,7 @@ std::vector<int> FeaturesPerLevel(int num_features, const SpherePyramid& levels)
 }  // namespace
 
 OrbExtractor::OrbExtractor(const OrbOptions& options) : options_(options) {
-  ORB360_CHECK(options.num_features > 0 && options.num_levels > 0, options.num_features,
-               options.num_levels);
-  ORB360_CHECK(options.min_score > 0 && options.min_score < 256, options.min_score);
+  ValidateOptions(options);
 }
 
 Features OrbExtractor::Extract(const cv::Mat& gray, const cv::Mat& mask, int num_threads) {

@@ -6,19 +6,11 @@
 #include <opencv2/core.hpp>
 
 #include "slam/features/features.h"
+#include "slam/features/orb_options.h"
 #include "slam/features/sphere_band.h"
 #include "slam/features/sphere_pyramid.h"
 
 namespace orb360 {
-
-struct OrbOptions {
-  int num_features = 2000;
-  int num_levels = 8;
-  /// Least FAST score of a feature, gray levels.
-  int min_score = 8;
-  /// Standard deviation of a feature's position, pixels of its own level.
-  double pixel_sigma = 0.7;
-};
 
 /// ORB on the sphere: FAST corners on a pyramid that wraps at the seam, distributed by solid angle,
 /// with orientation and descriptor sampled in the tangent plane (docs/concepts/features.md).
@@ -27,6 +19,7 @@ struct OrbOptions {
 /// features, shifted. One object serves one thread and keeps only memory between images.
 class OrbExtractor {
  public:
+  /// Throws ContractError for an option out of range.
   explicit OrbExtractor(const OrbOptions& options);
 
   /// `gray` is CV_8U and covers the whole sphere. `mask` is CV_8U of the same size, or empty;

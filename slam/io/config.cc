@@ -7,11 +7,13 @@
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include <yaml-cpp/yaml.h>
 
 #include "nn/base/check.h"
-#include "slam/io/number_text.h"
+#include "nn/base/number_text.h"
 #include "slam/io/yaml_file.h"
 
 namespace orb360 {
@@ -83,68 +85,12 @@ std::string TextOf(Number value) {
   return ToText(value);
 }
 
-/// The range of a number as text, such as " (at least 1)"; empty for a number without limits.
-std::string RangeNote(double min, double max, bool is_int) {
-  const bool has_min = is_int ? min > ConfigSchema::kIntMin : std::isfinite(min);
-  const bool has_max = is_int ? max < ConfigSchema::kIntMax : std::isfinite(max);
-  if (has_min && has_max) return ToText(min) + " to " + ToText(max);
-  if (has_min) return "at least " + ToText(min);
-  if (has_max) return "at most " + ToText(max);
-  return {};
-}
-
-/// "a or b", "a, b or c".
-std::string ListOf(const std::vector<std::string>& names) {
-  std::string text;
-  for (size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) text += i + 1 < names.size() ? ", " : " or ";
-    text += names[i];
-  }
-  return text;
-}
-
-}  // namespace
-
-void ConfigSchema::Add(const std::string& key, bool* value, const std::string& doc) {
-  Add(Option{key, value, doc});
-}
-
-void ConfigSchema::Add(const std::string& key, std::string* value, const std::string& doc) {
-  Add(Option{key, value, doc});
-}
-
-void ConfigSchema::Add(const std::string& key, int* value, const std::string& doc, int min,
-                       int max) {
-  ORB360_CHECK(min <= *value && *value <= max, key, *value, min, max);
-  Add(Option{key, value, doc, static_cast<double>(min), static_cast<double>(max)});
-}
-
-void ConfigSchema::Add(const std::string& key, double* value, const std::string& doc, double min,
-                       double max) {
-  ORB360_CHECK(std::isfinite(*value) && min <= *value && *value <= max, key, *value, min, max);
-  Add(Option{key, value, doc, min, max});
-}
-
-void ConfigSchema::Add(Option option) {
-  for (const Option& other : options_) {
-    ORB360_CHECK(other.key != option.key && !other.key.starts_with(option.key + ".") &&
-                     !option.key.starts_with(other.key + "."),
-                 option.key, other.key);
-  }
-  options_.push_back(std::move(option));
-}
-
-const ConfigSchema::Option* ConfigSchema::Find(const std::string& key) const {
-  const auto found = std::ranges::find(options_, key, &Option::key);
-  return found == options_.end() ? nullptr : &*found;
-}
-
 /// Returns the key that the user most likely meant, or "" if none is near. A key with the same name
 /// in another section is near; otherwise up to a third of the characters may differ.
-std::string ConfigSchema::NearestKey(const std::string& key) const {
+std::string NearestKey(const OptionSchema& schema, const std::string& key) {
   std::string nearest;
   size_t least = std::max<size_t>(2, key.size() / 3) + 1;
-  for (const Option& option : options_) {
+  for (const OptionSchema::Option& option : schema.options()) {
     const size_t distance =
         LastPart(option.key) == LastPart(key) ? 1 : EditDistance(option.key, key);
     if (distance < least) {
@@ -155,15 +101,16 @@ std::string ConfigSchema::NearestKey(const std::string& key) const {
   return nearest;
 }
 
-ConfigSchema::Value ConfigSchema::Parse(const Option& option, const std::string& text,
-                                        const std::string& where) {
+/// The value of an option as a file states it; that of a Choice is the index of its name.
+using Value = std::variant<bool, int, double, std::string, size_t>;
+
+/// Parses the value of `option`, which stands at `where` in the file.
+Value Parse(const OptionSchema::Option& option, const std::string& text, const std::string& where) {
   const auto wrong = [&](const std::string& expected) {
     return UserError(where + option.key + " must be " + expected + ", not `" + text + "`");
   };
-  const auto require_range = [&](double value, bool is_int) {
-    if (value < option.min || value > option.max) {
-      throw wrong(RangeNote(option.min, option.max, is_int));
-    }
+  const auto require_range = [&](double value) {
+    if (value < option.min || value > option.max) throw wrong(RangeText(option));
   };
   if (std::holds_alternative<bool*>(option.variable)) {
     if (const std::optional<bool> value = ParseBool(text)) return *value;
@@ -172,33 +119,35 @@ ConfigSchema::Value ConfigSchema::Parse(const Option& option, const std::string&
   if (std::holds_alternative<int*>(option.variable)) {
     const std::optional<int> value = ParseNumber<int>(text);
     if (!value) throw wrong("a whole number");
-    require_range(*value, true);
+    require_range(*value);
     return *value;
   }
   if (std::holds_alternative<double*>(option.variable)) {
     const std::optional<double> value = ParseNumber<double>(text);
     if (!value || !std::isfinite(*value)) throw wrong("a number");
-    require_range(*value, false);
+    require_range(*value);
     return *value;
   }
-  if (const auto* choice = std::get_if<Choice>(&option.variable)) {
+  if (const auto* choice = std::get_if<OptionSchema::Choice>(&option.variable)) {
     const auto found = std::ranges::find(choice->names, text);
-    if (found == choice->names.end()) throw wrong(ListOf(choice->names));
+    if (found == choice->names.end()) throw wrong(RangeText(option));
     return static_cast<size_t>(found - choice->names.begin());
   }
   return text;
 }
 
-void ConfigSchema::Load(const std::filesystem::path& file) const {
+}  // namespace
+
+void LoadConfig(const std::filesystem::path& file, const OptionSchema& schema) {
   std::vector<Entry> entries;
   Flatten(LoadYamlMap(file), "", file, &entries);
 
   std::map<std::string, int> line_of;
-  std::vector<std::pair<Variable, Value>> assignments;
+  std::vector<std::pair<OptionSchema::Variable, Value>> assignments;
   for (const Entry& entry : entries) {
-    const Option* option = Find(entry.key);
+    const OptionSchema::Option* option = schema.Find(entry.key);
     if (option == nullptr) {
-      const std::string nearest = NearestKey(entry.key);
+      const std::string nearest = NearestKey(schema, entry.key);
       throw UserError(entry.where + "unknown key " + entry.key +
                       (nearest.empty() ? "; `orb360 config` lists all keys"
                                        : "; did you mean " + nearest + "?"));
@@ -213,7 +162,7 @@ void ConfigSchema::Load(const std::filesystem::path& file) const {
   for (const auto& [variable, value] : assignments) {
     std::visit(
         [&value = value](const auto& target) {
-          if constexpr (std::is_same_v<decltype(target), const Choice&>) {
+          if constexpr (std::is_same_v<decltype(target), const OptionSchema::Choice&>) {
             target.set(std::get<size_t>(value));
           } else {
             *target = std::get<std::remove_reference_t<decltype(*target)>>(value);
@@ -223,10 +172,10 @@ void ConfigSchema::Load(const std::filesystem::path& file) const {
   }
 }
 
-std::string ConfigSchema::Document() const {
+std::string DocumentConfig(const OptionSchema& schema) {
   std::string text;
   std::vector<std::string> sections;  // Those that are open, outermost first.
-  for (const Option& option : options_) {
+  for (const OptionSchema::Option& option : schema.options()) {
     std::vector<std::string> parts;
     for (size_t begin = 0; begin <= option.key.size();) {
       const size_t end = std::min(option.key.find('.', begin), option.key.size());
@@ -243,16 +192,12 @@ std::string ConfigSchema::Document() const {
     sections = parts;
 
     const std::string indent(2 * parts.size(), ' ');
-    const auto* choice = std::get_if<Choice>(&option.variable);
-    const std::string range =
-        choice != nullptr
-            ? ListOf(choice->names)
-            : RangeNote(option.min, option.max, std::holds_alternative<int*>(option.variable));
+    const std::string range = RangeText(option);
     text += indent + "# " + option.doc + (range.empty() ? "" : " (" + range + ")") + "\n";
     text += indent + name + ": ";
     text += std::visit(
                 [](const auto& value) {
-                  if constexpr (std::is_same_v<decltype(value), const Choice&>) {
+                  if constexpr (std::is_same_v<decltype(value), const OptionSchema::Choice&>) {
                     return value.names[value.get()];
                   } else {
                     return TextOf(*value);

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "nn/base/check.h"
-#include "slam/io/number_text.h"
+#include "nn/base/number_text.h"
 
 namespace orb360 {
 namespace {

@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "nn/base/check.h"
+#include "nn/base/number_text.h"
 #include "slam/io/atomic_file.h"
-#include "slam/io/number_text.h"
 
 namespace orb360 {
 namespace {

@@ -5,25 +5,10 @@
 #include "slam/map/ground.h"
 #include "slam/map/map.h"
 #include "slam/optimization/bundle_adjustment.h"
+#include "slam/optimization/local_bundle_options.h"
 #include "slam/optimization/optimizer.h"
 
 namespace orb360 {
-
-/// The larger the window is, the less the scale of a long drive drifts, and the longer the
-/// adjustment takes.
-struct LocalBundleOptions {
-  /// Keyframes that move: the newest and those that share most landmarks with it.
-  int max_keyframes = 10;
-  /// Fixed keyframes outside of the window, which see the same landmarks and hold them in place.
-  int max_fixed_keyframes = 16;
-  /// Landmarks that a keyframe must share with the newest to move.
-  int min_shared = 15;
-  int max_iterations = 4;
-  /// Standard deviation of the camera's height over the plane through the ground around it, as a
-  /// fraction of the height. Roads are not flat, and cameras sway.
-  double height_sigma = 0.01;
-  Optimizer optimizer = Optimizer::kSchur;
-};
 
 /// Adjusts the neighbourhood of a keyframe (paper Eq. 11): the poses of the keyframes around it and
 /// all landmarks that they see. Afterwards it removes observations beyond the 95 % bound, and

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "slam/map/ground.h"
 #include "slam/map/map.h"
 #include "slam/pipeline/map_update.h"
 #include "slam/pipeline/options.h"

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "slam/optimization/local_bundle_adjustment.h"
+#include "slam/pipeline/panoramic_triangulation.h"
 
 namespace orb360 {
 

@@ -2,7 +2,7 @@
 
 #include "slam/map/map.h"
 #include "slam/pipeline/initializer.h"
-#include "slam/pipeline/mapper.h"
+#include "slam/pipeline/mapper_options.h"
 #include "slam/pipeline/pending_frames.h"
 
 namespace orb360 {

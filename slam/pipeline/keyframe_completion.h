@@ -10,7 +10,7 @@
 #include "slam/depth/dense_ground.h"
 #include "slam/depth/depth_completer.h"
 #include "slam/map/map.h"
-#include "slam/pipeline/options.h"
+#include "slam/pipeline/depth_options.h"
 
 namespace orb360 {
 

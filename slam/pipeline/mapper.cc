@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "slam/optimization/local_bundle_adjustment.h"
 #include "slam/pipeline/landmark_fusion.h"
 #include "slam/pipeline/observation_alignment.h"
+#include "slam/pipeline/panoramic_triangulation.h"
 #include "slam/pipeline/patch_search.h"
 
 namespace orb360 {

@@ -1,27 +1,15 @@
 #pragma once
 
+#include <memory>
+#include <optional>
+
+#include "slam/features/sphere_pyramid.h"
+#include "slam/map/ground.h"
 #include "slam/map/map.h"
-#include "slam/optimization/local_bundle_adjustment.h"
-#include "slam/pipeline/panoramic_triangulation.h"
-#include "slam/pipeline/tracker.h"
+#include "slam/pipeline/mapper_options.h"
+#include "slam/pipeline/tracked_frame.h"
 
 namespace orb360 {
-
-struct MapperOptions {
-  TriangulationOptions triangulation;
-  LocalBundleOptions bundle;
-  /// Keyframes with which a new one exchanges landmarks.
-  int max_fusion_neighbours = 15;
-  /// A keyframe goes when this fraction of its landmarks is seen by three others at least as well.
-  double redundant_fraction = 0.9;
-  /// Landmarks younger than this many keyframes are on probation: seen again by then, and found in
-  /// this fraction of the frames that should show them, or removed. What is hidden half of the
-  /// time, behind leaves and posts, is worth keeping.
-  int probation_keyframes = 5;
-  double min_found_fraction = 0.1;
-  /// Images are kept of so many keyframes, the newest, to align what they show of landmarks.
-  int kept_images = 10;
-};
 
 /// Adds a tracked frame to the map as a keyframe. The steps are: adding its observations, culling
 /// of doubtful landmarks, panoramic triangulation of new ones, fusion of duplicates with

@@ -2,12 +2,15 @@
 
 #include <exception>
 
+#include "nn/base/option_schema.h"
 #include "slam/pipeline/pipeline.h"
 
 namespace orb360 {
 
-System::System(const EquirectangularCamera& camera, const Options& options, const cv::Mat& mask)
-    : pipeline_(std::make_unique<Pipeline>(camera, options, mask)) {}
+System::System(const EquirectangularCamera& camera, const Options& options, const cv::Mat& mask) {
+  ValidateOptions(options);
+  pipeline_ = std::make_unique<Pipeline>(camera, options, mask);
+}
 
 System::~System() = default;
 

@@ -7,26 +7,9 @@
 #include "slam/geometry/rigid3.h"
 #include "slam/pipeline/local_map.h"
 #include "slam/pipeline/tracked_frame.h"
+#include "slam/pipeline/tracker_options.h"
 
 namespace orb360 {
-
-struct TrackerOptions {
-  /// Search window around the predicted positions of the last frame's landmarks, radians: smooth
-  /// motion.
-  double motion_radius = 0.05;
-  /// Angle within which features are matched with the last frame's where that convinces not,
-  /// radians: a jerk of the hand, a low frame rate, a start.
-  double nearby_radius = 0.3;
-  /// Search window for the rest of the local map, in standard deviations of a feature's position.
-  double local_radius_sigmas = 5.0;
-  /// Matches of the last frame's landmarks that make the pose good enough to go on from.
-  int min_motion_inliers = 20;
-  /// Fraction of the local map's matches that must agree with the pose, or another start is tried:
-  /// repeated texture lets the pose settle beside the truth.
-  double min_inlier_ratio = 0.6;
-  /// Landmarks of the local map that make a frame tracked.
-  int min_inliers = 30;
-};
 
 struct TrackResult {
   Rigid3 world_from_camera;

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "slam/io/number_text.h"
+#include "nn/base/number_text.h"
 
 namespace orb360::town {
 namespace {

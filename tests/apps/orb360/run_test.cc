@@ -312,6 +312,14 @@ TEST_F(RunTest, AConfigurationIsRefusedByKeyAndLine) {
   EXPECT_THAT(Refusal({"--config", folder_ / "absent.yaml"}), HasSubstr("absent.yaml"));
 }
 
+TEST_F(RunTest, ACameraHeightOfTheInputThatIsOutOfRangeIsRefused) {
+  const std::filesystem::path input = folder_ / "input";
+  WriteFolder(input / "rgb", std::vector<cv::Mat>(3, cv::Mat(kSize, CV_8UC1, cv::Scalar(99))));
+  WriteText(input / "sequence.yaml",
+            "camera: {model: equirectangular}\nfps: 20\ncamera_height: 150\n");
+  EXPECT_THAT(Refusal(), HasSubstr(Input() + ": camera.height_m must be 0 to 100, not 150"));
+}
+
 TEST_F(RunTest, AConfigurationIsUsed) {
   WriteRoom();
   EXPECT_EQ(Run().status, 0);

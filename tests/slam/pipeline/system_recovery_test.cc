@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/features/sphere_pyramid.h"  // printed by an assertion
 #include "slam/io/map_file.h"
 #include "slam/pipeline/system.h"
 #include "tests/slam/pipeline/hall_walk.h"

@@ -1,0 +1,16 @@
+#pragma once
+
+namespace orb360 {
+
+struct DenseGroundOptions {
+  /// Pixels are ground if the network gives them at least this probability.
+  double min_probability = 0.5;
+  /// Standard deviation of the logarithm of the height from one keyframe whose ground appears
+  /// perfectly flat, because roads are not flat and cameras sway.
+  double height_sigma = 0.01;
+  /// Largest difference of that logarithm between the plane and the network's own estimate. If they
+  /// differ more, neither is used.
+  double max_disagreement = 0.3;
+};
+
+}  // namespace orb360

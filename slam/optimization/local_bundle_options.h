@@ -1,0 +1,31 @@
+#pragma once
+
+#include "slam/optimization/optimizer.h"
+
+namespace orb360 {
+
+class OptionSchema;
+
+/// The larger the window is, the less the scale of a long drive drifts, and the longer the
+/// adjustment takes.
+struct LocalBundleOptions {
+  /// Keyframes that move: the newest and those that share most landmarks with it.
+  int max_keyframes = 10;
+  /// Fixed keyframes outside of the window, which see the same landmarks and hold them in place.
+  int max_fixed_keyframes = 16;
+  /// Landmarks that a keyframe must share with the newest to move.
+  int min_shared = 15;
+  int max_iterations = 4;
+  /// Standard deviation of the camera's height over the plane through the ground around it, as a
+  /// fraction of the height. Roads are not flat, and cameras sway.
+  double height_sigma = 0.01;
+  Optimizer optimizer = Optimizer::kSchur;
+};
+
+/// Registers the keys of the section `bundle`. `optimizer` is registered as an Optimizer.
+void RegisterOptions(OptionSchema* schema, LocalBundleOptions* options);
+/// Registers `scale.height_sigma`, separately since it stands after the keys of ScaleOptions in the
+/// configuration file.
+void RegisterHeightSigma(OptionSchema* schema, LocalBundleOptions* options);
+
+}  // namespace orb360

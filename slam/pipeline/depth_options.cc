@@ -1,0 +1,19 @@
+#include "slam/pipeline/depth_options.h"
+
+#include "nn/base/option_schema.h"
+
+namespace orb360 {
+
+void RegisterOptions(OptionSchema* schema, DepthOptions* options) {
+  schema->Add("depth.height", &options->height,
+              "height of the images that get dense depth, pixels; they are twice as wide", 32,
+              4096);
+  schema->Add("depth.every_keyframes", &options->every_keyframes,
+              "every so many keyframes get dense depth", 1, 1000);
+  schema->Add("depth.min_points", &options->min_points,
+              "landmarks that a keyframe must show to be completed", 1, 100000);
+  schema->Add("depth.adoption_frames", &options->adoption_frames,
+              "frames after which the depth of a keyframe is used in mapping", 1, 1000);
+}
+
+}  // namespace orb360

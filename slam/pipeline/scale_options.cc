@@ -1,0 +1,17 @@
+#include "slam/pipeline/scale_options.h"
+
+#include "nn/base/option_schema.h"
+
+namespace orb360 {
+
+void RegisterOptions(OptionSchema* schema, ScaleOptions* options) {
+  schema->Add(
+      "camera.height_m", &options->camera_height,
+      "height of the camera over the ground, metres: what makes the result metric; 0: as the "
+      "input says, or 1.6",
+      0.0, 100.0);
+  schema->Add("scale.from_ground", &options->from_ground,
+              "find the ground below the camera and keep the scale by it");
+}
+
+}  // namespace orb360
