@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slam/pipeline/reconstruction.h"
+#include "slam/pipeline/make_reconstruction.h"
 
 namespace orb360 {
 namespace {

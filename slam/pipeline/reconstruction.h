@@ -2,15 +2,12 @@
 
 #include <map>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "slam/features/features.h"
 #include "slam/geometry/rigid3.h"
-#include "slam/map/map.h"
-#include "slam/pipeline/frame_anchor.h"
 
 namespace orb360 {
 
@@ -50,14 +47,11 @@ struct ClosedLoop {
   int place;
 };
 
-/// Landmarks in common that link two keyframes in the covisibility graph.
-inline constexpr int kCovisible = 15;
-
 /// Everything a run computed, in the internal conventions of frames (camera -X forward).
 struct Reconstruction {
   std::vector<FramePose> frames;              // ordered by index
   std::vector<FramePose> keyframes;           // ordered by index
-  std::vector<CovisibleFrames> covisibility;  // with at least kCovisible landmarks in common
+  std::vector<CovisibleFrames> covisibility;  // with at least 15 landmarks in common
   std::vector<CloudPoint> landmarks;
   std::vector<MapSummary> maps;
   std::optional<int> initialized_at;  // frame at which the first map was made
@@ -73,11 +67,5 @@ struct Reconstruction {
   /// Normal of the ground in the world, unit, towards the sky; where one was found.
   std::optional<Eigen::Vector3d> up;
 };
-
-/// Everything but `initialized_at`, `depth_scales`, what is counted and which maps are metric.
-/// Keyframes have the pose that the map gives them, and the other frames the one in which they see
-/// its landmarks best (frame_refinement.h). Runs on `num_threads` OpenMP threads.
-Reconstruction MakeReconstruction(std::span<const Map> maps, const FrameAnchors& anchors,
-                                  int num_threads = 1);
 
 }  // namespace orb360
