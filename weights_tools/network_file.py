@@ -55,7 +55,7 @@ def write(
                 group.create_dataset(name, data=values, track_times=False)
             if tensors:
                 _write_tensors(file, tensors)
-        _seal(temporary)
+        _write_checksum(temporary)
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
@@ -98,7 +98,7 @@ def _write_tensors(file: h5py.File, tensors: Mapping[str, Arrays]) -> None:
     )
 
 
-def _seal(path: Path) -> None:
+def _write_checksum(path: Path) -> None:
     content = path.read_bytes()[_HEADER_BYTES:]
     header = struct.pack("<8sII32s", _MAGIC, _VERSION, 0, hashlib.sha256(content).digest())
     with path.open("r+b") as file:

@@ -36,7 +36,7 @@ struct CompleteOptions {
   bool json = false;
 };
 
-/// Ranges with their confidence, CV_32F; the picture they belong to where the file has it.
+/// Ranges with their confidence, CV_32F; the image they belong to where the file has it.
 struct SparseInput {
   cv::Mat image;
   SparseDepth depth;
@@ -55,7 +55,7 @@ SparseInput ReadSparse(const std::filesystem::path& path) {
   return {{}, {range, confidence}};
 }
 
-cv::Mat ReadPicture(const std::string& path) {
+cv::Mat ReadImage(const std::string& path) {
   const LoadedImage loaded = LoadImage(path);
   if (loaded.image.empty()) throw UserError(path + ": " + loaded.problem);
   return loaded.image;
@@ -70,16 +70,16 @@ std::filesystem::path Beside(const std::filesystem::path& depth, const char* wha
 }
 
 /// 16-bit PNG of what lies between 0 and 1, times 65535.
-void WriteShareImage(const std::filesystem::path& path, const cv::Mat& share) {
+void WriteFractionImage(const std::filesystem::path& path, const cv::Mat& fraction) {
   constexpr double kOne = 65535;
   cv::Mat units;
-  share.convertTo(units, CV_16U, kOne);  // rounds, and keeps what is outside 0..1 inside
+  fraction.convertTo(units, CV_16U, kOne);  // rounds, and keeps what is outside 0..1 inside
   std::vector<unsigned char> png;
   cv::imencode(".png", units, png);
   WriteFileAtomically(path, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
-/// The network, made ready for pictures of one size after the other.
+/// The network, made ready for images of one size after the other.
 class Completer {
  public:
   explicit Completer(const CompleteOptions& options) : options_(options) {}
@@ -112,9 +112,9 @@ nlohmann::json CompleteOne(const CompleteOptions& options, const std::filesystem
                            const std::filesystem::path& out, Completer* completer) {
   const SparseInput sparse = ReadSparse(sparse_path);
   if (options.image.empty() && sparse.image.empty()) {
-    throw UserError(sparse_path.string() + ": has no picture; give one with --image");
+    throw UserError(sparse_path.string() + ": has no image; give one with --image");
   }
-  const cv::Mat image = options.image.empty() ? sparse.image : ReadPicture(options.image);
+  const cv::Mat image = options.image.empty() ? sparse.image : ReadImage(options.image);
   const cv::Size size = image.size();
   if (sparse.depth.range.size() != size) {
     throw UserError(sparse_path.string() + ": is " + ToString(sparse.depth.range.size()) +
@@ -126,16 +126,16 @@ nlohmann::json CompleteOne(const CompleteOptions& options, const std::filesystem
     RequireFullSphere(options.image, size);
   }
   const DenseDepth dense = completer->Complete(image, sparse.depth);
-  const auto write_share = [&](const char* what, const cv::Mat& share) {
+  const auto write_fraction = [&](const char* what, const cv::Mat& fraction) {
     const std::filesystem::path path = Beside(out, what);
-    WriteShareImage(path, share);
+    WriteFractionImage(path, fraction);
     return path.string();
   };
   WriteDepthImage(out, dense.range);
   nlohmann::json result = {{"sparse", sparse_path.string()},
                            {"depth", out.string()},
-                           {"confidence", write_share("_confidence", dense.confidence)}};
-  if (!dense.ground.empty()) result["ground"] = write_share("_ground", dense.ground);
+                           {"confidence", write_fraction("_confidence", dense.confidence)}};
+  if (!dense.ground.empty()) result["ground"] = write_fraction("_ground", dense.ground);
   if (dense.log_camera_height) {
     result["camera_height_guess"] = std::exp(*dense.log_camera_height);
   }
@@ -162,7 +162,7 @@ std::vector<std::filesystem::path> SparseFiles(const std::filesystem::path& fold
 int Complete(const CompleteOptions& options) {
   const bool is_folder = std::filesystem::is_directory(options.sparse);
   if (is_folder && !options.image.empty()) {
-    throw UserError("--image is for one file: those of a folder have pictures of their own");
+    throw UserError("--image is for one file: those of a folder have images of their own");
   }
   Completer completer(options);
   nlohmann::json results = nlohmann::json::array();

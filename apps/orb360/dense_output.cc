@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <system_error>
 
-#include "slam/evaluation/cloud_picture.h"
-#include "slam/evaluation/depth_picture.h"
+#include "slam/evaluation/cloud_image.h"
+#include "slam/evaluation/depth_visualization.h"
 #include "slam/io/dataset.h"
 #include "slam/io/depth_image.h"
 #include "slam/io/output_file.h"
@@ -13,32 +13,32 @@
 namespace orb360 {
 namespace {
 
-constexpr int kCloudPictureSide = 1600;   // pixels
-constexpr int kDepthPictureWidth = 1024;  // pixels
+constexpr int kCloudImageSide = 1600;   // pixels
+constexpr int kDepthImageWidth = 1024;  // pixels
 /// Keyframes that are drawn, spread over the run.
 constexpr size_t kDrawnKeyframes = 3;
 /// What is drawn in the colours of near and far, in median ranges.
 constexpr double kNear = 0.25;
 constexpr double kFar = 8.0;
 
-std::vector<DensePictures::OfKeyframe> DrawKeyframes(const RangeStore& store,
-                                                     std::span<const DenseView> views) {
-  std::vector<DensePictures::OfKeyframe> pictures;
+std::vector<DenseImages::OfKeyframe> DrawKeyframes(const DepthMapStore& store,
+                                                   std::span<const DenseView> views) {
+  std::vector<DenseImages::OfKeyframe> images;
   const size_t count = std::min(kDrawnKeyframes, views.size());
   for (size_t i = 0; i < count; ++i) {
     const int frame_index = views[(2 * i + 1) * views.size() / (2 * count)].frame_index;
     const DenseDepth depth = store.Get(frame_index);
     const double median = MedianRange(depth.range);
     if (!(median > 0)) continue;
-    pictures.push_back(
-        {frame_index, DrawDepth(depth, kNear * median, kFar * median, kDepthPictureWidth)});
+    images.push_back(
+        {frame_index, DrawDepth(depth, kNear * median, kFar * median, kDepthImageWidth)});
   }
-  return pictures;
+  return images;
 }
 
 }  // namespace
 
-DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const RangeStore& store,
+DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMapStore& store,
                              std::span<const DenseView> views, const DenseCloudOptions& options) {
   DenseOutput output;
   if (views.empty()) {
@@ -47,15 +47,14 @@ DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const RangeSto
   }
   std::vector<Eigen::Vector3d> path;
   for (const DenseView& view : views) path.push_back(view.world_from_camera.translation);
-  CloudPicture picture(path, kCloudPictureSide);
-  output.cloud =
-      WriteDenseCloud(folder / "cloud.ply", store, views, options,
-                      [&](std::span<const SurfacePoint> points) { picture.Add(points); });
-  output.pictures = {picture.Draw(), DrawKeyframes(store, views)};
+  CloudImage image(path, kCloudImageSide);
+  output.cloud = WriteDenseCloud(folder / "cloud.ply", store, views, options,
+                                 [&](std::span<const SurfacePoint> points) { image.Add(points); });
+  output.images = {image.Draw(), DrawKeyframes(store, views)};
   return output;
 }
 
-void SaveDepth(const std::filesystem::path& folder, const RangeStore& store,
+void SaveDepth(const std::filesystem::path& folder, const DepthMapStore& store,
                std::span<const DenseView> views) {
   const std::filesystem::path images = folder / Dataset::kDepthName;
   std::error_code error;

@@ -45,16 +45,16 @@ nlohmann::json RunSummary(const std::filesystem::path& estimate) {
   return file ? nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false) : nlohmann::json();
 }
 
-/// The share of the frames that have a pose, by the run's own account, else of the ground truth's
-/// poses that are paired; and what only the run's summary knows.
-void AddRunFigures(const std::filesystem::path& estimate, double paired_share,
+/// The fraction of the frames that have a pose, by the run's own account, else of the ground
+/// truth's poses that are paired; and what only the run's summary knows.
+void AddRunFigures(const std::filesystem::path& estimate, double paired_fraction,
                    nlohmann::json* report) {
   const nlohmann::json summary = RunSummary(estimate);
   if (!summary.is_object() || summary.value("frames", 0) <= 0) {
-    (*report)["tracked_share"] = paired_share;
+    (*report)["tracked_fraction"] = paired_fraction;
     return;
   }
-  (*report)["tracked_share"] = summary.value("tracked", 0.0) / summary.value("frames", 0.0);
+  (*report)["tracked_fraction"] = summary.value("tracked", 0.0) / summary.value("frames", 0.0);
   for (const char* key : {"features_per_keyframe", "landmarks_per_keyframe"}) {
     (*report)[key] = summary.value(key, 0.0);
   }

@@ -20,7 +20,7 @@ struct Row {
 
 constexpr Row kRows[] = {
     {"pairs", "pairs", "", 0},
-    {"tracked_share", "tracked share", "%", 1, 100.0},
+    {"tracked_fraction", "tracked fraction", "%", 1, 100.0},
     {"features_per_keyframe", "features per keyframe", "", 1},
     {"landmarks_per_keyframe", "landmarks per keyframe", "", 1},
     {"scale_factor", "scale factor (1 is perfect)", "", 5},

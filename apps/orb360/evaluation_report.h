@@ -17,8 +17,8 @@ nlohmann::json ToJson(const TrajectoryErrors& errors);
 /// The part under its key "depth". Bins that no pixel falls into have null for errors.
 nlohmann::json ToJson(const DepthFolderErrors& depth);
 
-/// The part under its key "cloud": shares of points near the surface (accuracy) and of the surface
-/// near points (completeness), at two distances.
+/// The part under its key "cloud": fractions of points near the surface (accuracy) and of the
+/// surface near points (completeness), at two distances.
 nlohmann::json ToJson(const CloudErrors& errors);
 
 /// The part under its key "loops".

@@ -8,7 +8,7 @@
 namespace orb360 {
 
 /// Whether an input is rendered, not read: `town:` and the name of a town (Town1 ... Town5, Loop)
-/// or its seed. In its pictures nothing is fixed to the camera.
+/// or its seed. In its images nothing is fixed to the camera.
 bool IsRendered(const std::string& input);
 
 /// Opens what a user gives as INPUT: a rendered town, at 20 frames a second and the size of

@@ -32,7 +32,7 @@ cv::Mat ChooseMask(const std::string& choice, const std::string& input,
   return LoadMask(choice, sequence.image_size());
 }
 
-double ExcludedShare(const cv::Mat& mask) {
+double ExcludedFraction(const cv::Mat& mask) {
   double excluded = 0.0;
   double all = 0.0;
   for (int row = 0; row < mask.rows; ++row) {

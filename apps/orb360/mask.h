@@ -19,7 +19,7 @@ cv::Mat LoadMask(const std::string& file, cv::Size size);
 cv::Mat ChooseMask(const std::string& choice, const std::string& input,
                    const SequenceOptions& options, const Sequence& sequence);
 
-/// The share of the sphere that a mask excludes; 0 for an empty one.
-double ExcludedShare(const cv::Mat& mask);
+/// The fraction of the sphere that a mask excludes; 0 for an empty one.
+double ExcludedFraction(const cv::Mat& mask);
 
 }  // namespace orb360

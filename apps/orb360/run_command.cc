@@ -128,12 +128,12 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction, const
   return dense;
 }
 
-/// The map that a run is to begin in, for pictures of this width; none for "".
+/// The map that a run is to begin in, for images of this width; none for "".
 std::optional<StoredMap> ReadMapFor(int width, const std::string& path) {
   if (path.empty()) return std::nullopt;
   StoredMap stored = ReadMap(path);
   if (stored.width == width) return stored;
-  throw UserError(path + ": was made from pictures " + std::to_string(stored.width) +
+  throw UserError(path + ": was made from images " + std::to_string(stored.width) +
                   " pixels wide, and these have " + std::to_string(width) + "; use --resize " +
                   std::to_string(stored.width) + "x" + std::to_string(stored.width / 2));
 }
@@ -176,9 +176,9 @@ int Run(const RunOptions& options) {
   if (!options.map_out.empty()) AtomicFile{options.map_out};
   const int threads = SetThreads(options.threads);
   const cv::Mat mask = ChooseMask(options.mask, options.input, sequence_options, *sequence);
-  const double masked_share = ExcludedShare(mask);
-  if (masked_share > 0.0 && !options.is_quiet) {
-    std::cout << std::lround(100.0 * masked_share) << " % of the sphere is masked" << std::endl;
+  const double masked_fraction = ExcludedFraction(mask);
+  if (masked_fraction > 0.0 && !options.is_quiet) {
+    std::cout << std::lround(100.0 * masked_fraction) << " % of the sphere is masked" << std::endl;
   }
   CatchInterrupts();
 
@@ -198,9 +198,9 @@ int Run(const RunOptions& options) {
   record.seconds = SecondsSince(start);
   const std::optional<DenseOutput> dense =
       FuseDepth(reconstruction, system, options, threads, output, &record);
-  const nlohmann::json summary = Summarize(
-      reconstruction, record, dense,
-      {options.input, options.mask, masked_share, options.weights, system_options.scale, threads});
+  const nlohmann::json summary = Summarize(reconstruction, record, dense,
+                                           {options.input, options.mask, masked_fraction,
+                                            options.weights, system_options.scale, threads});
   const Rigid3 file_world_from_map = output.Finish(reconstruction, summary, dense);
   if (!options.map_out.empty()) {
     WriteLargestMap(options.map_out, size.width, file_world_from_map, system);

@@ -78,7 +78,7 @@ Rigid3 RunOutput::WorldOf(const Reconstruction& reconstruction) const {
   return given_world_ ? *given_world_ : FinalFileWorldFromMap(reconstruction);
 }
 
-DenseOutput RunOutput::WriteDense(const Reconstruction& reconstruction, const RangeStore& store,
+DenseOutput RunOutput::WriteDense(const Reconstruction& reconstruction, const DepthMapStore& store,
                                   bool saves_depth, int num_threads) const {
   const std::vector<DenseView> views = MakeDenseViews(reconstruction, WorldOf(reconstruction));
   if (saves_depth) SaveDepth(folder_, store, views);
@@ -104,8 +104,7 @@ Rigid3 RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::j
     WriteFileAtomically(folder_ / "map.svg", map_svg);
   }
   WriteFileAtomically(folder_ / "summary.json", summary.dump(2) + "\n");
-  WriteRunReport(folder_, reconstruction, summary, map_svg,
-                 dense ? dense->pictures : DensePictures());
+  WriteRunReport(folder_, reconstruction, summary, map_svg, dense ? dense->images : DenseImages());
   std::filesystem::remove(folder_ / kJournalName);
   return file_world_from_map;
 }

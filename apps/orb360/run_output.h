@@ -31,7 +31,7 @@ class RunOutput {
 
   /// Writes the dense cloud of the keyframes in the store, cloud.ply, and with `saves_depth` their
   /// ranges (SaveDepth).
-  DenseOutput WriteDense(const Reconstruction& reconstruction, const RangeStore& store,
+  DenseOutput WriteDense(const Reconstruction& reconstruction, const DepthMapStore& store,
                          bool saves_depth, int num_threads) const;
 
   /// Writes trajectory.txt, keyframes.txt, the landmarks as cloud.ply (as landmarks.ply where there

@@ -94,10 +94,10 @@ std::string KeyframeName(int frame_index) {
 
 void WriteRunReport(const std::filesystem::path& run_folder, const Reconstruction& reconstruction,
                     const nlohmann::json& summary, const std::string& map_svg,
-                    const DensePictures& pictures) {
+                    const DenseImages& images) {
   const std::filesystem::path folder = run_folder / "report";
   std::error_code error;
-  std::filesystem::remove_all(folder, error);  // Pictures of an earlier run.
+  std::filesystem::remove_all(folder, error);  // Images of an earlier run.
   if (!error) std::filesystem::create_directories(folder, error);
   if (error) ThrowWriteError(folder, error.value());
 
@@ -114,23 +114,23 @@ void WriteRunReport(const std::filesystem::path& run_folder, const Reconstructio
                            const std::string& caption) {
     const std::string png = EncodePng(image);
     WriteFileAtomically(folder / name, png);
-    report.pictures.push_back({title, caption, png, "image/png"});
+    report.images.push_back({title, caption, png, "image/png"});
   };
-  if (!pictures.cloud.empty()) {
-    add_png("cloud.png", pictures.cloud, "The cloud from above",
+  if (!images.cloud.empty()) {
+    add_png("cloud.png", images.cloud, "The cloud from above",
             "Cut off at the height of the camera, so that ceilings and trees hide nothing. The "
             "line is the camera's path, the ring its beginning. The points are in cloud.ply.");
   }
   if (!map_svg.empty()) {
-    report.pictures.push_back(
+    report.images.push_back(
         {"Trajectory and map from above",
          "Keyframes (blue), landmarks (grey), and which keyframes see the same landmarks (green).",
          map_svg, "image/svg+xml"});
   }
-  for (const DensePictures::OfKeyframe& keyframe : pictures.keyframes) {
-    add_png(KeyframeName(keyframe.frame_index), keyframe.picture,
+  for (const DenseImages::OfKeyframe& keyframe : images.keyframes) {
+    add_png(KeyframeName(keyframe.frame_index), keyframe.image,
             "Depth of frame " + std::to_string(keyframe.frame_index),
-            "The picture, its range (red is near, blue is far) and its confidence (white is "
+            "The image, its range (red is near, blue is far) and its confidence (white is "
             "certain).");
   }
   report.bars_title = "Time of a frame by stage";

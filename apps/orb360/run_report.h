@@ -11,21 +11,21 @@
 
 namespace orb360 {
 
-/// Pictures of dense depth, CV_8UC3, BGR; empty where there is none.
-struct DensePictures {
-  cv::Mat cloud;  // CloudPicture
+/// Images of dense depth, CV_8UC3, BGR; empty where there is none.
+struct DenseImages {
+  cv::Mat cloud;  // CloudImage
   struct OfKeyframe {
     int frame_index = 0;
-    cv::Mat picture;  // DrawDepth
+    cv::Mat image;  // DrawDepth
   };
   std::vector<OfKeyframe> keyframes;
 };
 
-/// Writes `report/` in the folder of a run: the pictures as PNG, and report.html, which holds all
+/// Writes `report/` in the folder of a run: the images as PNG, and report.html, which holds all
 /// of them, the map (`map_svg`, empty where there is none) and what `summary` says. Throws
 /// UserError where that fails.
 void WriteRunReport(const std::filesystem::path& run_folder, const Reconstruction& reconstruction,
                     const nlohmann::json& summary, const std::string& map_svg,
-                    const DensePictures& pictures);
+                    const DenseImages& images);
 
 }  // namespace orb360

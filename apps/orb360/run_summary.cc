@@ -78,7 +78,7 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
       {"frames_per_second", record.frames / std::max(record.seconds, 1e-9)},
       {"peak_memory_mb", PeakMemoryMb()},
       {"mask", description.mask},
-      {"masked_share", description.masked_share},
+      {"masked_fraction", description.masked_fraction},
       {"levelled", reconstruction.up.has_value()},
       {"threads", description.threads},
       {"weights", description.weights},

@@ -30,7 +30,7 @@ struct RunRecord {
 struct RunDescription {
   std::string input;
   std::string mask;
-  double masked_share = 0;  // of the sphere
+  double masked_fraction = 0;  // of the sphere
   std::string weights;
   ScaleOptions scale;
   int threads = 0;

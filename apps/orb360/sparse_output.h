@@ -10,7 +10,7 @@ namespace orb360 {
 
 /// Writes every keyframe's image with its sparse ranges and their confidence to
 /// `folder`/000123.h5, named by frame index (WriteSparseSample). `sequence` is the input of the
-/// run, opened again: a run does not keep its pictures. Throws UserError where a file cannot be
+/// run, opened again: a run does not keep its images. Throws UserError where a file cannot be
 /// written.
 void WriteSparseKeyframes(const std::filesystem::path& folder, std::span<const Map> maps,
                           Sequence* sequence);

@@ -6,9 +6,9 @@
 namespace orb360 {
 namespace {
 
-/// The least value that at least the given share of the values does not exceed.
-double Quantile(std::vector<double> values, double share) {
-  const auto rank = static_cast<size_t>(std::ceil(share * static_cast<double>(values.size())));
+/// The least value that at least the given fraction of the values does not exceed.
+double Quantile(std::vector<double> values, double fraction) {
+  const auto rank = static_cast<size_t>(std::ceil(fraction * static_cast<double>(values.size())));
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::max<size_t>(rank, 1) - 1);
   std::ranges::nth_element(values, at);
   return *at;

@@ -117,7 +117,7 @@ void AddWeightsCommand(CLI::App* app, Command* chosen) {
       "inspect", "Print a network's nodes, shapes, parameters, arithmetic, memory and provenance");
   const auto options = std::make_shared<InspectOptions>();
   inspect->add_option("FILE", options->file, "Network, as weights_tools writes it")->required();
-  inspect->add_option("--size", options->size, "Width and height of the picture, pixels")
+  inspect->add_option("--size", options->size, "Width and height of the image, pixels")
       ->expected(2)
       ->check(CLI::Range(1, 1 << 15))
       ->type_name("W H")

@@ -120,21 +120,22 @@ std::map<int, double> VocabularyIndex::WordsOf(std::span<const Descriptor> descr
     words[word] += vocabulary_->weight(word);
     sum += vocabulary_->weight(word);
   }
-  for (auto& [word, share] : words) share /= std::max(sum, 1e-12);
+  for (auto& [word, weight] : words) weight /= std::max(sum, 1e-12);
   return words;
 }
 
 int VocabularyIndex::Add(std::span<const Descriptor> descriptors) {
-  for (const auto& [word, share] : WordsOf(descriptors)) {
-    shown_by_[word].push_back({num_places_, share});
+  for (const auto& [word, weight] : WordsOf(descriptors)) {
+    shown_by_[word].push_back({num_places_, weight});
   }
   return num_places_++;
 }
 
 std::vector<double> VocabularyIndex::Score(std::span<const Descriptor> descriptors) const {
   std::vector<double> scores(num_places_, 0.0);
-  for (const auto& [word, share] : WordsOf(descriptors)) {
-    for (const Entry& entry : shown_by_[word]) scores[entry.place] += std::min(share, entry.share);
+  for (const auto& [word, weight] : WordsOf(descriptors)) {
+    for (const Entry& entry : shown_by_[word])
+      scores[entry.place] += std::min(weight, entry.weight);
   }
   return scores;
 }

@@ -8,7 +8,7 @@
 
 namespace orb360 {
 
-/// A tree of visual words over binary descriptors, trained on other pictures (Galvez-Lopez, Tardos,
+/// A tree of visual words over binary descriptors, trained on other images (Galvez-Lopez, Tardos,
 /// Bags of Binary Words for Fast Place Recognition in Image Sequences, T-RO 2012): what ORB-SLAM
 /// recognises places by, here to be measured against.
 class BinaryVocabulary {
@@ -35,8 +35,8 @@ class BinaryVocabulary {
   std::vector<double> weights_;
 };
 
-/// Places by the words that they show: an inverted file. The likeness of two places is the L1 score
-/// of their weighted words.
+/// Places by the words that they show: an inverted file. The similarity of two places is the L1
+/// score of their weighted words.
 class VocabularyIndex {
  public:
   /// `vocabulary` must outlive this.
@@ -49,7 +49,7 @@ class VocabularyIndex {
  private:
   struct Entry {
     int place;
-    double share;
+    double weight;
   };
 
   /// By word, their sum being 1.

@@ -89,8 +89,7 @@ std::vector<View> ReadSequences(const std::vector<std::string>& folders) {
   for (size_t s = 0; s < folders.size(); ++s) {
     const size_t before = views.size();
     ReadViews(folders[s], static_cast<int>(s), &views);
-    if (views.size() == before)
-      throw UserError(folders[s] + ": has no pictures rgb/000000.jpg ...");
+    if (views.size() == before) throw UserError(folders[s] + ": has no images rgb/000000.jpg ...");
   }
   return views;
 }

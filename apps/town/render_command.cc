@@ -150,7 +150,7 @@ void AddSceneOptions(CLI::App* command, Arguments* arguments) {
       ->check(CLI::Range(0.0, 1.0));
 }
 
-void AddPictureOptions(CLI::App* command, Arguments* arguments) {
+void AddImageOptions(CLI::App* command, Arguments* arguments) {
   command
       ->add_option("--out", arguments->out,
                    "Folder to write; an interrupted rendering there is resumed")
@@ -221,7 +221,7 @@ void AddCameraOptions(CLI::App* command, Arguments* arguments) {
   command->add_flag("--noise", arguments->noise, "Add the noise of a small sensor");
   command
       ->add_option("--jpeg-quality", arguments->jpeg_quality,
-                   "Compress pictures as a camera does, before they are stored at 95")
+                   "Compress images as a camera does, before they are stored at 95")
       ->check(CLI::Range(1, 100));
 }
 
@@ -231,7 +231,7 @@ void AddRenderCommand(CLI::App* app) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app->add_subcommand("render", "Render a sequence into a folder");
   AddSceneOptions(command, arguments.get());
-  AddPictureOptions(command, arguments.get());
+  AddImageOptions(command, arguments.get());
   AddCameraOptions(command, arguments.get());
   command->add_option("--threads", arguments->threads, "Threads to use; 0: all cores")
       ->capture_default_str()

@@ -180,7 +180,7 @@ nlohmann::json Summary(const std::vector<Result>& results) {
   }
   if (count["ORT"] > 0) summary["conv_vs_ort_geomean"] = std::exp(log_ratio["ORT"] / count["ORT"]);
   summary["conv_vs_best_worst_layer"] = worst;
-  summary["peak_share"] = lowest;
+  summary["peak_fraction"] = lowest;
   return summary;
 }
 

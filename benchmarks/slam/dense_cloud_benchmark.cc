@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "slam/depth/dense_cloud.h"
-#include "slam/io/range_store.h"
+#include "slam/io/depth_map_store.h"
 #include "tests/slam/depth/range_room.h"
 
 namespace orb360 {
@@ -27,12 +27,12 @@ std::vector<DenseDepth> RenderHall(int count) {
   return depths;
 }
 
-void ConfirmKeyframe(benchmark::State& state) {
+void FindConsistentPointsOfKeyframe(benchmark::State& state) {
   const std::vector<DenseDepth> depths = RenderHall(kNeighbours + 1);
   std::vector<DepthView> views;
   for (int i = 0; i <= kNeighbours; ++i) {
     views.emplace_back(depths[static_cast<size_t>(i)], Camera(i), 1.0,
-                       ConfirmationOptions().min_error);
+                       GeometricConsistencyOptions().min_error);
   }
   std::vector<const DepthView*> others;
   for (int i = 0; i <= kNeighbours; ++i) {
@@ -40,15 +40,15 @@ void ConfirmKeyframe(benchmark::State& state) {
   }
   size_t points = 0;
   for (auto _ : state) {
-    points = ConfirmSurface(views[kNeighbours / 2], others, {}, {}).size();
+    points = FindConsistentPoints(views[kNeighbours / 2], others, {}, {}).size();
   }
   state.counters["points"] = static_cast<double>(points);
 }
-BENCHMARK(ConfirmKeyframe)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(FindConsistentPointsOfKeyframe)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void FuseHall(benchmark::State& state) {
-  const RangeStore store(std::filesystem::temp_directory_path() /
-                         ("orb360_dense_cloud_benchmark." + std::to_string(getpid())));
+  const DepthMapStore store(std::filesystem::temp_directory_path() /
+                            ("orb360_dense_cloud_benchmark." + std::to_string(getpid())));
   const std::vector<DenseDepth> depths = RenderHall(kKeyframes);
   std::vector<DenseView> views;
   for (int i = 0; i < kKeyframes; ++i) {

@@ -1,4 +1,4 @@
-// Feature extraction at 2048 x 1024 with 2,000 features, beside OpenCV's ORB on the same picture,
+// Feature extraction at 2048 x 1024 with 2,000 features, beside OpenCV's ORB on the same image,
 // and brute-force matching beside cv::BFMatcher.
 #include <benchmark/benchmark.h>
 #include <opencv2/core.hpp>
@@ -11,18 +11,18 @@
 namespace orb360 {
 namespace {
 
-const cv::Mat& Picture() {
+const cv::Mat& Image() {
   static const EquirectangularCamera kCamera(2048, 1024);
-  static const cv::Mat kPicture = SphereTexture(5, 2.0 * kCamera.AngleOfPixels(1.0))
-                                      .Render(kCamera, Eigen::Quaterniond::Identity(), 2.0);
-  return kPicture;
+  static const cv::Mat kImage = SphereTexture(5, 2.0 * kCamera.AngleOfPixels(1.0))
+                                    .Render(kCamera, Eigen::Quaterniond::Identity(), 2.0);
+  return kImage;
 }
 
 void ExtractOrb360(benchmark::State& state) {
   OrbExtractor extractor{OrbOptions()};
-  const cv::Mat& picture = Picture();  // rendered here, not while the clock runs
+  const cv::Mat& image = Image();  // rendered here, not while the clock runs
   int count = 0;
-  for (auto _ : state) count = extractor.Extract(picture).size();
+  for (auto _ : state) count = extractor.Extract(image).size();
   state.counters["features"] = count;
 }
 BENCHMARK(ExtractOrb360)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
@@ -31,15 +31,15 @@ void ExtractOpenCv(benchmark::State& state) {
   const cv::Ptr<cv::ORB> orb = cv::ORB::create(2000);
   std::vector<cv::KeyPoint> keypoints;
   cv::Mat descriptors;
-  const cv::Mat& picture = Picture();
-  for (auto _ : state) orb->detectAndCompute(picture, {}, keypoints, descriptors);
+  const cv::Mat& image = Image();
+  for (auto _ : state) orb->detectAndCompute(image, {}, keypoints, descriptors);
   state.counters["features"] = static_cast<double>(keypoints.size());
 }
 BENCHMARK(ExtractOpenCv)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasureProcessCPUTime();
 
 void MatchMutuallyOrb360(benchmark::State& state) {
   OrbExtractor extractor{OrbOptions()};
-  const Features features = extractor.Extract(Picture());
+  const Features features = extractor.Extract(Image());
   for (auto _ : state) {
     benchmark::DoNotOptimize(MatchMutually(features.descriptors, features.descriptors, {}));
   }
@@ -48,7 +48,7 @@ BENCHMARK(MatchMutuallyOrb360)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void MatchMutuallyOpenCv(benchmark::State& state) {
   OrbExtractor extractor{OrbOptions()};
-  Features features = extractor.Extract(Picture());
+  Features features = extractor.Extract(Image());
   const cv::Mat rows(features.size(), 32, CV_8U, features.descriptors.data());
   const cv::BFMatcher matcher(cv::NORM_HAMMING, /*crossCheck=*/true);
   std::vector<cv::DMatch> matches;
@@ -58,7 +58,7 @@ BENCHMARK(MatchMutuallyOpenCv)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void MatchNearbyOrb360(benchmark::State& state) {
   OrbExtractor extractor{OrbOptions()};
-  const Features features = extractor.Extract(Picture());
+  const Features features = extractor.Extract(Image());
   for (auto _ : state) benchmark::DoNotOptimize(MatchNearby(features, features, 0.1, {}));
 }
 BENCHMARK(MatchNearbyOrb360)->Unit(benchmark::kMillisecond)->UseRealTime();

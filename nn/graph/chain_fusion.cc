@@ -113,7 +113,7 @@ class ChainFusion {
     const Node* const x = WriterOf<ConcatenateOp>(whole.x);
     const Node* const c = WriterOf<ConcatenateOp>(whole.c);
     const bool can_split = x != nullptr && c != nullptr && x->inputs.size() == c->inputs.size() &&
-                           x->inputs.size() <= FusedNode::kMostPairs;
+                           x->inputs.size() <= FusedNode::kMaxPairs;
     if (!can_split) return {whole};
     std::vector<Pair> parts;
     for (std::size_t i = 0; i < x->inputs.size(); ++i) {

@@ -139,12 +139,12 @@ Step MakeChain(const Graph& graph, const FusedNode& fused, int width, int thread
   std::vector<NormalizedConvolution> links = {MakeLink(graph, fused.node)};
   for (const Node& node : fused.chain) links.push_back(MakeLink(graph, node));
   const auto chain = std::make_shared<const NormalizedChain>(std::move(links));
-  std::array<bool, FusedNode::kMostPairs> doubled{};
+  std::array<bool, FusedNode::kMaxPairs> doubled{};
   std::ranges::copy(fused.doubled, doubled.begin());
   const std::optional<ConfidenceRule> rule =
       fused.pool ? std::optional(RuleOf(*fused.pool)) : std::nullopt;
   return {[=](Views in, Views out, Scratch scratch) {
-            std::array<NormalizedInput, FusedNode::kMostPairs> inputs;
+            std::array<NormalizedInput, FusedNode::kMaxPairs> inputs;
             const std::size_t pairs = in.size() / 2;
             for (std::size_t i = 0; i < pairs; ++i) {
               inputs[i] = {{in[2 * i], in[2 * i + 1]}, doubled[i]};

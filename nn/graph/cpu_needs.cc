@@ -36,12 +36,12 @@ class Needs {
     return {{kPlanar, kPlanar}, {kPlanar, kPlanar}, {}};
   }
   NodeNeeds operator()(const ConvolutionOp&) const {
-    const bool is_picture = channels(fused_.node.inputs[0]) <= kMaxPlanarChannels;
-    PortNeeds input{.layouts = is_picture ? Layouts::kPlanar : Layouts::kBlocked,
+    const bool is_image = channels(fused_.node.inputs[0]) <= kMaxPlanarChannels;
+    PortNeeds input{.layouts = is_image ? Layouts::kPlanar : Layouts::kBlocked,
                     .halo = KernelSize(graph_, fused_.node) / 2};
     PortNeeds output = kTied;
     if (ConvolutionType(graph_, fused_, precision_) == DataType::kBFloat16) {
-      if (is_picture)
+      if (is_image)
         return {{input}, {{.layouts = Layouts::kBlocked, .types = Types::kBFloat16}}, {}};
       input.types = Types::kBFloat16;
       output.types = Types::kEither;

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "nn/base/check.h"
+#include "nn/graph/buffer_assignment.h"
 #include "nn/graph/cpu_backend.h"
 #include "nn/graph/fusion.h"
 #include "nn/graph/limits.h"
 #include "nn/graph/lowering.h"
-#include "nn/graph/placement.h"
 #include "nn/kernels/copy_channels.h"
 
 namespace orb360::nn {
@@ -22,14 +22,14 @@ std::size_t SizeOf(const Shape& shape) {
   return static_cast<std::size_t>(shape.channels) * Index(shape.height) * Index(shape.width);
 }
 
-void CheckPictureSize(const Graph& graph, int height, int width) {
+void CheckImageSize(const Graph& graph, int height, int width) {
   const auto is_allowed = [&](int side) {
-    return side > 0 && side <= limits::kPictureSide && side % graph.size_multiple == 0;
+    return side > 0 && side <= limits::kMaxImageSide && side % graph.size_multiple == 0;
   };
   if (is_allowed(height) && is_allowed(width)) return;
-  throw UserError("network \"" + graph.name + "\" takes pictures whose sides are multiples of " +
+  throw UserError("network \"" + graph.name + "\" takes images whose sides are multiples of " +
                   std::to_string(graph.size_multiple) + " and at most " +
-                  std::to_string(limits::kPictureSide) + ", not " + std::to_string(width) + "x" +
+                  std::to_string(limits::kMaxImageSide) + ", not " + std::to_string(width) + "x" +
                   std::to_string(height));
 }
 
@@ -48,22 +48,22 @@ TensorView DenseView(const float* data, const Shape& shape) {
 
 struct Executor::Plan {
   Lowered lowered;
-  Placement placement;
+  BufferAssignment assignment;
 };
 
 Executor::Workspace::Workspace(const Executor& executor) {
-  const Placement& placement = executor.plan_->placement;
+  const BufferAssignment& assignment = executor.plan_->assignment;
   try {
-    memory_.resize(placement.bytes);
+    memory_.resize(assignment.bytes);
   } catch (const std::bad_alloc&) {
-    throw UserError("a network needs " + std::to_string(placement.bytes >> 20) +
-                    " MiB of memory for a picture of this size, and there is less; use a smaller "
-                    "picture");
+    throw UserError("a network needs " + std::to_string(assignment.bytes >> 20) +
+                    " MiB of memory for an image of this size, and there is less; use a smaller "
+                    "image");
   }
   const Lowered& lowered = executor.plan_->lowered;
   for (std::size_t i = 0; i < lowered.values.size(); ++i) {
     views_.push_back(
-        ViewOf(placement.places[i], lowered.values[i].format.shape.channels, memory_.data()));
+        ViewOf(assignment.buffers[i], lowered.values[i].format.shape.channels, memory_.data()));
   }
   const auto views = [&](const std::vector<int>& values) {
     std::vector<TensorView> list;
@@ -75,19 +75,19 @@ Executor::Workspace::Workspace(const Executor& executor) {
   for (std::size_t i = 0; i < lowered.instructions.size(); ++i) {
     const Instruction& instruction = lowered.instructions[i];
     bound_.push_back({views(instruction.inputs), views(instruction.outputs),
-                      memory.subspan(placement.scratch[i], instruction.step.scratch_bytes)});
+                      memory.subspan(assignment.scratch[i], instruction.step.scratch_bytes)});
   }
 }
 
 Executor::Executor(const Graph& graph, int height, int width, const ExecutorOptions& options) {
   ORB360_CHECK(options.threads >= 1, options.threads);
   threads_ = options.threads;
-  CheckPictureSize(graph, height, width);
+  CheckImageSize(graph, height, width);
   const CpuBackend backend(options.threads, options.precision);
   Plan plan;
   plan.lowered = Lower(graph, options.keeps_tensors ? KeepNodes(graph) : FuseNodes(graph), backend,
                        height, width);
-  plan.placement = PlaceValues(plan.lowered, options.keeps_tensors);
+  plan.assignment = AssignBuffers(plan.lowered, options.keeps_tensors);
   plan_ = std::make_shared<const Plan>(std::move(plan));
   const auto shape = [&](int tensor) {
     return ShapeFor(graph.tensors[Index(tensor)], height, width);
@@ -111,8 +111,8 @@ void Executor::Run(std::span<const std::span<const float>> inputs,
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const Shape& shape = inputs_[i].shape;
     ORB360_CHECK(inputs[i].size() == SizeOf(shape), inputs_[i].name, inputs[i].size());
-    CopyChannels(DenseView(inputs[i].data(), shape), 0,
-                 workspace->views_[Index(lowered.inputs[i])], 0, shape.channels, threads_);
+    CopyChannels(DenseView(inputs[i].data(), shape), 0, workspace->views_[Index(lowered.inputs[i])],
+                 0, shape.channels, threads_);
   }
   for (std::size_t i = 0; i < lowered.instructions.size(); ++i) {
     const auto& [in, out, scratch] = workspace->bound_[i];
@@ -133,8 +133,8 @@ TensorView Executor::Find(const Workspace& workspace, std::string_view tensor) c
   return workspace.views_[Index(plan_->lowered.value_of_tensor[index])];
 }
 
-std::size_t Executor::planned_bytes() const { return plan_->placement.bytes; }
+std::size_t Executor::planned_bytes() const { return plan_->assignment.bytes; }
 
-std::size_t Executor::naive_bytes() const { return plan_->placement.separate_bytes; }
+std::size_t Executor::naive_bytes() const { return plan_->assignment.separate_bytes; }
 
 }  // namespace orb360::nn

@@ -20,10 +20,10 @@ struct FusedNode {
   /// For a normalized convolution: further normalized convolutions, each applied to the result of
   /// the previous one.
   std::vector<Node> chain = {};
-  /// The node reads the concatenation of at most kMostPairs pairs x, c. `doubled` states for each
+  /// The node reads the concatenation of at most kMaxPairs pairs x, c. `doubled` states for each
   /// pair whether every pixel stands for 2x2. If it is empty, there is one pair, which is not
   /// doubled.
-  static constexpr std::size_t kMostPairs = 8;
+  static constexpr std::size_t kMaxPairs = 8;
   std::vector<bool> doubled = {};
   /// The third and fourth outputs are the result of this operation on the first two.
   std::optional<ConfidencePoolOp> pool = {};

@@ -68,8 +68,8 @@ const char* NameOf(const Operation& operation);
 
 /// Size of a tensor in relation to the image.
 struct Extent {
-  bool is_single = false;  // one pixel, however large the picture is
-  int halvings = 0;        // the picture's size is divided by 2 so often; below 0: multiplied
+  bool is_single = false;  // one pixel, however large the image is
+  int halvings = 0;        // the image's size is divided by 2 so often; below 0: multiplied
   friend bool operator==(const Extent&, const Extent&) = default;
 };
 

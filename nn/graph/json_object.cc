@@ -11,9 +11,9 @@
 namespace orb360::nn {
 
 std::string Quoted(std::string_view text) {
-  constexpr std::size_t kMost = 80;  // bytes: enough to recognise it, and one line still
-  const bool is_cut = text.size() > kMost;
-  return nlohmann::json(text.substr(0, kMost))
+  constexpr std::size_t kMaxBytes = 80;  // bytes: enough to recognise it, and one line still
+  const bool is_cut = text.size() > kMaxBytes;
+  return nlohmann::json(text.substr(0, kMaxBytes))
              .dump(-1, ' ', /*ensure_ascii=*/false, nlohmann::json::error_handler_t::replace) +
          (is_cut ? "..." : "");
 }

@@ -16,10 +16,10 @@ constexpr int kChannels = 4096;
 constexpr std::int64_t kWeights = std::int64_t{1} << 28;  // numbers, 1 GiB
 constexpr int kKernelSize = 15;
 constexpr int kSizeMultiple = 1 << 12;
-constexpr int kMostHalvings = 12;
+constexpr int kMaxHalvings = 12;
 constexpr int kLeastHalvings = -2;
 
 /// Largest side of an image, pixels: the largest that image formats and libraries agree on.
-constexpr int kPictureSide = 1 << 15;
+constexpr int kMaxImageSide = 1 << 15;
 
 }  // namespace orb360::nn::limits

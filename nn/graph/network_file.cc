@@ -11,8 +11,8 @@
 #include <hdf5.h>
 
 #include "nn/base/check.h"
+#include "nn/base/checksummed_file.h"
 #include "nn/base/hdf5_handle.h"
-#include "nn/base/sealed_file.h"
 #include "nn/graph/json_object.h"
 #include "nn/graph/limits.h"
 #include "nn/graph/parse_graph.h"
@@ -20,7 +20,7 @@
 namespace orb360::nn {
 namespace {
 
-constexpr SealedKind kKind = {
+constexpr ChecksummedFormat kKind = {
     "ORB360NN", 1, "network", "weights_tools", "use the weights that belong to it",
     // The largest file: all accepted weights as 32-bit floats, and as many bytes for the rest.
     std::uintmax_t{limits::kWeights} * 8};
@@ -71,14 +71,14 @@ float WidenHalf(std::uint16_t half) {
 }
 
 std::vector<int> ReadShape(hid_t set, const std::string& name) {
-  constexpr int kMostDimensions = 4;
+  constexpr int kMaxDimensions = 4;
   const Hdf5Handle space(H5Dget_space(set), H5Sclose);
   const int rank = H5Sget_simple_extent_ndims(space.get());
-  if (rank < 1 || rank > kMostDimensions) {
+  if (rank < 1 || rank > kMaxDimensions) {
     throw UserError("weights " + Quoted(name) + " have " + std::to_string(rank) +
                     " dimensions and should have 1 to 4");
   }
-  std::array<hsize_t, kMostDimensions> sizes{};
+  std::array<hsize_t, kMaxDimensions> sizes{};
   H5Sget_simple_extent_dims(space.get(), sizes.data(), nullptr);
   std::vector<int> shape;
   for (int i = 0; i < rank; ++i) {
@@ -148,9 +148,9 @@ std::vector<Weight> ReadWeights(hid_t file) {
 
 Graph ReadNetwork(const std::filesystem::path& path) {
   try {
-    FileBytes bytes = ReadSealedFile(path, kKind);
+    FileBytes bytes = ReadChecksummedFile(path, kKind);
     const Hdf5Quiet quiet;
-    const Hdf5Handle file = OpenSealed(&bytes);
+    const Hdf5Handle file = OpenChecksummedContent(&bytes);
     const std::string json = ReadText(file.get(), "graph");
     return ParseGraph(json, ReadWeights(file.get()));
   } catch (const UserError& reason) {

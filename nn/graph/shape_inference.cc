@@ -22,10 +22,9 @@ std::string ToText(const std::vector<int>& shape) {
 
 std::string ToText(const Extent& extent) {
   if (extent.is_single) return "1x1";
-  if (extent.halvings == 0) return "the picture's size";
-  return extent.halvings > 0
-             ? "1/" + std::to_string(1 << extent.halvings) + " of the picture's size"
-             : std::to_string(1 << -extent.halvings) + " times the picture's size";
+  if (extent.halvings == 0) return "the image's size";
+  return extent.halvings > 0 ? "1/" + std::to_string(1 << extent.halvings) + " of the image's size"
+                             : std::to_string(1 << -extent.halvings) + " times the image's size";
 }
 
 class Inference {
@@ -154,7 +153,7 @@ class Inference {
     return sides % (divisor << std::max(halvings, 0)) == 0;
   }
   Extent Halved(Extent extent) const {
-    if (++extent.halvings > limits::kMostHalvings) {
+    if (++extent.halvings > limits::kMaxHalvings) {
       Refuse("its result would be " + ToText(extent) + ", which is too small");
     }
     return extent;

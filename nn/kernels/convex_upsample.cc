@@ -31,9 +31,9 @@ HWY_INLINE V Mix(const float* weights, std::ptrdiff_t plane_stride, const V (&ne
   V sum = hn::Zero(d);
   V value = hn::Zero(d);
   for (int k = 0; k < 9; ++k) {
-    const V share = UnlessNan(weight[k], hn::Exp(d, hn::Sub(weight[k], largest)));
-    sum = hn::Add(sum, share);
-    value = hn::MulAdd(share, neighbour[k], value);
+    const V fraction = UnlessNan(weight[k], hn::Exp(d, hn::Sub(weight[k], largest)));
+    sum = hn::Add(sum, fraction);
+    value = hn::MulAdd(fraction, neighbour[k], value);
   }
   return hn::Div(value, sum);
 }

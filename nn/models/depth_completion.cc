@@ -13,12 +13,12 @@
 namespace orb360::nn {
 namespace {
 
-std::size_t PixelsOf(PictureSize size) {
+std::size_t PixelsOf(ImageSize size) {
   return static_cast<std::size_t>(size.height) * static_cast<std::size_t>(size.width);
 }
 
 /// Returns the nearest size that the network takes, at least one multiple in each direction.
-PictureSize NearestMultiple(PictureSize size, int multiple) {
+ImageSize NearestMultiple(ImageSize size, int multiple) {
   const auto nearest = [multiple](int side) {
     return std::max((side + multiple / 2) / multiple, 1) * multiple;
   };
@@ -36,10 +36,10 @@ PictureSize NearestMultiple(PictureSize size, int multiple) {
 std::optional<int> ExpectedWidth(const Graph& graph) {
   const nlohmann::json normalisation = nlohmann::json::parse(graph.normalisation);
   if (!normalisation.contains("width")) return {};
-  constexpr int kMost = 1 << 15;  // pixels
+  constexpr int kMaxWidth = 1 << 15;  // pixels
   const nlohmann::json& width = normalisation["width"];
-  if (!width.is_number_integer() || width < 1 || width > kMost) {
-    RefuseNormalisation(graph, "width", "an integer from 1 to " + std::to_string(kMost));
+  if (!width.is_number_integer() || width < 1 || width > kMaxWidth) {
+    RefuseNormalisation(graph, "width", "an integer from 1 to " + std::to_string(kMaxWidth));
   }
   return width.get<int>();
 }
@@ -57,7 +57,7 @@ std::optional<float> ConstantConfidence(const Graph& graph) {
 }
 
 /// Returns the size at which the network runs for images of that size.
-PictureSize NetworkSize(const Graph& graph, PictureSize size) {
+ImageSize NetworkSize(const Graph& graph, ImageSize size) {
   ORB360_CHECK(size.height > 0 && size.width > 0, size.height, size.width);
   if (const std::optional<int> width = ExpectedWidth(graph)) {
     const double factor = static_cast<double>(*width) / size.width;
@@ -80,7 +80,7 @@ struct PortFinder {
     if (fits) return;
     Refuse(std::string(kind) + " \"" + name + "\" should have " + std::to_string(channels) +
            (channels == 1 ? " channel" : " channels") +
-           (is_single ? " of 1x1" : " of the picture's size"));
+           (is_single ? " of 1x1" : " of the image's size"));
   }
   std::optional<std::size_t> Input(const std::string& name, int channels) const {
     for (std::size_t i = 0; i < graph.inputs.size(); ++i) {
@@ -133,8 +133,7 @@ DepthCompletion::Ports DepthCompletion::FindPorts(const Graph& graph) {
   return ports;
 }
 
-DepthCompletion::DepthCompletion(const Graph& graph, PictureSize size,
-                                 const ExecutorOptions& options)
+DepthCompletion::DepthCompletion(const Graph& graph, ImageSize size, const ExecutorOptions& options)
     : size_(size),
       network_size_(NetworkSize(graph, size)),
       constant_confidence_(ConstantConfidence(graph)),
@@ -145,7 +144,7 @@ DepthCompletion::Workspace::Workspace(const DepthCompletion& model) : network_(m
   const auto allocate = [](const std::vector<Executor::Port>& ports) {
     std::vector<std::vector<float>> values;
     for (const Executor::Port& port : ports) {
-      const PictureSize size{port.shape.height, port.shape.width};
+      const ImageSize size{port.shape.height, port.shape.width};
       values.emplace_back(static_cast<std::size_t>(port.shape.channels) * PixelsOf(size));
     }
     return values;
@@ -172,16 +171,16 @@ void DepthCompletion::FillImage(std::span<const std::uint8_t> rgb, std::span<flo
   }
 }
 
-void DepthCompletion::FillPoints(const SparsePicture& picture, std::span<float> depth,
+void DepthCompletion::FillPoints(const CompletionInput& image, std::span<float> depth,
                                  std::span<float> confidence) const {
   std::vector<float> known_depth(PixelsOf(size_));
   std::vector<float> known_confidence(known_depth.size());
   for (std::size_t i = 0; i < known_depth.size(); ++i) {
     const bool is_point =
-        std::isfinite(picture.depth[i]) && picture.depth[i] > 0 && picture.confidence[i] > 0;
+        std::isfinite(image.depth[i]) && image.depth[i] > 0 && image.confidence[i] > 0;
     if (!is_point) continue;
-    known_depth[i] = picture.depth[i];
-    known_confidence[i] = std::min(picture.confidence[i], 1.0f);
+    known_depth[i] = image.depth[i];
+    known_confidence[i] = std::min(image.confidence[i], 1.0f);
   }
   ResamplePoints(known_depth, known_confidence, size_, depth, confidence, network_size_);
 }
@@ -193,13 +192,14 @@ std::vector<float> DepthCompletion::Resampled(std::vector<float> dense) const {
   return resampled;
 }
 
-DensePicture DepthCompletion::Complete(const SparsePicture& picture, Workspace* workspace) const {
+CompletionOutput DepthCompletion::Complete(const CompletionInput& image,
+                                           Workspace* workspace) const {
   const std::size_t pixels = PixelsOf(size_);
-  ORB360_CHECK(picture.rgb.size() == 3 * pixels, picture.rgb.size(), pixels);
-  ORB360_CHECK(picture.depth.size() == pixels, picture.depth.size(), pixels);
-  ORB360_CHECK(picture.confidence.size() == pixels, picture.confidence.size(), pixels);
-  if (ports_.image) FillImage(picture.rgb, workspace->inputs_[*ports_.image]);
-  FillPoints(picture, workspace->inputs_[ports_.sparse_depth],
+  ORB360_CHECK(image.rgb.size() == 3 * pixels, image.rgb.size(), pixels);
+  ORB360_CHECK(image.depth.size() == pixels, image.depth.size(), pixels);
+  ORB360_CHECK(image.confidence.size() == pixels, image.confidence.size(), pixels);
+  if (ports_.image) FillImage(image.rgb, workspace->inputs_[*ports_.image]);
+  FillPoints(image, workspace->inputs_[ports_.sparse_depth],
              workspace->inputs_[ports_.sparse_confidence]);
   const std::vector<std::span<const float>> inputs(workspace->inputs_.begin(),
                                                    workspace->inputs_.end());
@@ -208,7 +208,7 @@ DensePicture DepthCompletion::Complete(const SparsePicture& picture, Workspace* 
   executor_.Run(inputs, outputs, &workspace->network_);
 
   const std::vector<std::vector<float>>& result = workspace->outputs_;
-  DensePicture dense;
+  CompletionOutput dense;
   dense.confidence = Resampled(result[ports_.confidence]);
   if (ports_.ground) dense.ground = Resampled(result[*ports_.ground]);
   dense.depth = result[ports_.depth];

@@ -7,12 +7,12 @@
 
 #include "nn/graph/executor.h"
 #include "nn/graph/graph.h"
-#include "nn/models/picture_size.h"
+#include "nn/models/image_size.h"
 
 namespace orb360::nn {
 
 /// A panorama with sparse depth. All arrays have the size of the DepthCompletion, row by row.
-struct SparsePicture {
+struct CompletionInput {
   std::span<const std::uint8_t> rgb;  // three bytes a pixel
   /// Range along each pixel's ray in any unit, and its confidence in (0, 1]. Pixels whose range is
   /// not finite and positive, or whose confidence is not positive, are not points.
@@ -20,7 +20,7 @@ struct SparsePicture {
   std::span<const float> confidence;
 };
 
-struct DensePicture {
+struct CompletionOutput {
   std::vector<float> depth;  // in the unit of the points; 0 where the network gives none
   /// 1 / confidence - 1 is the expected relative error of the depth.
   std::vector<float> confidence;
@@ -52,13 +52,13 @@ class DepthCompletion {
 
   /// Throws UserError for a network that is not for depth completion. Images are resampled to the
   /// width that the network's normalisation states, if any, and to the nearest size that it takes.
-  DepthCompletion(const Graph& graph, PictureSize size, const ExecutorOptions& options = {});
+  DepthCompletion(const Graph& graph, ImageSize size, const ExecutorOptions& options = {});
 
-  PictureSize size() const { return size_; }
+  ImageSize size() const { return size_; }
   /// Size of the images at which the network runs.
-  PictureSize network_size() const { return network_size_; }
+  ImageSize network_size() const { return network_size_; }
 
-  DensePicture Complete(const SparsePicture& picture, Workspace* workspace) const;
+  CompletionOutput Complete(const CompletionInput& image, Workspace* workspace) const;
 
  private:
   struct Ports {  // indices of the executor's inputs and outputs
@@ -69,12 +69,12 @@ class DepthCompletion {
   static Ports FindPorts(const Graph& graph);
 
   void FillImage(std::span<const std::uint8_t> rgb, std::span<float> planes) const;
-  void FillPoints(const SparsePicture& picture, std::span<float> depth,
+  void FillPoints(const CompletionInput& image, std::span<float> depth,
                   std::span<float> confidence) const;
   std::vector<float> Resampled(std::vector<float> dense) const;
 
-  PictureSize size_;
-  PictureSize network_size_;
+  ImageSize size_;
+  ImageSize network_size_;
   std::optional<float> constant_confidence_;  // in the place of the network's own
   Ports ports_;
   Executor executor_;

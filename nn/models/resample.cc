@@ -10,7 +10,7 @@
 namespace orb360::nn {
 namespace {
 
-std::size_t PixelsOf(PictureSize size) {
+std::size_t PixelsOf(ImageSize size) {
   return static_cast<std::size_t>(size.height) * static_cast<std::size_t>(size.width);
 }
 
@@ -19,22 +19,22 @@ std::size_t PixelsOf(PictureSize size) {
 struct Between {
   int first;
   int second;
-  float share;
+  float fraction;
 };
 
 Between Locate(int index, int to_count, int from_count, bool wraps) {
   const double position =
       (index + 0.5) * static_cast<double>(from_count) / static_cast<double>(to_count) - 0.5;
   const auto below = static_cast<int>(std::floor(position));
-  const auto share = static_cast<float>(position - below);
-  if (wraps) return {(below + from_count) % from_count, (below + 1) % from_count, share};
-  return {std::max(below, 0), std::min(below + 1, from_count - 1), share};
+  const auto fraction = static_cast<float>(position - below);
+  if (wraps) return {(below + from_count) % from_count, (below + 1) % from_count, fraction};
+  return {std::max(below, 0), std::min(below + 1, from_count - 1), fraction};
 }
 
 }  // namespace
 
-void ResampleBilinear(std::span<const float> from, PictureSize from_size, std::span<float> to,
-                      PictureSize to_size) {
+void ResampleBilinear(std::span<const float> from, ImageSize from_size, std::span<float> to,
+                      ImageSize to_size) {
   ORB360_CHECK(from.size() == PixelsOf(from_size) && to.size() == PixelsOf(to_size), from.size(),
                to.size());
   std::vector<Between> columns;
@@ -49,19 +49,19 @@ void ResampleBilinear(std::span<const float> from, PictureSize from_size, std::s
     const float* bottom = from.data() + std::ptrdiff_t{rows.second} * from_size.width;
     for (const Between& column : columns) {
       const auto across = [&](const float* row) {
-        return row[column.first] + column.share * (row[column.second] - row[column.first]);
+        return row[column.first] + column.fraction * (row[column.second] - row[column.first]);
       };
       const float above = across(top);
-      *next++ = above + rows.share * (across(bottom) - above);
+      *next++ = above + rows.fraction * (across(bottom) - above);
     }
   }
 }
 
-void ResampleImage(std::vector<float> from, PictureSize from_size, std::span<float> to,
-                   PictureSize to_size) {
+void ResampleImage(std::vector<float> from, ImageSize from_size, std::span<float> to,
+                   ImageSize to_size) {
   ORB360_CHECK(from.size() == PixelsOf(from_size), from.size());
   while (from_size.height >= 2 * to_size.height && from_size.width >= 2 * to_size.width) {
-    const PictureSize half{from_size.height / 2, from_size.width / 2};
+    const ImageSize half{from_size.height / 2, from_size.width / 2};
     float* next = from.data();
     for (int v = 0; v < half.height; ++v) {
       const float* top = from.data() + 2 * std::ptrdiff_t{v} * from_size.width;
@@ -81,8 +81,8 @@ void ResampleImage(std::vector<float> from, PictureSize from_size, std::span<flo
 }
 
 void ResamplePoints(std::span<const float> depth, std::span<const float> confidence,
-                    PictureSize from_size, std::span<float> to_depth,
-                    std::span<float> to_confidence, PictureSize to_size) {
+                    ImageSize from_size, std::span<float> to_depth, std::span<float> to_confidence,
+                    ImageSize to_size) {
   ORB360_CHECK(depth.size() == PixelsOf(from_size) && confidence.size() == depth.size(),
                depth.size(), confidence.size());
   ORB360_CHECK(to_depth.size() == PixelsOf(to_size) && to_confidence.size() == to_depth.size(),

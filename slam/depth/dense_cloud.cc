@@ -28,7 +28,7 @@ struct LoadedView {
 class ViewCache {
  public:
   ViewCache(std::span<const DenseView> views, const DepthLoader& load,
-            const ConfirmationOptions& options, size_t capacity)
+            const GeometricConsistencyOptions& options, size_t capacity)
       : views_(views), load_(load), options_(options), capacity_(capacity) {}
 
   std::shared_ptr<const LoadedView> Get(size_t index) {
@@ -60,7 +60,7 @@ class ViewCache {
 
   std::span<const DenseView> views_;
   const DepthLoader& load_;
-  const ConfirmationOptions& options_;
+  const GeometricConsistencyOptions& options_;
   const size_t capacity_;
   std::map<size_t, Entry> entries_;
   std::int64_t now_ = 0;
@@ -111,7 +111,7 @@ std::vector<size_t> ChooseNeighbours(std::span<const DenseView> views, size_t vi
                                      double median_range, int max_neighbours) {
   struct Candidate {
     size_t index;
-    double distance;  // logarithm of the share of the median range
+    double distance;  // logarithm of the fraction of the median range
   };
   std::vector<Candidate> sides[2];  // before and after the view
   for (const size_t index : views[view].neighbours) {
@@ -150,7 +150,7 @@ DenseCloudStatistics FuseCloud(std::span<const DenseView> views, const DepthLoad
   const SamplingOptions sampling{statistics.voxel_size,
                                  options.max_range_voxels * statistics.voxel_size,
                                  options.max_error_voxels * statistics.voxel_size};
-  ViewCache cache(views, load, options.confirmation, static_cast<size_t>(options.max_views));
+  ViewCache cache(views, load, options.consistency, static_cast<size_t>(options.max_views));
   VoxelGrid grid(statistics.voxel_size);
   const auto prepare = [&](size_t index) {
     Comparison comparison{cache.Get(index), {}};
@@ -162,11 +162,11 @@ DenseCloudStatistics FuseCloud(std::span<const DenseView> views, const DepthLoad
     }
     return comparison;
   };
-  const auto collect = [&](const std::vector<ConfirmedPoint>& points, const cv::Mat& color,
+  const auto collect = [&](const std::vector<ConsistentPoint>& points, const cv::Mat& color,
                            size_t index) {
     std::vector<VoxelSample> samples;
     samples.reserve(points.size());
-    for (const ConfirmedPoint& point : points) {
+    for (const ConsistentPoint& point : points) {
       const cv::Vec3b& bgr = color.at<cv::Vec3b>(point.row, point.column);
       samples.push_back({point.position, point.normal, {bgr[2], bgr[1], bgr[0]}, point.error});
     }
@@ -186,9 +186,9 @@ DenseCloudStatistics FuseCloud(std::span<const DenseView> views, const DepthLoad
     ++statistics.views;
     std::vector<const DepthView*> others;
     for (const auto& other : now.others) others.push_back(&other->depth);
-    std::vector<ConfirmedPoint> points = ConfirmSurface(
-        now.view->depth, others, options.confirmation, sampling, options.num_threads);
-    statistics.confirmed += static_cast<std::int64_t>(points.size());
+    std::vector<ConsistentPoint> points = FindConsistentPoints(
+        now.view->depth, others, options.consistency, sampling, options.num_threads);
+    statistics.consistent += static_cast<std::int64_t>(points.size());
     if (collecting.valid()) collecting.get();
     collecting = std::async(std::launch::async, collect, std::move(points), now.view->color, i);
   }

@@ -7,7 +7,7 @@
 
 #include "slam/depth/dense_cloud_summary.h"
 #include "slam/depth/dense_depth.h"
-#include "slam/depth/surface_confirmation.h"
+#include "slam/depth/geometric_consistency.h"
 #include "slam/depth/voxel_grid.h"
 #include "slam/geometry/rigid3.h"
 
@@ -22,7 +22,7 @@ struct DenseCloudOptions {
   double max_error_voxels = 4;
   /// Number of keyframes with which each one is compared.
   int max_neighbours = 10;
-  ConfirmationOptions confirmation{};
+  GeometricConsistencyOptions consistency{};
   /// Keyframes held in memory, 4 MB each for 1024 x 512 pixels. Two keyframes and those that they
   /// are compared with are always held. Keyframes are read again if this is less than the part of
   /// the path over which max_neighbours extend.
@@ -53,8 +53,8 @@ using DepthLoader = std::function<DenseDepth(int frame_index)>;
 using VoxelSink = std::function<void(std::span<const Voxel>)>;
 
 /// Fuses the dense depth of keyframes into one cloud: the points of each keyframe that are
-/// geometrically consistent with enough others (ConfirmSurface) are added up in voxels, in the
-/// order of the views. The result is the same for any number of threads.
+/// geometrically consistent with enough others (FindConsistentPoints) are added up in voxels, in
+/// the order of the views. The result is the same for any number of threads.
 DenseCloudStatistics FuseCloud(std::span<const DenseView> views, const DepthLoader& load,
                                const DenseCloudOptions& options, const VoxelSink& sink);
 

@@ -64,7 +64,7 @@ std::optional<DenseGround> FindGround(const DenseDepth& depth, const Eigen::Vect
   const double log_height = std::log(plane->height);
   const std::optional<double>& guess = depth.log_camera_height;
   if (guess && !(std::abs(log_height - *guess) <= options.max_disagreement)) return std::nullopt;
-  double square = 0;  // of the points' distances from the plane, as shares of the height
+  double square = 0;  // of the points' distances from the plane, as fractions of the height
   for (const int i : plane->points) {
     const double distance = plane->normal.dot(points[static_cast<size_t>(i)]) / plane->height + 1;
     square += distance * distance;

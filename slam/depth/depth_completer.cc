@@ -47,7 +47,7 @@ DenseDepth DepthCompleter::Complete(const cv::Mat& color, const SparseDepth& spa
   ORB360_CHECK(sparse.range.size() == size && sparse.confidence.size() == size);
   cv::Mat rgb;
   cv::cvtColor(color, rgb, cv::COLOR_BGR2RGB);
-  nn::DensePicture dense =
+  nn::CompletionOutput dense =
       network_->model.Complete({PixelsOf<unsigned char>(rgb), PixelsOf<float>(sparse.range),
                                 PixelsOf<float>(sparse.confidence)},
                                &network_->workspace);

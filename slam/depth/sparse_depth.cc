@@ -98,7 +98,7 @@ std::vector<SparsePoint> ProjectLandmarks(const Map& map, KeyframeId id,
   std::vector<Projection> projections;
   for (const LandmarkId landmark_id : LandmarksAround(map, keyframe, options.num_neighbours)) {
     const Landmark& landmark = map.landmark(landmark_id);
-    if (landmark.found < options.min_found_share * landmark.visible) continue;
+    if (landmark.found < options.min_found_fraction * landmark.visible) continue;
     const Eigen::Vector3d point = camera_from_world * landmark.position;
     const double range = point.norm();
     if (!(range > 0)) continue;

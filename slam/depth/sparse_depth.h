@@ -19,7 +19,7 @@ struct SparseDepthOptions {
   double occlusion_ratio = 0.8;
   /// Landmarks found in less than this fraction of the frames that should show them move, are
   /// hidden from here, or are wrong.
-  double min_found_share = 0.8;
+  double min_found_fraction = 0.8;
   /// The confidence is 1/2 where the standard deviation of the range is this fraction of the range.
   double half_confidence_error = 0.1;
   /// Points with less confidence are mostly wrong landmarks, which the network trusts too much.

@@ -81,16 +81,16 @@ void FitNormalsKernel(const float* inverse_ranges, int width, const PlaneTap* ta
     nn = hn::MulAdd(Constant(kRidge), total, nn);
     // Eliminates f, then e.
     const V f_pivot = hn::Div(Constant(1), ff);
-    const V fe_share = hn::Mul(fe, f_pivot);
-    const V fn_share = hn::Mul(fn, f_pivot);
-    ee = hn::NegMulAdd(fe_share, fe, ee);
-    en = hn::NegMulAdd(fe_share, fn, en);
-    nn = hn::NegMulAdd(fn_share, fn, nn);
-    eq = hn::NegMulAdd(fe_share, fq, eq);
-    nq = hn::NegMulAdd(fn_share, fq, nq);
-    const V en_share = hn::Div(en, ee);
-    nn = hn::NegMulAdd(en_share, en, nn);
-    nq = hn::NegMulAdd(en_share, eq, nq);
+    const V fe_ratio = hn::Mul(fe, f_pivot);
+    const V fn_ratio = hn::Mul(fn, f_pivot);
+    ee = hn::NegMulAdd(fe_ratio, fe, ee);
+    en = hn::NegMulAdd(fe_ratio, fn, en);
+    nn = hn::NegMulAdd(fn_ratio, fn, nn);
+    eq = hn::NegMulAdd(fe_ratio, fq, eq);
+    nq = hn::NegMulAdd(fn_ratio, fq, nq);
+    const V en_ratio = hn::Div(en, ee);
+    nn = hn::NegMulAdd(en_ratio, en, nn);
+    nq = hn::NegMulAdd(en_ratio, eq, nq);
     const V n = hn::Div(nq, nn);
     const V e = hn::Div(hn::NegMulAdd(en, n, eq), ee);
     const V f = hn::Mul(hn::NegMulAdd(fe, e, hn::NegMulAdd(fn, n, fq)), f_pivot);

@@ -20,7 +20,7 @@ void TestedRow::Add(int new_column, const Eigen::Vector3f& new_bearing, float ne
 
 void TestedRow::Close() {
   // Entries past the end refer to column 0, which every image has.
-  const size_t length = (size + kMostLanes - 1) / kMostLanes * kMostLanes;
+  const size_t length = (size + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
   column.resize(length);
   range.resize(length);
   for (Array& axis : bearing) axis.resize(length);

@@ -14,7 +14,7 @@ namespace orb360 {
 inline constexpr float kMinIncidence = 0.15f;
 
 /// Largest number of points that vector instructions handle at once.
-inline constexpr size_t kMostLanes = 16;
+inline constexpr size_t kMaxLanes = 16;
 
 /// Pixels of one row of a keyframe that are tested together, one in each element of the arrays.
 struct TestedRow {
@@ -36,7 +36,7 @@ struct TestedRow {
 
   void Clear(int new_row);
   void Add(int new_column, const Eigen::Vector3f& new_bearing, float new_range);
-  /// Completes the row: fills the arrays up to a multiple of kMostLanes and sets everything except
+  /// Completes the row: fills the arrays up to a multiple of kMaxLanes and sets everything except
   /// the positions of the points to zero.
   void Close();
 };

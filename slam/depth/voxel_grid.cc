@@ -171,13 +171,14 @@ std::uint64_t VoxelTile(std::uint64_t key) {
 
 SurfacePoint MakeSurfacePoint(const Voxel& voxel, double voxel_size, double max_independent) {
   SurfacePoint point;
-  const float share = 1.0f / voxel.information;
+  const float inverse_information = 1.0f / voxel.information;
   const Eigen::Vector3d in_voxels =
-      CentreOf(voxel.key) + (share * Sum(voxel.offset)).cast<double>();
+      CentreOf(voxel.key) + (inverse_information * Sum(voxel.offset)).cast<double>();
   point.position = (voxel_size * in_voxels).cast<float>();
   point.normal = Sum(voxel.normal).normalized();
   for (int channel = 0; channel < 3; ++channel) {
-    const float value = std::clamp(std::round(share * Sum(voxel.rgb)[channel]), 0.0f, 255.0f);
+    const float value =
+        std::clamp(std::round(inverse_information * Sum(voxel.rgb)[channel]), 0.0f, 255.0f);
     point.rgb[static_cast<size_t>(channel)] = static_cast<std::uint8_t>(value);
   }
   const float error = 1.0f / std::sqrt(std::min(voxel.information,

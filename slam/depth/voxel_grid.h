@@ -68,7 +68,7 @@ inline constexpr int kTileVoxels = 256;
 std::uint64_t VoxelTile(std::uint64_t key);
 
 /// Returns the point of a voxel: the mean of its samples, weighted by certainty. `max_independent`
-/// bounds the certainty that is gained by adding points up, see ConfirmationOptions.
+/// bounds the certainty that is gained by adding points up, see GeometricConsistencyOptions.
 SurfacePoint MakeSurfacePoint(const Voxel& voxel, double voxel_size, double max_independent);
 
 }  // namespace orb360

@@ -8,7 +8,7 @@
 namespace orb360 {
 namespace {
 
-constexpr size_t kMostPoints = 4000;
+constexpr size_t kMaxPoints = 4000;
 
 std::string Pixel(double value) { return Decimal(value, 1); }
 
@@ -38,7 +38,7 @@ Eigen::AlignedBox2d EqualAspect(const Eigen::AlignedBox2d& box, const Eigen::Vec
   return {box.center() - half, box.center() + half};
 }
 
-size_t ThinningStep(size_t points) { return points / kMostPoints + 1; }
+size_t ThinningStep(size_t points) { return points / kMaxPoints + 1; }
 
 std::string Decimal(double value, int decimals) {
   std::array<char, 400> buffer;

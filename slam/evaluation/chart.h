@@ -16,8 +16,8 @@ struct Axes {
   Eigen::Vector2d size;    ///< Pixels.
 
   Eigen::Vector2d ToPixel(const Eigen::Vector2d& p) const {
-    const Eigen::Vector2d share = (p - data.min()).cwiseQuotient(data.sizes());
-    return origin + Eigen::Vector2d(share.x() * size.x(), -share.y() * size.y());
+    const Eigen::Vector2d fraction = (p - data.min()).cwiseQuotient(data.sizes());
+    return origin + Eigen::Vector2d(fraction.x() * size.x(), -fraction.y() * size.y());
   }
 };
 

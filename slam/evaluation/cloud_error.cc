@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "nn/base/check.h"
-#include "slam/depth/surface_confirmation.h"
+#include "slam/depth/geometric_consistency.h"
 
 namespace orb360 {
 namespace {
@@ -19,7 +19,7 @@ constexpr double kMaxTrueRange = 80.0;   // metres
 constexpr float kMaxSurfelRadius = 0.15f;  // metres
 /// Beyond this number every n-th element is compared: fractions of a million are known to a tenth
 /// of a percent.
-constexpr size_t kMostCompared = 1'000'000;
+constexpr size_t kMaxCompared = 1'000'000;
 
 std::array<int, 3> CellOf(const Eigen::Vector3f& position, float size) {
   return {static_cast<int>(std::floor(position.x() / size)),
@@ -68,18 +68,18 @@ float DistanceFrom(const Surfel& surfel, const Eigen::Vector3f& point) {
   return std::hypot(height, std::max(0.0f, aside - surfel.radius));
 }
 
-size_t StepFor(size_t count) { return count / kMostCompared + 1; }
+size_t StepFor(size_t count) { return count / kMaxCompared + 1; }
 
 /// Returns the fraction of the distances that are not larger, for each of kDistances.
-std::array<double, 2> Shares(std::span<const float> distances) {
-  std::array<double, 2> shares{};
-  for (size_t i = 0; i < shares.size(); ++i) {
+std::array<double, 2> FractionsWithin(std::span<const float> distances) {
+  std::array<double, 2> fractions{};
+  for (size_t i = 0; i < fractions.size(); ++i) {
     const auto within = std::ranges::count_if(distances, [i](float distance) {
       return distance <= static_cast<float>(CloudErrors::kDistances[i]);
     });
-    shares[i] = static_cast<double>(within) / static_cast<double>(distances.size());
+    fractions[i] = static_cast<double>(within) / static_cast<double>(distances.size());
   }
-  return shares;
+  return fractions;
 }
 
 }  // namespace
@@ -90,13 +90,13 @@ void TrueSurface::Add(const cv::Mat& range, const cv::Mat& excluded,
   ORB360_CHECK(excluded.empty() || (excluded.type() == CV_8UC1 && excluded.size() == range.size()),
                excluded.type(), excluded.size(), range.size());
   const cv::Mat certain(range.size(), CV_32FC1, cv::Scalar(1.0));
-  ConfirmationOptions options;
+  GeometricConsistencyOptions options;
   options.min_support = 0;
   const DepthView view({range, certain, {}}, world_from_camera, 1.0, options.min_error);
   const SamplingOptions sampling{kSurfelSpacing, kMaxTrueRange,
                                  std::numeric_limits<double>::infinity()};
   const float pixel_angle = std::numbers::pi_v<float> / static_cast<float>(range.rows);
-  for (const ConfirmedPoint& point : ConfirmSurface(view, {}, options, sampling)) {
+  for (const ConsistentPoint& point : FindConsistentPoints(view, {}, options, sampling)) {
     if (!excluded.empty() && excluded.at<std::uint8_t>(point.row, point.column) != 0) continue;
     const float distance = view.range(point.row, point.column);
     const Eigen::Vector3f ray = (world_from_camera.rotation.toRotationMatrix() *
@@ -170,8 +170,8 @@ CloudErrors CompareCloud(std::span<const Eigen::Vector3f> cloud, std::span<const
 
   errors.points = distances.size();
   errors.surfels = gaps.size();
-  errors.accuracy = Shares(distances);
-  errors.completeness = Shares(gaps);
+  errors.accuracy = FractionsWithin(distances);
+  errors.completeness = FractionsWithin(gaps);
   errors.median_distance = std::numeric_limits<double>::quiet_NaN();
   if (!distances.empty()) {
     const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);

@@ -81,11 +81,11 @@ std::string MakeTiles(const std::vector<HtmlReport::Tile>& tiles) {
   return html + "</div>\n";
 }
 
-std::string MakePicture(const HtmlReport::Picture& picture) {
+std::string MakeImage(const HtmlReport::Image& image) {
   std::string html = "<section>";
-  html += Element("h2", picture.title) + Element("p", picture.caption);
-  html += "<img alt=\"" + Escape(picture.title) + "\" src=\"data:" + picture.media_type +
-          ";base64," + EncodeBase64(picture.data) + "\"></section>\n";
+  html += Element("h2", image.title) + Element("p", image.caption);
+  html += "<img alt=\"" + Escape(image.title) + "\" src=\"data:" + image.media_type + ";base64," +
+          EncodeBase64(image.data) + "\"></section>\n";
   return html;
 }
 
@@ -154,7 +154,7 @@ std::string MakeHtml(const HtmlReport& report) {
   for (const std::string& warning : report.warnings) {
     html += Element("section class=\"warning\"", warning) + "\n";
   }
-  for (const HtmlReport::Picture& picture : report.pictures) html += MakePicture(picture);
+  for (const HtmlReport::Image& image : report.images) html += MakeImage(image);
   if (!report.bars.empty()) html += MakeBars(report);
   if (!report.table.empty()) html += MakeTable(report);
   return html + "</main></body></html>\n";

@@ -14,7 +14,7 @@ struct HtmlReport {
     std::string value;
     std::string label;
   };
-  struct Picture {
+  struct Image {
     std::string title;
     std::string caption;
     std::string data;        // of the file
@@ -35,7 +35,7 @@ struct HtmlReport {
   std::string subtitle;
   std::vector<Tile> tiles;
   std::vector<std::string> warnings;
-  std::vector<Picture> pictures;
+  std::vector<Image> images;
   std::string bars_title;
   std::string bars_unit;
   std::vector<Bar> bars;

@@ -9,7 +9,7 @@
 namespace orb360 {
 namespace {
 
-constexpr size_t kMostLandmarks = 20000;
+constexpr size_t kMaxLandmarks = 20000;
 constexpr int kShades = 5;  // of links
 
 /// Returns a command of an SVG path.
@@ -63,7 +63,7 @@ std::string PlotMap(std::span<const Eigen::Vector2d> keyframes, std::span<const 
   std::string svg = DrawAxes(axes, "from above", "x", "y");
   // Each landmark is a stroke as short as its width, which takes a tenth of the size of a circle.
   std::string marks;
-  const size_t step = landmarks.size() / kMostLandmarks + 1;
+  const size_t step = landmarks.size() / kMaxLandmarks + 1;
   for (size_t i = 0; i < landmarks.size(); i += step) {
     if (axes.data.contains(landmarks[i])) marks += To('M', axes.ToPixel(landmarks[i])) + "h1.2";
   }

@@ -10,8 +10,8 @@ namespace orb360 {
 namespace {
 
 /// Returns a colour from blue (no error) over green and yellow to red (the largest error).
-std::string ErrorColor(double share) {
-  const double hue = 220.0 * (1.0 - std::clamp(share, 0.0, 1.0));
+std::string ErrorColor(double fraction) {
+  const double hue = 220.0 * (1.0 - std::clamp(fraction, 0.0, 1.0));
   return "hsl(" + Decimal(hue, 0) + ",85%,45%)";
 }
 
@@ -36,9 +36,9 @@ std::string DrawFromAbove(std::span<const StampedPose> truth, std::span<const Po
       DrawPolyline(true_path, axes, "stroke=\"#999\" stroke-width=\"4\" stroke-linejoin=\"round\"");
   const size_t step = ThinningStep(path.size());
   for (size_t i = step; i < path.size(); i += step) {
-    const double share = errors.position_errors[i] / std::max(errors.ate_sim3.max, 1e-12);
+    const double fraction = errors.position_errors[i] / std::max(errors.ate_sim3.max, 1e-12);
     svg += DrawLine(axes.ToPixel(path[i - step]), axes.ToPixel(path[i]),
-                    "stroke=\"" + ErrorColor(share) + "\" stroke-width=\"2\"");
+                    "stroke=\"" + ErrorColor(fraction) + "\" stroke-width=\"2\"");
   }
   const Eigen::Vector2d start = axes.ToPixel(path.front());
   svg += DrawCircle(start, 5, "fill=\"none\" stroke=\"#000\"");

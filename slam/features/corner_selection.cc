@@ -20,11 +20,11 @@ struct Zone {
 };
 constexpr std::array<Zone, 6> kZones = {{{0, 4}, {4, 6}, {6, 8}, {8, 10}, {10, 12}, {12, 16}}};
 
-// Multiple of its even share that a band or a cell may contribute before weaker corners elsewhere
+// Multiple of its even quota that a band or a cell may contribute before weaker corners elsewhere
 // are preferred. With 1 the corners would be distributed most evenly, but the choice would depend
 // on the position of the cells. When a textured sphere is pitched by 45 degrees, 63 % of the
 // features are found again with 1, 72 % with 3, 74 % with 4, and at most 75 % without a limit.
-constexpr double kMaxShares = 4.0;
+constexpr double kMaxQuotas = 4.0;
 
 // Orders by strength, then by the position within the cell, which a roll by whole cells does not
 // change.
@@ -72,9 +72,9 @@ std::vector<Maximum> Scan(const PyramidLevel& level, const SphereBand& band, uin
   return maxima;
 }
 
-// Returns the strongest `max_per_cell` maxima of each cell; the first `share` of them are marked.
+// Returns the strongest `max_per_cell` maxima of each cell; the first `quota` of them are marked.
 std::vector<Maximum> LimitCells(const std::vector<Maximum>& maxima, size_t max_per_cell,
-                                size_t share) {
+                                size_t quota) {
   std::array<size_t, kSphereColumns + 1> begin = {};
   for (const Maximum& m : maxima) ++begin[m.cell + 1];
   for (int c = 0; c < kSphereColumns; ++c) begin[c + 1] += begin[c];
@@ -87,25 +87,25 @@ std::vector<Maximum> LimitCells(const std::vector<Maximum>& maxima, size_t max_p
     const size_t count = std::min(cell.size(), max_per_cell);
     std::partial_sort(cell.begin(), cell.begin() + count, cell.end(), IsStronger);
     for (size_t i = 0; i < count; ++i) {
-      cell[i].within_share = i < share;
+      cell[i].within_quota = i < quota;
       kept.push_back(cell[i]);
     }
   }
   return kept;
 }
 
-// Unmarks all maxima that are weaker than the `share` strongest marked ones.
-void LimitBand(int share, std::vector<Maximum>* maxima) {
+// Unmarks all maxima that are weaker than the `quota` strongest marked ones.
+void LimitBand(int quota, std::vector<Maximum>* maxima) {
   std::array<int, 256> histogram = {};
-  for (const Maximum& m : *maxima) histogram[m.score] += m.within_share;
+  for (const Maximum& m : *maxima) histogram[m.score] += m.within_quota;
   int weakest = 255;
-  for (int sum = histogram[weakest]; sum < share && weakest > 0;) sum += histogram[--weakest];
-  for (Maximum& m : *maxima) m.within_share &= m.score >= weakest;
+  for (int sum = histogram[weakest]; sum < quota && weakest > 0;) sum += histogram[--weakest];
+  for (Maximum& m : *maxima) m.within_quota &= m.score >= weakest;
 }
 
 // Fraction of the sphere's solid angle between two rows: half the difference of the sines of their
 // latitudes.
-double ShareOfSphere(int height, int y_begin, int y_end) {
+double FractionOfSphere(int height, int y_begin, int y_end) {
   const auto sine = [&](int y) { return std::cos(std::numbers::pi * y / height); };
   return 0.5 * (sine(y_begin) - sine(y_end));
 }
@@ -120,7 +120,7 @@ struct Candidate {
 void TakeStrongest(int count, std::vector<Candidate>* candidates, std::vector<Candidate>* taken) {
   if (count <= 0) return;
   const auto preference = [](const Candidate& c) {
-    return (c.maximum.within_share ? 256 : 0) + c.maximum.score;
+    return (c.maximum.within_quota ? 256 : 0) + c.maximum.score;
   };
   std::array<int, 512> histogram = {};
   for (const Candidate& c : *candidates) ++histogram[preference(c)];
@@ -158,14 +158,14 @@ Corner PlaceOnLevel(const Maximum& m, int band, int band_width, int level_width)
 
 BandMaxima FindMaxima(const PyramidLevel& level, const SphereBand& band, int count,
                       uint8_t min_score, const cv::Mat& mask) {
-  const double share = ShareOfSphere(level.camera.height(), band.y_begin, band.y_end);
-  const int per_band = static_cast<int>(std::ceil(kMaxShares * share * count));
+  const double fraction = FractionOfSphere(level.camera.height(), band.y_begin, band.y_end);
+  const int per_band = static_cast<int>(std::ceil(kMaxQuotas * fraction * count));
   const int per_cell = (per_band + kSphereColumns - 1) / kSphereColumns;
-  // No cell is asked for more than a few times its share.
+  // No cell is asked for more than a few times its quota.
   std::vector<Maximum> maxima =
       LimitCells(Scan(level, band, min_score, mask), 2 * (per_cell + 1), per_cell);
   LimitBand(per_band, &maxima);
-  return {band.width, share, std::move(maxima)};
+  return {band.width, fraction, std::move(maxima)};
 }
 
 std::vector<Corner> SelectCorners(std::span<const BandMaxima> bands, int level_width, int count) {
@@ -174,12 +174,12 @@ std::vector<Corner> SelectCorners(std::span<const BandMaxima> bands, int level_w
   std::vector<Candidate> candidates;
   for (const Zone& zone : kZones) {
     candidates.clear();
-    double share = 0;
+    double fraction = 0;
     for (int band = zone.begin; band < zone.end; ++band) {
       for (const Maximum& m : bands[band].maxima) candidates.push_back({band, m});
-      share += bands[band].share;
+      fraction += bands[band].fraction;
     }
-    TakeStrongest(static_cast<int>(std::lround(share * count)), &candidates, &taken);
+    TakeStrongest(static_cast<int>(std::lround(fraction * count)), &candidates, &taken);
     spare.insert(spare.end(), candidates.begin(), candidates.end());
   }
   TakeStrongest(count - static_cast<int>(taken.size()), &spare, &taken);

@@ -17,13 +17,13 @@ struct Maximum {
   int y;
   uint8_t score, left, right, above, below;
   uint8_t cell;       // column of cells, of 32
-  bool within_share;  // among the strongest of its cell and its band
+  bool within_quota;  // among the strongest of its cell and its band
 };
 
 /// The maxima of one band from which SelectCorners chooses.
 struct BandMaxima {
-  int width = 0;     // of the band, pixels
-  double share = 0;  // of the sphere's solid angle
+  int width = 0;        // of the band, pixels
+  double fraction = 0;  // of the sphere's solid angle
   std::vector<Maximum> maxima;
 };
 
@@ -44,7 +44,7 @@ struct Corner {
 
 /// Selects about `count` corners of a level from all its bands. Each zone of latitude gets a number
 /// in proportion to its solid angle. Within a zone the strongest corners are selected, but no band
-/// and no cell (a 32nd of a band) gets more than four times its even share while others have
+/// and no cell (a 32nd of a band) gets more than four times its even quota while others have
 /// corners left. Corners that a zone lacks are taken from other zones. The result is ordered by
 /// row, then column.
 ///

@@ -16,7 +16,7 @@ namespace orb360 {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::CappedTag<float, BearingColumns::kMostLanes>;
+using D = hn::CappedTag<float, BearingColumns::kMaxLanes>;
 using V = hn::Vec<D>;
 
 namespace {
@@ -123,7 +123,7 @@ namespace {
 // along each face.
 constexpr int kCellsPerEdge = 4;
 constexpr int kCells = 6 * kCellsPerEdge * kCellsPerEdge;
-static_assert(kCells % BearingColumns::kMostLanes == 0);  // vectors of cells hold nothing else
+static_assert(kCells % BearingColumns::kMaxLanes == 0);  // vectors of cells hold nothing else
 
 int CellOnCube(const Eigen::Vector3d& bearing) {
   int axis = 0;
@@ -142,7 +142,7 @@ BearingColumns::BearingColumns(std::span<const Eigen::Vector3d> bearings,
                                std::span<const double> sigmas)
     : index_(bearings.size()) {
   for (std::vector<float>* column : {&x_, &y_, &z_, &variance_}) {
-    column->resize(bearings.size() + kMostLanes);
+    column->resize(bearings.size() + kMaxLanes);
   }
   std::vector<int> of_bearing(bearings.size());
   cells_.first.resize(kCells + 1);

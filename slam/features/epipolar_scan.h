@@ -12,7 +12,7 @@ namespace orb360 {
 /// padding at their end.
 class BearingColumns {
  public:
-  static constexpr int kMostLanes = 16;  // of the longest vector
+  static constexpr int kMaxLanes = 16;  // of the longest vector
 
   BearingColumns(std::span<const Eigen::Vector3d> bearings, std::span<const double> sigmas);
 

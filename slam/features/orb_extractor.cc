@@ -18,7 +18,7 @@ namespace {
 // the other side of a street. The exponent was measured (docs/results/features.md).
 double Weight(const PyramidLevel& level) { return std::pow(level.scale, -4.0); }
 
-std::vector<int> ShareOut(int num_features, const SpherePyramid& levels) {
+std::vector<int> FeaturesPerLevel(int num_features, const SpherePyramid& levels) {
   double total = 0;
   for (const PyramidLevel& level : levels) total += Weight(level);
   std::vector<int> counts;
@@ -44,7 +44,7 @@ Features OrbExtractor::Extract(const cv::Mat& gray, const cv::Mat& mask, int num
                mask.rows);
   BuildSpherePyramid(gray, options_.num_levels, &levels_, num_threads);
   const SpherePyramid& levels = levels_;
-  const std::vector<int> counts = ShareOut(options_.num_features, levels);
+  const std::vector<int> counts = FeaturesPerLevel(options_.num_features, levels);
   const uint8_t min_score = static_cast<uint8_t>(options_.min_score);
   const int num_bands = static_cast<int>(levels.size()) * kSphereBands;
   bands_.resize(num_bands);

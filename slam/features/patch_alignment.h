@@ -21,7 +21,7 @@ std::optional<Patch> SamplePatch(const PyramidLevel& level, const PatchGrid& gri
 
 struct AlignedPatch {
   Eigen::Vector2d center;  // continuous pixel
-  PatchSlope slope;        // with what this picture adds
+  PatchSlope slope;        // with what this image adds
 };
 
 /// Finds the centre at which `level` shows `patch` by Gauss-Newton steps from a guess that is at

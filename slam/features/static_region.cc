@@ -27,7 +27,7 @@ constexpr int kBox = 5;
 // Below this value the camera stands still.
 constexpr float kMinMotion = 0.25f;
 // A pixel is static if it moves less than this fraction of the median motion.
-constexpr float kStaticShare = 0.3f;
+constexpr float kStaticRatio = 0.3f;
 // Differences are capped (gray levels), so that an occluding edge does not outweigh the rest.
 constexpr float kMaxChange = 40.0f;
 // Nothing was recorded where no image is brighter than this (of 255).
@@ -35,14 +35,14 @@ constexpr double kBlack = 12.0;
 // Regions smaller than this fraction of the sphere are ignored.
 constexpr double kMinArea = 0.004;
 
-double SolidAngleShare(const cv::Mat& region) {
-  double share = 0;
+double SolidAngleFraction(const cv::Mat& region) {
+  double fraction = 0;
   for (int y = 0; y < kHeight; ++y) {
     const double row = 0.5 * (std::cos(std::numbers::pi * y / kHeight) -
                               std::cos(std::numbers::pi * (y + 1) / kHeight));
-    share += row * cv::countNonZero(region.row(y)) / kWidth;
+    fraction += row * cv::countNonZero(region.row(y)) / kWidth;
   }
-  return share;
+  return fraction;
 }
 
 // Continues the panorama across the seam, so that filters and regions continue there.
@@ -81,7 +81,7 @@ cv::Mat LargeRegions(const cv::Mat& region) {
     cv::Mat folded = wide(cv::Rect(kWidth / 2, 0, kWidth, kHeight)).clone();
     folded.colRange(kWidth / 2, kWidth) |= wide.colRange(0, kWidth / 2);
     folded.colRange(0, kWidth / 2) |= wide.colRange(kWidth + kWidth / 2, 2 * kWidth);
-    if (SolidAngleShare(folded) >= kMinArea) kept |= folded;
+    if (SolidAngleFraction(folded) >= kMinArea) kept |= folded;
   }
   cv::Mat grown;
   cv::dilate(Unroll(kept, 4), grown, cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5}));
@@ -155,7 +155,7 @@ cv::Mat StaticRegionDetector::Mask(cv::Size size) const {
       }
     }
     std::nth_element(motion.begin(), motion.begin() + motion.size() / 2, motion.end());
-    cv::Mat still = (ratio < kStaticShare * motion[motion.size() / 2]) & textured;
+    cv::Mat still = (ratio < kStaticRatio * motion[motion.size() / 2]) & textured;
     const int first_row = static_cast<int>((0.5 - kMaxLatitude / std::numbers::pi) * kHeight);
     still.rowRange(0, first_row).setTo(0);
     // Smooth parts between static texture belong to the same body.

@@ -26,7 +26,7 @@ struct AbsolutePose {
 /// The error of a correspondence is the sine of the angle between the bearing and the direction to
 /// the point, in standard deviations `sigmas` (radians in each direction; the points are treated as
 /// exact). For relocalization, where most matches may be wrong, use a smaller
-/// options.min_inlier_share.
+/// options.min_inlier_ratio.
 ///
 /// Returns nullopt when fewer than options.min_inliers agree. Throws ContractError when sizes
 /// differ.

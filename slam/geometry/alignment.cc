@@ -31,11 +31,11 @@ std::optional<Centered> AlignCentered(std::span<const Vector3d> source,
                                       std::span<const Vector3d> target) {
   ORB360_CHECK(source.size() == target.size(), source.size(), target.size());
   if (source.empty()) return std::nullopt;
-  const double share = 1.0 / static_cast<double>(source.size());
+  const double fraction = 1.0 / static_cast<double>(source.size());
   Centered result{Vector3d::Zero(), Vector3d::Zero()};
   for (size_t i = 0; i < source.size(); ++i) {
-    result.source_mean += share * source[i];
-    result.target_mean += share * target[i];
+    result.source_mean += fraction * source[i];
+    result.target_mean += fraction * target[i];
   }
   if (!result.source_mean.allFinite() || !result.target_mean.allFinite()) return std::nullopt;
 
@@ -43,9 +43,9 @@ std::optional<Centered> AlignCentered(std::span<const Vector3d> source,
   for (size_t i = 0; i < source.size(); ++i) {
     const Vector3d s = source[i] - result.source_mean;
     const Vector3d t = target[i] - result.target_mean;
-    result.source_variance += share * s.squaredNorm();
-    result.target_variance += share * t.squaredNorm();
-    covariance += share * t * s.transpose();
+    result.source_variance += fraction * s.squaredNorm();
+    result.target_variance += fraction * t.squaredNorm();
+    covariance += fraction * t * s.transpose();
   }
   const auto is_single_place = [](double variance, const Vector3d& mean) {
     return variance <= kSamePlace * kSamePlace * mean.squaredNorm();

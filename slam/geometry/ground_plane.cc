@@ -16,7 +16,7 @@ constexpr int kRefinements = 5;      // of the plane by the points on it
 // Reach of the biweight in median deviations. With 4.685 standard deviations it is 95 % as
 // efficient as least squares on normally distributed points.
 constexpr double kBiweightReach = 4.685 * 1.4826;
-constexpr double kMinTolerance = 0.1;  // as a share of the first one
+constexpr double kMinTolerance = 0.1;  // as a fraction of the first one
 
 struct Plane {
   Eigen::Vector3d normal;  // unit, towards the origin
@@ -120,8 +120,8 @@ std::optional<GroundPlane> FitGroundPlane(std::span<const Eigen::Vector3d> point
       best = plane;
       // The sum of weights is smaller than the number of points on the plane, so this draws too
       // many samples rather than too few.
-      const double share = support / static_cast<double>(below.size());
-      const double needed = std::log(kMaxMissed) / std::log1p(-std::pow(share, 3));
+      const double fraction = support / static_cast<double>(below.size());
+      const double needed = std::log(kMaxMissed) / std::log1p(-std::pow(fraction, 3));
       if (needed < kMaxSamples) {
         num_samples = std::max(kMinSamples, static_cast<int>(std::ceil(needed)));
       }
@@ -139,7 +139,7 @@ std::optional<GroundPlane> FitGroundPlane(std::span<const Eigen::Vector3d> point
   const auto on_it = std::ranges::count_if(
       below, [&](const Eigen::Vector3d& p) { return Weight(*best, p, options.tolerance) > 0; });
   if (on_it < options.min_points ||
-      static_cast<double>(on_it) < options.min_share * static_cast<double>(below.size())) {
+      static_cast<double>(on_it) < options.min_fraction * static_cast<double>(below.size())) {
     return std::nullopt;
   }
   const double narrow = NarrowTolerance(*best, below, options.tolerance);

@@ -27,7 +27,7 @@ struct GroundPlaneOptions {
   double tolerance = 0.05;
   /// A ground must contain this many points and the fraction below of all points under the camera.
   int min_points = 20;
-  double min_share = 0.3;
+  double min_fraction = 0.3;
 };
 
 /// Fits the plane that contains most points below the camera, by random samples with a fixed seed

@@ -25,11 +25,11 @@ struct RansacOptions {
   /// geometry by chance.
   int min_inliers = 12;
   /// Sampling ends when a sample without outliers has been drawn with this probability, if the
-  /// fraction of correct correspondences is min_inlier_share.
+  /// fraction of correct correspondences is min_inlier_ratio.
   double confidence = 0.999;
   /// Least fraction of correct correspondences that is assumed. 0.4 allows 40 samples of two, 105
   /// of three, and 672 of five.
-  double min_inlier_share = 0.4;
+  double min_inlier_ratio = 0.4;
   /// The same seed gives the same result.
   uint64_t seed = 1;
 };
@@ -120,17 +120,17 @@ template <typename Model, size_t kSampleSize, typename Solve, typename Error, ty
 std::optional<Model> Ransac(size_t count, const RansacOptions& options, const Solve& solve,
                             const Error& error, const Refine& refine) {
   if (count < kSampleSize) return std::nullopt;
-  ORB360_CHECK(options.min_inlier_share > 0.0, options.min_inlier_share);
+  ORB360_CHECK(options.min_inlier_ratio > 0.0, options.min_inlier_ratio);
   const TukeyLoss loss(options);
   const double inlier_limit = options.max_error * options.max_error;
   std::optional<Model> best;
   double best_loss = std::numeric_limits<double>::infinity();
   // Number of samples after which one is free of outliers with the wanted confidence.
-  const auto iterations_for = [&](double inlier_share) {
-    const double all_right = std::pow(inlier_share, kSampleSize);
+  const auto iterations_for = [&](double inlier_ratio) {
+    const double all_right = std::pow(inlier_ratio, kSampleSize);
     return all_right < 1.0 ? std::log(1.0 - options.confidence) / std::log1p(-all_right) : 0.0;
   };
-  double iterations_needed = iterations_for(options.min_inlier_share);
+  double iterations_needed = iterations_for(options.min_inlier_ratio);
 
   const auto is_best = [&](const Model& model) {
     double sum = 0.0;
@@ -143,8 +143,8 @@ std::optional<Model> Ransac(size_t count, const RansacOptions& options, const So
     if (!(sum < best_loss)) return false;
     best = model;
     best_loss = sum;
-    const double inlier_share = static_cast<double>(inliers) / count;
-    iterations_needed = iterations_for(std::max(inlier_share, options.min_inlier_share));
+    const double inlier_ratio = static_cast<double>(inliers) / count;
+    iterations_needed = iterations_for(std::max(inlier_ratio, options.min_inlier_ratio));
     return true;
   };
   // A model through few noisy correspondences is far from most others, so the loss starts wide.

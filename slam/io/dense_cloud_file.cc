@@ -7,7 +7,7 @@
 
 namespace orb360 {
 
-DenseCloudSummary WriteDenseCloud(const std::filesystem::path& path, const RangeStore& store,
+DenseCloudSummary WriteDenseCloud(const std::filesystem::path& path, const DepthMapStore& store,
                                   std::span<const DenseView> views,
                                   const DenseCloudOptions& options,
                                   const std::function<void(std::span<const SurfacePoint>)>& look) {
@@ -24,7 +24,7 @@ DenseCloudSummary WriteDenseCloud(const std::filesystem::path& path, const Range
     points.clear();
     for (const Voxel& voxel : voxels) {
       points.push_back(
-          MakeSurfacePoint(voxel, summary.fusion.voxel_size, options.confirmation.max_independent));
+          MakeSurfacePoint(voxel, summary.fusion.voxel_size, options.consistency.max_independent));
     }
     writer.Append(points);
     if (look) look(points);

@@ -6,7 +6,7 @@
 
 #include "slam/depth/dense_cloud.h"
 #include "slam/depth/surface_point.h"
-#include "slam/io/range_store.h"
+#include "slam/io/depth_map_store.h"
 
 namespace orb360 {
 
@@ -15,7 +15,7 @@ namespace orb360 {
 /// are kept in a folder `PATH.voxels` meanwhile. `look`, if given, receives all points in pieces.
 /// Throws UserError if the disk fails.
 DenseCloudSummary WriteDenseCloud(
-    const std::filesystem::path& path, const RangeStore& store, std::span<const DenseView> views,
+    const std::filesystem::path& path, const DepthMapStore& store, std::span<const DenseView> views,
     const DenseCloudOptions& options,
     const std::function<void(std::span<const SurfacePoint>)>& look = nullptr);
 

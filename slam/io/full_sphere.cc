@@ -16,11 +16,11 @@ void RequireFullSphere(const std::string& name, cv::Size size) {
   const std::string problem = name + ": " + ToString(size) + " is not a full sphere";
   if (size.width == size.height) {
     throw UserError(problem +
-                    ": a square picture may be stereo with one eye above the other; crop it to "
-                    "one eye (an equirectangular picture is twice as wide as high)");
+                    ": a square image may be stereo with one eye above the other; crop it to "
+                    "one eye (an equirectangular image is twice as wide as high)");
   }
   throw UserError(problem +
-                  ": an equirectangular picture is twice as wide as high; export the recording as "
+                  ": an equirectangular image is twice as wide as high; export the recording as "
                   "equirectangular (360°) video, or scale it to " +
                   ToString({size.width, size.width / 2}) +
                   " if it is a full sphere that was squeezed");

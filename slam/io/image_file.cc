@@ -118,7 +118,7 @@ std::optional<cv::Size> ProbeImageSize(const std::filesystem::path& path) {
   // These sizes are enough for the preview image that cameras store before the header of the image
   // itself: one EXIF segment has at most 64 KiB, and usually a few KiB.
   constexpr size_t kFirst = 4096;
-  constexpr size_t kMost = 65536;
+  constexpr size_t kMaxBytes = 65536;
   std::ifstream file(path, std::ios::binary);
   std::string data = ReadBytes(file, kFirst);
   if (data.starts_with(kPngSignature)) {
@@ -130,7 +130,7 @@ std::optional<cv::Size> ProbeImageSize(const std::filesystem::path& path) {
   if (!data.starts_with(kJpegSignature)) return {};
   JpegLayout layout = WalkJpeg(data);
   if (!layout.size && data.size() == kFirst) {
-    data += ReadBytes(file, kMost - kFirst);
+    data += ReadBytes(file, kMaxBytes - kFirst);
     layout = WalkJpeg(data);
   }
   return layout.size;

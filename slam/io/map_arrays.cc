@@ -98,9 +98,9 @@ void CheckSizes(const MapArrays& a) {
   RequireSize(a.first_keyframe, landmarks, 1, "first_keyframe");
   RequireSize(a.visible, landmarks, 1, "visible");
   RequireSize(a.found, landmarks, 1, "found");
-  constexpr size_t kMost = std::numeric_limits<int32_t>::max();
+  constexpr size_t kMaxCount = std::numeric_limits<int32_t>::max();
   if (keyframes == 0) throw UserError("holds no map: it has no keyframe");
-  if (std::max({keyframes, features, landmarks}) > kMost) {
+  if (std::max({keyframes, features, landmarks}) > kMaxCount) {
     throw UserError("holds more than any map");
   }
   int64_t before = 0;

@@ -9,20 +9,20 @@
 #include <hdf5.h>
 
 #include "nn/base/check.h"
+#include "nn/base/checksummed_file.h"
 #include "nn/base/hdf5_handle.h"
-#include "nn/base/sealed_file.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/map_arrays.h"
 
 namespace orb360 {
 namespace {
 
-constexpr SealedKind kKind = {"ORB360MP",
-                              2,
-                              "map",
-                              "`orb360 run --map-out`",
-                              "make the map anew with this one",
-                              std::uintmax_t{1} << 36};
+constexpr ChecksummedFormat kKind = {"ORB360MP",
+                                     2,
+                                     "map",
+                                     "`orb360 run --map-out`",
+                                     "make the map anew with this one",
+                                     std::uintmax_t{1} << 36};
 
 hid_t TypeOf(float) { return H5T_IEEE_F32LE; }
 hid_t TypeOf(double) { return H5T_IEEE_F64LE; }
@@ -58,8 +58,8 @@ void ReadColumn(hid_t file, const char* name, int width, std::vector<T>* column)
                         size[1] == static_cast<hsize_t>(width) &&
                         H5Tequal(type.get(), TypeOf(T{})) > 0;
   // The largest number of rows that a file without compression can contain.
-  constexpr hsize_t kMost = (hsize_t{1} << 36) / 8;
-  if (!is_table || size[0] > kMost) {
+  constexpr hsize_t kMaxSize = (hsize_t{1} << 36) / 8;
+  if (!is_table || size[0] > kMaxSize) {
     std::string reason = "holds no map: dataset ";
     reason += name;
     throw UserError(reason + " is of another type or shape");
@@ -80,7 +80,7 @@ void Require(bool is_right, const char* what) {
 }
 
 int OnlyWidth(const std::vector<int32_t>& width) {
-  Require(width.size() == 1 && width[0] > 0, "it has no size of pictures");
+  Require(width.size() == 1 && width[0] > 0, "it has no size of images");
   return width[0];
 }
 
@@ -109,7 +109,7 @@ std::optional<KnownGround> GroundOf(const std::vector<double>& ground) {
 void WriteMap(const std::filesystem::path& path, const StoredMap& stored) {
   std::string content;
   {
-    const Hdf5Handle file = CreateSealedContent();
+    const Hdf5Handle file = CreateChecksummedContent();
     WriteColumn(file.get(), "width", std::vector<int32_t>{stored.width}, 1);
     const Rigid3& world = stored.file_world_from_map;
     std::vector<double> pose = {world.translation.x(), world.translation.y(),
@@ -129,16 +129,16 @@ void WriteMap(const std::filesystem::path& path, const StoredMap& stored) {
     content = TakeContent(file);
   }
   AtomicFile file(path);
-  file.Write(MakeSeal(kKind, content));
+  file.Write(MakeChecksumHeader(kKind, content));
   file.Write(content);
   file.Commit();
 }
 
 StoredMap ReadMap(const std::filesystem::path& path) {
   try {
-    FileBytes bytes = ReadSealedFile(path, kKind);
+    FileBytes bytes = ReadChecksummedFile(path, kKind);
     const Hdf5Quiet quiet;
-    const Hdf5Handle file = OpenSealed(&bytes);
+    const Hdf5Handle file = OpenChecksummedContent(&bytes);
     std::vector<int32_t> width;
     ReadColumn(file.get(), "width", 1, &width);
     std::vector<double> pose;

@@ -11,7 +11,7 @@ namespace orb360 {
 
 /// A map as it is stored for later runs.
 struct StoredMap {
-  int width = 0;  // of the pictures that it was made from, pixels
+  int width = 0;  // of the images that it was made from, pixels
   /// Pose of the map in the world of the trajectories and clouds that were written with it. Later
   /// runs write in the same world.
   Rigid3 file_world_from_map = {};

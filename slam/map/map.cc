@@ -93,10 +93,10 @@ void Map::RemoveKeyframe(KeyframeId id, KeyframeId successor) {
   --num_keyframes_;
 }
 
-void Map::ForgetPictures(int num_kept) {
+void Map::ForgetImages(int num_kept) {
   int num_newer = 0;
   for (KeyframeId id = keyframe_end() - 1; id >= 0; --id) {
-    if (HasKeyframe(id) && num_newer++ >= num_kept) keyframes_[id]->picture.reset();
+    if (HasKeyframe(id) && num_newer++ >= num_kept) keyframes_[id]->image.reset();
   }
 }
 

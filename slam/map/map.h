@@ -56,9 +56,9 @@ struct Keyframe {
   double timestamp = 0;  // s
   Rigid3 world_from_camera;
   std::shared_ptr<const Features> features;
-  std::vector<LandmarkId> landmarks;     // by feature; kNoId where it sees none
-  std::vector<RangePrior> range_priors;  // by feature; empty where its depth is not completed
-  std::shared_ptr<const SpherePyramid> picture;  // kept for a while only
+  std::vector<LandmarkId> landmarks;           // by feature; kNoId where it sees none
+  std::vector<RangePrior> range_priors;        // by feature; empty where its depth is not completed
+  std::shared_ptr<const SpherePyramid> image;  // kept for a while only
 
   RangePrior PriorOf(int feature) const {
     return range_priors.empty() ? RangePrior{} : range_priors[feature];
@@ -77,7 +77,7 @@ struct Landmark {
   Color color{};
   KeyframeId first_keyframe = kNoId;           // the newest keyframe when it was made
   std::vector<Observation> observations;       // ordered by keyframe
-  std::shared_ptr<const LandmarkPatch> patch;  // null where no picture that shows it was kept
+  std::shared_ptr<const LandmarkPatch> patch;  // null where no image that shows it was kept
   PatchSlope patch_slope;                      // of the surface in it
   int visible = 1;                             // frames in which it should have been seen
   int found = 1;                               // and was
@@ -106,7 +106,7 @@ class Map {
   void RemoveKeyframe(KeyframeId id, KeyframeId successor);
 
   /// Releases the images of all keyframes except the newest `num_kept`.
-  void ForgetPictures(int num_kept);
+  void ForgetImages(int num_kept);
 
   /// Adds a landmark without observations.
   LandmarkId AddLandmark(const Eigen::Vector3d& position, const Color& color);

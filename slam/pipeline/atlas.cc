@@ -49,7 +49,7 @@ void Atlas::Apply(const MapUpdate& update) {
 MapUpdate Atlas::SwitchTo(int finished, KeyframeId reference) {
   const int present = present_number();
   ORB360_CHECK(!is_lent() && finished >= 0 && finished < present, finished, present);
-  maps_.back().ForgetPictures(0);
+  maps_.back().ForgetImages(0);
   std::swap(maps_.back(), maps_[finished]);
   std::swap(grounds_.back(), grounds_[finished]);
   MapRenumbering renumbering{.number_of = std::vector<int>(maps_.size())};
@@ -61,7 +61,7 @@ MapUpdate Atlas::SwitchTo(int finished, KeyframeId reference) {
 void Atlas::Begin(Map map) {
   ORB360_CHECK(!is_lent());
   if (maps_.back().num_keyframes() > 0) {
-    maps_.back().ForgetPictures(0);
+    maps_.back().ForgetImages(0);
     maps_.emplace_back();
     grounds_.emplace_back();
   }
@@ -69,7 +69,7 @@ void Atlas::Begin(Map map) {
 }
 
 void Atlas::Finish() {
-  maps_.back().ForgetPictures(0);
+  maps_.back().ForgetImages(0);
   if (maps_.back().num_keyframes() > 0) return;
   std::erase_if(anchors_, [this](const auto& a) { return a.second.map == present_number(); });
   maps_.pop_back();

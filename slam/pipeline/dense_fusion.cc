@@ -7,7 +7,7 @@ namespace orb360 {
 
 DenseCloudSummary WriteDenseCloud(const std::filesystem::path& path,
                                   const Reconstruction& reconstruction,
-                                  const RangeStore& depth_maps, const Rigid3& target_from_world,
+                                  const DepthMapStore& depth_maps, const Rigid3& target_from_world,
                                   int num_threads) {
   return WriteDenseCloud(path, depth_maps, MakeDenseViews(reconstruction, target_from_world),
                          CloudOptionsFor(reconstruction, num_threads));

@@ -8,14 +8,14 @@
 
 namespace orb360 {
 
-class RangeStore;
+class DepthMapStore;
 
 /// Fuses the depth of all keyframes into one cloud (FuseCloud) and writes it as PLY
 /// (SurfacePlyWriter), in the world that `target_from_world` leads to. `depth_maps`: of the system
 /// that made the reconstruction. Throws UserError where the disk fails.
 DenseCloudSummary WriteDenseCloud(const std::filesystem::path& path,
                                   const Reconstruction& reconstruction,
-                                  const RangeStore& depth_maps, const Rigid3& target_from_world,
+                                  const DepthMapStore& depth_maps, const Rigid3& target_from_world,
                                   int num_threads);
 
 }  // namespace orb360

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "slam/io/range_store.h"
+#include "slam/io/depth_map_store.h"
 #include "slam/optimization/local_bundle_adjustment.h"
 #include "slam/pipeline/keyframe_completion.h"
 
@@ -44,7 +44,7 @@ class DenseMapper {
 
   /// Frame indices of the keyframes that were given depth, in their order.
   const std::vector<int>& frames() const { return frames_; }
-  const RangeStore& depth_maps() const { return depth_maps_; }
+  const DepthMapStore& depth_maps() const { return depth_maps_; }
   /// Why depth could not be kept (a full disk); null where it was. Not before Flush.
   std::exception_ptr failure() const { return failure_; }
 
@@ -55,7 +55,7 @@ class DenseMapper {
   std::vector<int> frames_;
   std::vector<DenseGround> grounds_;
   std::exception_ptr failure_;
-  RangeStore depth_maps_;
+  DepthMapStore depth_maps_;
   DepthCompleter completer_;
   KeyframeCompletion completion_;  // last: it ends before what it uses
 };

@@ -92,7 +92,7 @@ bool FrontEnd::NeedsKeyframe() const {
       std::max(local_.median_range, 1e-12);
   if (motion < options.min_motion) return false;
   return motion > options.max_motion ||
-         last.num_inliers < options.min_tracked_share * local_.reference_matches ||
+         last.num_inliers < options.min_tracked_fraction * local_.reference_matches ||
          last.num_inliers < options.urgent_inliers;
 }
 

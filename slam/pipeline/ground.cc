@@ -11,13 +11,16 @@ namespace {
 
 // Keyframes whose landmarks are looked at as well: its own are few, below.
 constexpr size_t kNeighbours = 5;
-constexpr double kSameHeight = 0.1;    // as a share
-constexpr double kMinAgreement = 0.6;  // share of the keyframes with the same height
+constexpr double kSameHeight = 0.1;    // as a fraction
+constexpr double kMinAgreement = 0.6;  // fraction of the keyframes with the same height
 constexpr size_t kMinKeyframes = 3;
 
 // Before anything is known of the ground.
-constexpr GroundPlaneOptions kFirstLook{
-    .min_below = 0.35, .max_tilt = 0.7854, .tolerance = 0.08, .min_points = 20, .min_share = 0.25};
+constexpr GroundPlaneOptions kFirstLook{.min_below = 0.35,
+                                        .max_tilt = 0.7854,
+                                        .tolerance = 0.08,
+                                        .min_points = 20,
+                                        .min_fraction = 0.25};
 
 // Landmarks around a keyframe, relative to its camera in the axes of the world.
 std::vector<Eigen::Vector3d> PointsAround(const Map& map, const Keyframe& keyframe) {

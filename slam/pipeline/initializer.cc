@@ -31,7 +31,7 @@ MatchedViews EstimateMotion(const Features& features1, const Features& features2
   }
   RansacOptions ransac;
   ransac.min_inliers =
-      std::max(options.min_landmarks, static_cast<int>(options.min_inlier_share * matches.size()));
+      std::max(options.min_landmarks, static_cast<int>(options.min_inlier_ratio * matches.size()));
   std::optional<RelativePose> pose;
   if (static_cast<int>(matches.size()) >= options.min_landmarks) {
     pose = EstimateRelativePose(bearings1, bearings2, sigmas1, sigmas2, ransac);

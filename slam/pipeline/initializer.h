@@ -21,8 +21,8 @@ struct InitializerOptions {
   double min_parallax_sigmas = 5.0;
   /// Parallax of a single landmark, radians.
   double min_landmark_parallax = 0.01;
-  /// Of all matches, the share that must agree with the motion.
-  double min_inlier_share = 0.5;
+  /// Of all matches, the fraction that must agree with the motion.
+  double min_inlier_ratio = 0.5;
 };
 
 /// Two views of a rigid scene: frame 1's camera is the world's origin; unit of length arbitrary.

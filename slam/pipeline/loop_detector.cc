@@ -126,7 +126,7 @@ std::optional<TrackResult> LoopDetector::TrackAt(const Features& features, const
   };
   const auto expected = std::ranges::count_if(result->expected, is_sure);
   const auto found = std::ranges::count_if(result->landmarks, is_sure);
-  if (static_cast<double>(found) < options_.min_found_share * static_cast<double>(expected)) {
+  if (static_cast<double>(found) < options_.min_found_fraction * static_cast<double>(expected)) {
     return std::nullopt;
   }
   return result;
@@ -175,7 +175,7 @@ std::optional<Revisit> LoopDetector::Verify(
   if (ratios.size() < kMinRatios) return std::nullopt;
   const auto middle = ratios.begin() + ratios.size() / 2;
   std::nth_element(ratios.begin(), middle, ratios.end());
-  // Pictures are alike over a few metres: what looked most like this one need not be the nearest.
+  // Images are alike over a few metres: what looked most like this one need not be the nearest.
   const auto distance = [&](KeyframeId id) {
     return (place_map.keyframe(id).world_from_camera.translation -
             result->world_from_camera.translation)
@@ -204,17 +204,17 @@ std::optional<Loop> LoopDetector::Observe(const Map& map, KeyframeId newest,
   const double min_way = options_.min_length * map.MedianRange(newest);
   const auto is_apart = [&](KeyframeId id) { return !is_connected[id] && ways[id] >= min_way; };
   std::vector<uint8_t> excluded(places_.size(), 0);
-  double likeness_before = 0;  // of what the camera still sees
+  double similarity_before = 0;  // of what the camera still sees
   const std::vector<double> scores = index_.Score(LandmarkDescriptors(keyframe));
   for (size_t p = 0; p < places_.size(); ++p) {
     if (places_[p].map != present) continue;
     if (is_apart(map.LivingKeyframe(places_[p].keyframe))) continue;
     excluded[p] = 1;
-    likeness_before = std::max(likeness_before, scores[p]);
+    similarity_before = std::max(similarity_before, scores[p]);
   }
   std::optional<Loop> loop;
   for (const auto& [score, p] : Rank(scores, excluded, 1)) {
-    if (score < options_.min_likeness * likeness_before) break;
+    if (score < options_.min_similarity * similarity_before) break;
     const bool is_present = places_[p].map == present;
     const Map& place_map = is_present ? map : finished[places_[p].map];
     const KeyframeId place = place_map.LivingKeyframe(places_[p].keyframe);

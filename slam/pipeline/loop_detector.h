@@ -14,25 +14,25 @@ namespace orb360 {
 struct LoopOptions {
   /// Recognise places: close loops, join maps, find a lost camera by what it sees.
   bool enabled = true;
-  /// A place is looked at more closely when it is this much like the newest keyframe, as a share of
-  /// how much the keyframe before is.
-  double min_likeness = 0.25;
+  /// A place is looked at more closely when it is this much like the newest keyframe, as a fraction
+  /// of how much the keyframe before is.
+  double min_similarity = 0.25;
   /// Places looked at for each lost frame; for a keyframe it is the one most like it.
   int max_candidates = 3;
-  /// Landmarks of a place that must be found in the picture ...
+  /// Landmarks of a place that must be found in the image ...
   int min_inliers = 40;
-  /// ... and the share of those that should be visible and are often seen: what merely looks alike
-  /// shows the facades that are repeated and misses what stands around them.
-  double min_found_share = 0.2;
+  /// ... and the fraction of those that should be visible and are often seen: what merely looks
+  /// alike shows the facades that are repeated and misses what stands around them.
+  double min_found_fraction = 0.2;
   /// Keyframes that must lead to the same correction, out of twice as many in a row.
   int min_agreeing = 3;
-  /// How far their corrections may differ: in position, share of the median range; in direction,
+  /// How far their corrections may differ: in position, fraction of the median range; in direction,
   /// radians; in the logarithm of the scale.
   double max_disagreement = 0.1;
   /// A loop is at least this long, multiples of the median range.
   double min_length = 5.0;
-  /// What a map can have drifted: share of the way round, radians, a factor of scale. A street that
-  /// looks like another one is farther away than that.
+  /// What a map can have drifted: fraction of the way round, radians, a factor of scale. A street
+  /// that looks like another one is farther away than that.
   double max_drift = 0.1;
   double max_turn = 0.3;
   double max_scale = 1.5;
@@ -108,7 +108,7 @@ class LoopDetector {
     Revisit revisit;
   };
   void Learn(const Keyframe& keyframe, int number);
-  /// The `count` places most like the picture, best first, with how much the mean of them and their
+  /// The `count` places most like the image, best first, with how much the mean of them and their
   /// neighbours is; without `excluded` (by place).
   std::vector<std::pair<double, int>> Rank(const std::vector<double>& scores,
                                            const std::vector<uint8_t>& excluded, int count) const;

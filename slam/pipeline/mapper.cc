@@ -17,7 +17,7 @@ void CullRecentLandmarks(KeyframeId newest, const MapperOptions& options, Map* m
     const Landmark& landmark = map->landmark(id);
     const int age = newest - landmark.first_keyframe;
     if (age > options.probation_keyframes + 1) break;
-    const bool rarely_found = landmark.found < options.min_found_share * landmark.visible;
+    const bool rarely_found = landmark.found < options.min_found_fraction * landmark.visible;
     const bool not_seen_again =
         age >= options.probation_keyframes && landmark.observations.size() <= 2;
     if (rarely_found || not_seen_again) map->RemoveLandmark(id);
@@ -37,11 +37,11 @@ bool IsWellSeenByOthers(const Map& map, const Landmark& landmark, KeyframeId obs
   return false;
 }
 
-// Whether others see `share` of a keyframe's landmarks as well.
-bool IsRedundant(const Map& map, const Keyframe& keyframe, double share) {
+// Whether others see `fraction` of a keyframe's landmarks as well.
+bool IsRedundant(const Map& map, const Keyframe& keyframe, double fraction) {
   const auto total = static_cast<double>(
       std::ranges::count_if(keyframe.landmarks, [](LandmarkId l) { return l != kNoId; }));
-  const double allowed = total - share * total;
+  const double allowed = total - fraction * total;
   int missed = 0;
   for (size_t f = 0; f < keyframe.landmarks.size() && missed <= allowed; ++f) {
     const LandmarkId id = keyframe.landmarks[f];
@@ -59,7 +59,7 @@ void CullRedundantKeyframes(KeyframeId newest, const MapperOptions& options, Map
   for (const Map::Covisible& neighbour :
        map->FindCovisible(map->keyframe(newest).landmarks, kMinShared, newest)) {
     const Keyframe& keyframe = map->keyframe(neighbour.keyframe);
-    if (keyframe.id == first || !IsRedundant(*map, keyframe, options.redundant_share)) continue;
+    if (keyframe.id == first || !IsRedundant(*map, keyframe, options.redundant_fraction)) continue;
     const std::vector<LandmarkId> landmarks = keyframe.landmarks;
     const std::vector<Map::Covisible> nearest =
         map->FindCovisible(keyframe.landmarks, 1, keyframe.id);
@@ -72,8 +72,7 @@ void CullRedundantKeyframes(KeyframeId newest, const MapperOptions& options, Map
 
 }  // namespace
 
-KeyframeId IntegrateKeyframe(const TrackedFrame& frame,
-                             std::shared_ptr<const SpherePyramid> picture,
+KeyframeId IntegrateKeyframe(const TrackedFrame& frame, std::shared_ptr<const SpherePyramid> image,
                              const MapperOptions& options, const std::optional<KnownGround>& ground,
                              Map* map) {
   const KeyframeId id =
@@ -87,7 +86,7 @@ KeyframeId IntegrateKeyframe(const TrackedFrame& frame,
     map->AddObservation(landmark, id, static_cast<int>(f));
     map->UpdateAppearance(landmark);
   }
-  map->keyframe(id).picture = std::move(picture);
+  map->keyframe(id).image = std::move(image);
   CullRecentLandmarks(id, options, map);
   TriangulateNewLandmarks(id, options.triangulation, map);
   FuseWithNeighbours(id, options.max_fusion_neighbours, map);
@@ -95,7 +94,7 @@ KeyframeId IntegrateKeyframe(const TrackedFrame& frame,
   FindByPatches(id, options.max_fusion_neighbours, map);
   AdjustLocally(id, options.bundle, ground, map);
   CullRedundantKeyframes(id, options, map);
-  map->ForgetPictures(options.kept_pictures);
+  map->ForgetImages(options.kept_images);
   return id;
 }
 

@@ -18,12 +18,12 @@ constexpr double kPatchNoise = 0.5;
 // between its normal and the view. And of the ground's normal, rad.
 constexpr double kSlopeSigma = 2.0;
 constexpr double kGroundSigma = 0.05;
-// What lies this share of the camera's height above or below the ground may be the ground.
+// What lies this fraction of the camera's height above or below the ground may be the ground.
 constexpr double kGroundTolerance = 0.15;
-// How much farther away, as a share, the ground may be at a patch's rim.
+// How much farther away, as a fraction, the ground may be at a patch's rim.
 constexpr double kMaxReach = 0.5;
 
-// Before any picture is compared with the patch, which is `keyframe`'s.
+// Before any image is compared with the patch, which is `keyframe`'s.
 PatchSlope ExpectSlope(const Keyframe& keyframe, const LandmarkPatch& patch,
                        const Eigen::Vector3d& position, const std::optional<KnownGround>& ground) {
   const auto slope = [&](const Eigen::Vector2d& tangent, double sigma) {
@@ -82,7 +82,7 @@ bool MayGetPatch(const Landmark& landmark) {
 
 void AlignObservations(KeyframeId id, const std::optional<KnownGround>& ground, Map* map) {
   const Keyframe& keyframe = map->keyframe(id);
-  if (!keyframe.picture) return;
+  if (!keyframe.image) return;
   for (size_t f = 0; f < keyframe.landmarks.size(); ++f) {
     if (keyframe.landmarks[f] == kNoId) continue;
     Landmark& landmark = map->landmark(keyframe.landmarks[f]);
@@ -98,7 +98,7 @@ void AlignObservations(KeyframeId id, const std::optional<KnownGround>& ground, 
     }
     if (!landmark.patch) continue;
     for (Observation& observation : landmark.observations) {
-      if (observation.was_compared || !map->keyframe(observation.keyframe).picture) continue;
+      if (observation.was_compared || !map->keyframe(observation.keyframe).image) continue;
       Align(*map, &landmark, &observation);
     }
   }

@@ -27,8 +27,8 @@ ConfigSchema MakeConfigSchema(Options* options) {
              "the same, standard deviations of a feature", 0.0, 100.0);
   schema.Add("initializer.min_landmark_parallax", &initializer.min_landmark_parallax,
              "least parallax of a single landmark, radians", 0.001, 1.0);
-  schema.Add("initializer.min_inlier_share", &initializer.min_inlier_share,
-             "share of the matches that must agree with the motion", 0.1, 1.0);
+  schema.Add("initializer.min_inlier_ratio", &initializer.min_inlier_ratio,
+             "fraction of the matches that must agree with the motion", 0.1, 1.0);
 
   TrackerOptions& tracker = options->tracker;
   schema.Add("tracker.motion_radius", &tracker.motion_radius,
@@ -39,23 +39,24 @@ ConfigSchema MakeConfigSchema(Options* options) {
              "search window for the local map, standard deviations of a feature", 1.0, 50.0);
   schema.Add("tracker.min_motion_inliers", &tracker.min_motion_inliers,
              "landmarks of the last frame that must be found again", 6, 1000);
-  schema.Add("tracker.min_inlier_share", &tracker.min_inlier_share,
-             "share of matches with the local map that must agree, or another start is tried", 0.0,
-             1.0);
+  schema.Add("tracker.min_inlier_ratio", &tracker.min_inlier_ratio,
+             "fraction of matches with the local map that must agree, or another start is tried",
+             0.0, 1.0);
   schema.Add("tracker.min_inliers", &tracker.min_inliers,
              "landmarks of the local map that make a frame tracked", 6, 1000);
 
   KeyframeOptions& keyframe = options->keyframe;
-  schema.Add("keyframe.min_tracked_share", &keyframe.min_tracked_share,
+  schema.Add("keyframe.min_tracked_fraction", &keyframe.min_tracked_fraction,
              "a new keyframe when fewer of its reference's landmarks are tracked", 0.0, 1.0);
   schema.Add("keyframe.max_motion", &keyframe.max_motion,
-             "a new keyframe after moving this share of the surroundings' median range", 0.0, 10.0);
+             "a new keyframe after moving this fraction of the surroundings' median range", 0.0,
+             10.0);
   schema.Add("keyframe.min_motion", &keyframe.min_motion,
-             "no new keyframe before moving this share of the surroundings' median range", 0.0,
+             "no new keyframe before moving this fraction of the surroundings' median range", 0.0,
              10.0);
   schema.Add("keyframe.mapping_frames", &keyframe.mapping_frames,
              "frames after which the mapping of a keyframe is adopted", 1, 100);
-  schema.Add("keyframe.min_held_share", &keyframe.min_held_share,
+  schema.Add("keyframe.min_held_fraction", &keyframe.min_held_fraction,
              "earlier when fewer of its landmarks are still tracked", 0.0, 1.0);
   schema.Add("keyframe.urgent_inliers", &keyframe.urgent_inliers,
              "with fewer tracked landmarks a keyframe is made, and adopted at once", 0, 10000);
@@ -66,7 +67,7 @@ ConfigSchema MakeConfigSchema(Options* options) {
   schema.Add("triangulation.max_neighbours", &triangulation.max_neighbours,
              "keyframes with which a new one is matched", 1, 100);
   schema.Add("triangulation.min_baseline", &triangulation.min_baseline,
-             "shortest baseline, share of the median range", 0.0, 1.0);
+             "shortest baseline, fraction of the median range", 0.0, 1.0);
   schema.Add("triangulation.max_plane_sigmas", &triangulation.max_plane_sigmas,
              "farthest match from its epipolar plane, standard deviations", 0.5, 10.0);
   schema.Add("triangulation.min_epipole_angle", &triangulation.min_epipole_angle,
@@ -93,14 +94,15 @@ ConfigSchema MakeConfigSchema(Options* options) {
              "iterations of local bundle adjustment", 1, 1000);
   schema.Add("mapper.max_fusion_neighbours", &mapper.max_fusion_neighbours,
              "keyframes with which a new one exchanges landmarks", 1, 100);
-  schema.Add("mapper.redundant_share", &mapper.redundant_share,
-             "a keyframe is dropped when three others see this share of its landmarks", 0.5, 1.0);
+  schema.Add("mapper.redundant_fraction", &mapper.redundant_fraction,
+             "a keyframe is dropped when three others see this fraction of its landmarks", 0.5,
+             1.0);
   schema.Add("mapper.probation_keyframes", &mapper.probation_keyframes,
              "keyframes after which a landmark must have been seen three times", 1, 100);
-  schema.Add("mapper.min_found_share", &mapper.min_found_share,
-             "share of the frames in which a landmark on probation must be found", 0.0, 1.0);
-  schema.Add("mapper.kept_pictures", &mapper.kept_pictures,
-             "newest keyframes whose pictures are kept, to align what they show of landmarks", 1,
+  schema.Add("mapper.min_found_fraction", &mapper.min_found_fraction,
+             "fraction of the frames in which a landmark on probation must be found", 0.0, 1.0);
+  schema.Add("mapper.kept_images", &mapper.kept_images,
+             "newest keyframes whose images are kept, to align what they show of landmarks", 1,
              1000);
 
   RecoveryOptions& recovery = options->recovery;
@@ -120,13 +122,12 @@ ConfigSchema MakeConfigSchema(Options* options) {
   schema.Add("scale.from_ground", &scale.from_ground,
              "find the ground below the camera and keep the scale by it");
   schema.Add("scale.height_sigma", &mapper.bundle.height_sigma,
-             "standard deviation of the camera's height over the ground, a share of it", 0.001,
+             "standard deviation of the camera's height over the ground, a fraction of it", 0.001,
              1.0);
 
   DepthOptions& depth = options->depth;
   schema.Add("depth.height", &depth.height,
-             "height of the pictures that get dense depth, pixels; they are twice as wide", 32,
-             4096);
+             "height of the images that get dense depth, pixels; they are twice as wide", 32, 4096);
   schema.Add("depth.every_keyframes", &depth.every_keyframes,
              "every so many keyframes get dense depth", 1, 1000);
   schema.Add("depth.min_points", &depth.min_points,
@@ -137,24 +138,24 @@ ConfigSchema MakeConfigSchema(Options* options) {
   LoopOptions& loop = options->loop;
   schema.Add("loop.enabled", &loop.enabled,
              "recognise places: close loops, join maps, find a lost camera by what it sees");
-  schema.Add("loop.min_likeness", &loop.min_likeness,
-             "a place is looked at when it is like the picture, share of the keyframe before", 0.0,
+  schema.Add("loop.min_similarity", &loop.min_similarity,
+             "a place is looked at when it is like the image, fraction of the keyframe before", 0.0,
              10.0);
   schema.Add("loop.max_candidates", &loop.max_candidates, "places looked at for each lost frame", 1,
              100);
   schema.Add("loop.min_inliers", &loop.min_inliers,
-             "landmarks of a place that must be found in the picture", 10, 10000);
-  schema.Add("loop.min_found_share", &loop.min_found_share,
-             "share of the place's landmarks in view that must be found", 0.0, 1.0);
+             "landmarks of a place that must be found in the image", 10, 10000);
+  schema.Add("loop.min_found_fraction", &loop.min_found_fraction,
+             "fraction of the place's landmarks in view that must be found", 0.0, 1.0);
   schema.Add("loop.min_agreeing", &loop.min_agreeing,
              "keyframes that must lead to the same correction", 1, 100);
   schema.Add("loop.max_disagreement", &loop.max_disagreement,
-             "difference of corrections: share of the median range, radians, log of the scale", 0.0,
-             1.0);
+             "difference of corrections: fraction of the median range, radians, log of the scale",
+             0.0, 1.0);
   schema.Add("loop.min_length", &loop.min_length,
              "least length of a loop, multiples of the median range", 0.0, 10000.0);
   schema.Add("loop.max_drift", &loop.max_drift,
-             "farthest that a map can have drifted, share of the way round the loop", 0.0, 10.0);
+             "farthest that a map can have drifted, fraction of the way round the loop", 0.0, 10.0);
   schema.Add("loop.max_turn", &loop.max_turn, "the same for directions, radians", 0.0, 3.2);
   schema.Add("loop.max_scale", &loop.max_scale, "the same for the scale, a factor", 1.0, 100.0);
   schema.Add("loop.correction_frames", &loop.correction_frames,

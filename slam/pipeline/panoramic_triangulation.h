@@ -7,7 +7,7 @@ namespace orb360 {
 struct TriangulationOptions {
   /// Keyframes a new one is matched with, those that share most landmarks.
   int max_neighbours = 10;
-  /// Shortest baseline, as a share of the median range of the neighbour's landmarks.
+  /// Shortest baseline, as a fraction of the median range of the neighbour's landmarks.
   double min_baseline = 0.01;
   /// Matches farther from the epipolar plane than this many standard deviations are wrong.
   double max_plane_sigmas = 2.5;

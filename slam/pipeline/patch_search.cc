@@ -86,7 +86,7 @@ int AppendFeature(const Sighting& sighting, const Landmark& landmark,
 
 void FindByPatches(KeyframeId id, int max_neighbours, Map* map) {
   Keyframe& keyframe = map->keyframe(id);
-  if (!keyframe.picture) return;
+  if (!keyframe.image) return;
   std::vector<KeyframeId> others;
   for (const Map::Covisible& neighbour : map->FindCovisible(keyframe.landmarks, 1, id)) {
     if (static_cast<int>(others.size()) == max_neighbours) break;
@@ -115,7 +115,7 @@ void FindByPatches(KeyframeId id, int max_neighbours, Map* map) {
     if (occupant.has_landmark || is_taken) continue;
     int feature = occupant.free_corner;
     if (feature < 0) {
-      feature = AppendFeature(*sighting, landmark, keyframe.picture->front().camera, &*features);
+      feature = AppendFeature(*sighting, landmark, keyframe.image->front().camera, &*features);
     } else {
       is_mapped[features->corners[feature]] = 1;
     }

@@ -12,16 +12,15 @@ namespace {
 // 5 x 5 of these pixels rarely reaches beyond the surface its corner is on.
 constexpr double kSamplesPerPixel = 2.0;
 
-// A patch seen from so much farther away is less than three pixels of the picture wide.
+// A patch seen from so much farther away is less than three pixels of the image wide.
 constexpr double kMinStep = 0.25;  // pixels of level 0
 
 // The level on which samples `spacing` rad apart are nearest to one pixel apart.
-const PyramidLevel& LevelFor(const SpherePyramid& picture, double spacing) {
-  const double scale = spacing / picture.front().camera.AngleOfPixels(1.0);
+const PyramidLevel& LevelFor(const SpherePyramid& image, double spacing) {
+  const double scale = spacing / image.front().camera.AngleOfPixels(1.0);
   const double level_ratio = RangeAtLevelZero(1.0, 1);
   const double level = std::round(std::log(scale) / std::log(level_ratio));
-  return picture[static_cast<size_t>(
-      std::clamp(level, 0.0, static_cast<double>(picture.size()) - 1))];
+  return image[static_cast<size_t>(std::clamp(level, 0.0, static_cast<double>(image.size()) - 1))];
 }
 
 // The patch around `point` whose samples are `steps` apart, seen by a camera at the origin, where
@@ -46,11 +45,11 @@ std::optional<PatchView> ViewOf(const PyramidLevel& level, const Eigen::Vector3d
 }  // namespace
 
 std::shared_ptr<const LandmarkPatch> CutPatch(const Keyframe& keyframe, int feature) {
-  const PyramidLevel& found_on = (*keyframe.picture)[keyframe.features->keypoints[feature].level];
+  const PyramidLevel& found_on = (*keyframe.image)[keyframe.features->keypoints[feature].level];
   const Eigen::Vector3d& bearing = keyframe.features->bearings[feature];
   const double spacing = found_on.camera.AngleOfPixels(1.0 / kSamplesPerPixel);
   const std::optional<PatchView> view =
-      ViewOf(LevelFor(*keyframe.picture, spacing), bearing, spacing * TangentBasis(bearing),
+      ViewOf(LevelFor(*keyframe.image, spacing), bearing, spacing * TangentBasis(bearing),
              Eigen::Vector3d::Zero(), spacing);
   if (!view) return nullptr;
   const std::optional<Patch> patch = SamplePatch(*view->level, view->grid);
@@ -68,16 +67,16 @@ std::optional<PatchView> ViewPatch(const Map& map, const Landmark& landmark,
   const double range = position.norm();
   const double footprint = patch.spacing * (landmark.position - reference.translation).norm();
   const double spacing = footprint / range;
-  const double pixel = keyframe.picture->front().camera.AngleOfPixels(1.0);
+  const double pixel = keyframe.image->front().camera.AngleOfPixels(1.0);
   if (!(range > 0 && spacing > kMinStep * pixel)) return std::nullopt;
-  // With a plane's inverse range 1 + slope^T s, as a share, at sample s of the reference, its point
-  // is at (footprint / spacing) (bearing + spacing basis s) / (1 + slope^T s) from there. Times
-  // that denominator, which does not change its direction, and seen from here:
+  // With a plane's inverse range 1 + slope^T s, as a fraction, at sample s of the reference, its
+  // point is at (footprint / spacing) (bearing + spacing basis s) / (1 + slope^T s) from there.
+  // Times that denominator, which does not change its direction, and seen from here:
   //   position + (footprint rotation basis + center slope^T) s.
   const Eigen::Vector3d center = camera_from_world * reference.translation;
   const Eigen::Matrix3d rotation =
       (camera_from_world.rotation * reference.rotation).toRotationMatrix();
-  return ViewOf(LevelFor(*keyframe.picture, spacing), position,
+  return ViewOf(LevelFor(*keyframe.image, spacing), position,
                 footprint * rotation * TangentBasis(patch.bearing) +
                     center * landmark.patch_slope.mean.transpose(),
                 center, spacing);

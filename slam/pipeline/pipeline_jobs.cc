@@ -57,8 +57,8 @@ void Pipeline::StartMapping(const cv::Mat& image) {
   const KeyframeOptions& options = options_.keyframe;
   const AdoptionTime adoption{
       .num_frames = num_frames_ + options.mapping_frames,
-      .min_inliers =
-          std::max<double>(options.urgent_inliers, options.min_held_share * job.frame.num_inliers)};
+      .min_inliers = std::max<double>(options.urgent_inliers,
+                                      options.min_held_fraction * job.frame.num_inliers)};
   back_end_.Start(std::move(job), adoption);
 }
 
@@ -107,7 +107,7 @@ void Pipeline::StartLoopCorrection() {
   const KeyframeOptions& options = options_.keyframe;
   const AdoptionTime adoption{.num_frames = num_frames_ + options_.loop.correction_frames,
                               .min_inliers = std::max<double>(
-                                  options.urgent_inliers, options.min_held_share * num_inliers)};
+                                  options.urgent_inliers, options.min_held_fraction * num_inliers)};
   const KeyframeId reference = atlas_.map().LivingKeyframe(front_end_.local().reference);
   back_end_.Start(LoopCorrection{.active = atlas_.Lend(),
                                  .finished = atlas_.finished(),
@@ -134,7 +134,7 @@ void Pipeline::Adopt(CorrectedLoop corrected) {
 
 void Pipeline::StartAdjustment() {
   GlobalAdjustment job{.map = atlas_.map(), .ground = atlas_.ReliableGround()};
-  job.map.ForgetPictures(0);
+  job.map.ForgetImages(0);
   const double frames = options_.loop.bundle_frames * job.map.num_keyframes();
   back_end_.Start(std::move(job),
                   {.num_frames = num_frames_ + static_cast<int>(std::ceil(frames))});

@@ -39,7 +39,7 @@ ProjectionMatches SearchByProjection(const Features& features, const Rigid3& wor
                                      std::span<const uint8_t> taken,
                                      const ProjectionSearchOptions& options);
 
-/// The pyramid level on which a picture shows what lies at `point`, in the camera's frame, and is
+/// The pyramid level on which an image shows what lies at `point`, in the camera's frame, and is
 /// seen by others along `usual_direction` and up to `max_range` (Landmark), clamped. Empty where it
 /// should not be visible: too far away, too near, or from too far beside.
 std::optional<int> ExpectLevel(const Eigen::Vector3d& point, const Eigen::Vector3d& usual_direction,

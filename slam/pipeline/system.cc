@@ -30,7 +30,7 @@ std::span<const std::optional<KnownGround>> System::grounds() const {
   return pipeline_->atlas().grounds();
 }
 
-const RangeStore* System::depth_maps() const {
+const DepthMapStore* System::depth_maps() const {
   const std::optional<DenseMapper>& dense = pipeline_->dense();
   if (!dense) return nullptr;
   if (dense->failure()) std::rethrow_exception(dense->failure());

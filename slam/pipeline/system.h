@@ -16,7 +16,7 @@ namespace orb360 {
 
 class Map;
 class Pipeline;
-class RangeStore;
+class DepthMapStore;
 struct Frame;
 struct KnownGround;
 struct Options;
@@ -51,7 +51,7 @@ class System {
   std::span<const std::optional<KnownGround>> grounds() const;
   /// Depth of the keyframes in Reconstruction::depth_scales; null without CompleteDepth. Throws
   /// UserError where it could not be kept.
-  const RangeStore* depth_maps() const;
+  const DepthMapStore* depth_maps() const;
 
  private:
   std::unique_ptr<Pipeline> pipeline_;

@@ -79,7 +79,7 @@ Rigid3 RefineWithProvisional(const Features& features, const PoseFit& fit, const
 
 struct LocalFit {
   TrackResult result;
-  double inlier_share = 0;  // of the matches with the local map
+  double inlier_ratio = 0;  // of the matches with the local map
 };
 
 // From a pose known to a few sigmas: all of the local map.
@@ -189,7 +189,7 @@ std::optional<TrackResult> TrackFromPrediction(const Features& features,
     std::optional<LocalFit> fit =
         TrackLocalMap(features, *start, local, pixel_sigma, options, num_threads);
     if (!fit) continue;
-    const bool convinces = fit->inlier_share >= options.min_inlier_share;
+    const bool convinces = fit->inlier_ratio >= options.min_inlier_ratio;
     if (!best || fit->result.num_inliers > best->num_inliers) best = std::move(fit->result);
     if (convinces) break;
   }

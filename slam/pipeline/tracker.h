@@ -21,9 +21,9 @@ struct TrackerOptions {
   double local_radius_sigmas = 5.0;
   /// Matches of the last frame's landmarks that make the pose good enough to go on from.
   int min_motion_inliers = 20;
-  /// Share of the local map's matches that must agree with the pose, or another start is tried:
+  /// Fraction of the local map's matches that must agree with the pose, or another start is tried:
   /// repeated texture lets the pose settle beside the truth.
-  double min_inlier_share = 0.6;
+  double min_inlier_ratio = 0.6;
   /// Landmarks of the local map that make a frame tracked.
   int min_inliers = 30;
 };

@@ -7,11 +7,11 @@
 #include <string_view>
 
 #include "nn/base/check.h"
+#include "nn/graph/buffer_assignment.h"
 #include "nn/graph/cpu_needs.h"
 #include "nn/graph/fusion.h"
 #include "nn/graph/lowering.h"
 #include "nn/graph/parse_graph.h"
-#include "nn/graph/placement.h"
 #include "tests/fuzz/graph_input.h"
 
 namespace orb360::nn {
@@ -35,14 +35,14 @@ class NoKernels : public Backend {
 };
 
 /// Pieces of memory that are needed at the same time must not overlap.
-void CheckPlan(const Placement& placement) {
-  for (std::size_t i = 0; i < placement.pieces.size(); ++i) {
+void CheckPlan(const BufferAssignment& assignment) {
+  for (std::size_t i = 0; i < assignment.pieces.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const Lifetime& a = placement.pieces[i];
-      const Lifetime& b = placement.pieces[j];
+      const Lifetime& a = assignment.pieces[i];
+      const Lifetime& b = assignment.pieces[j];
       const bool meet = a.first <= b.last && b.first <= a.last;
-      const bool overlap = placement.offsets[i] < placement.offsets[j] + b.bytes &&
-                           placement.offsets[j] < placement.offsets[i] + a.bytes;
+      const bool overlap = assignment.offsets[i] < assignment.offsets[j] + b.bytes &&
+                           assignment.offsets[j] < assignment.offsets[i] + a.bytes;
       if (meet && overlap) std::abort();
     }
   }
@@ -58,7 +58,7 @@ void Check(std::string_view text) {
       for (const DataType precision : {DataType::kFloat, DataType::kBFloat16}) {
         const Lowered lowered = Lower(graph, fuses ? FuseNodes(graph) : KeepNodes(graph),
                                       NoKernels(precision), side, 2 * side);
-        CheckPlan(PlaceValues(lowered, /*keeps_values=*/!fuses));
+        CheckPlan(AssignBuffers(lowered, /*keeps_values=*/!fuses));
       }
     }
   } catch (const UserError&) {

@@ -7,7 +7,7 @@
 namespace orb360::nn {
 namespace {
 
-constexpr std::int64_t kMostValues = 1 << 16;  // of all weights together
+constexpr std::int64_t kMaxValues = 1 << 16;  // of all weights together
 
 std::optional<Weight> ReadWeight(const std::string& line, std::int64_t* room) {
   std::istringstream words(line);
@@ -18,16 +18,16 @@ std::optional<Weight> ReadWeight(const std::string& line, std::int64_t* room) {
   std::istringstream sizes(shape);
   std::int64_t count = 1;
   for (std::string size; std::getline(sizes, size, 'x');) {
-    constexpr std::size_t kMostDigits = 4;
-    const bool is_number = !size.empty() && size.size() <= kMostDigits &&
+    constexpr std::size_t kMaxDigits = 4;
+    const bool is_number = !size.empty() && size.size() <= kMaxDigits &&
                            size.find_first_not_of("0123456789") == std::string::npos;
     if (!is_number || std::stoi(size) == 0) return {};
     weight.shape.push_back(std::stoi(size));
     count *= weight.shape.back();
     if (count > *room) return {};
   }
-  constexpr std::size_t kMostDimensions = 4;
-  if (weight.shape.empty() || weight.shape.size() > kMostDimensions) return {};
+  constexpr std::size_t kMaxDimensions = 4;
+  if (weight.shape.empty() || weight.shape.size() > kMaxDimensions) return {};
   *room -= count;
   weight.values.assign(static_cast<std::size_t>(count), value);
   return weight;
@@ -38,7 +38,7 @@ std::optional<Weight> ReadWeight(const std::string& line, std::int64_t* room) {
 std::optional<GraphInput> ReadGraphInput(std::string_view text) {
   GraphInput input;
   std::set<std::string> names;
-  std::int64_t room = kMostValues;
+  std::int64_t room = kMaxValues;
   while (true) {
     const std::size_t end = text.find('\n');
     if (end == std::string_view::npos) return {};

@@ -12,7 +12,7 @@ std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
 class Interpreter {
  public:
-  Interpreter(const Graph& graph, const Node& node, const std::vector<const PlainPicture*>& inputs)
+  Interpreter(const Graph& graph, const Node& node, const std::vector<const PlainImage*>& inputs)
       : graph_(graph), node_(node), inputs_(inputs) {}
 
   NodeResult operator()(const NormalizedConvolutionOp& op) const {
@@ -102,9 +102,9 @@ class Interpreter {
       const auto left = static_cast<int>(std::floor(column));
       double sum = 0, magnitude = 0;
       for (int i = 0; i < 4; ++i) {
-        const double share =
+        const double fraction =
             std::abs(1 - i / 2 - (row - top)) * std::abs(1 - i % 2 - (column - left));
-        const double term = share * in(0).padded(op.padding, channel, top + i / 2, left + i % 2);
+        const double term = fraction * in(0).padded(op.padding, channel, top + i / 2, left + i % 2);
         sum += term;
         magnitude += std::abs(term);
       }
@@ -119,11 +119,11 @@ class Interpreter {
       double largest = -HUGE_VAL, total = 0, sum = 0, magnitude = 0;
       for (int i = 0; i < 9; ++i) largest = std::max(largest, in(1).at(first + i, v / 2, u / 2));
       for (int i = 0; i < 9; ++i) {
-        const double share = std::exp(in(1).at(first + i, v / 2, u / 2) - largest);
+        const double fraction = std::exp(in(1).at(first + i, v / 2, u / 2) - largest);
         const double value = in(0).padded(op.padding, 0, v / 2 + i / 3 - 1, u / 2 + i % 3 - 1);
-        total += share;
-        sum += share * value;
-        magnitude += share * std::abs(value);
+        total += fraction;
+        sum += fraction * value;
+        magnitude += fraction * std::abs(value);
       }
       Set(&result, 0, 0, v, u, sum / total, magnitude / total);
     });
@@ -207,10 +207,10 @@ class Interpreter {
   }
   NodeResult operator()(const ConcatenateOp&) const {
     int channels = 0;
-    for (const PlainPicture* input : inputs_) channels += input->shape.channels;
+    for (const PlainImage* input : inputs_) channels += input->shape.channels;
     NodeResult result = Make({channels, x().height, x().width}, 1);
     int first = 0;
-    for (const PlainPicture* input : inputs_) {
+    for (const PlainImage* input : inputs_) {
       ForEach(input->shape, [&](int channel, int v, int u) {
         Set(&result, 0, first + channel, v, u, input->at(channel, v, u));
       });
@@ -257,7 +257,7 @@ class Interpreter {
   }
 
  private:
-  const PlainPicture& in(std::size_t i) const { return *inputs_[i]; }
+  const PlainImage& in(std::size_t i) const { return *inputs_[i]; }
   const Shape& x() const { return inputs_[0]->shape; }
   const Weight& weight(std::size_t i) const { return graph_.weights[Index(node_.weights[i])]; }
   static int channels_of(const Weight& weight) { return weight.shape[0]; }
@@ -266,8 +266,8 @@ class Interpreter {
   }
 
   static NodeResult Make(const Shape& shape, std::size_t outputs) {
-    return {std::vector<PlainPicture>(outputs, PlainPicture(shape)),
-            std::vector<PlainPicture>(outputs, PlainPicture(shape))};
+    return {std::vector<PlainImage>(outputs, PlainImage(shape)),
+            std::vector<PlainImage>(outputs, PlainImage(shape))};
   }
   static void Set(NodeResult* result, std::size_t output, int channel, int v, int u, double value,
                   double magnitude = 0) {
@@ -302,25 +302,25 @@ class Interpreter {
 
   const Graph& graph_;
   const Node& node_;
-  const std::vector<const PlainPicture*>& inputs_;
+  const std::vector<const PlainImage*>& inputs_;
 };
 
 }  // namespace
 
 NodeResult InterpretNode(const Graph& graph, const Node& node,
-                         const std::vector<const PlainPicture*>& inputs) {
+                         const std::vector<const PlainImage*>& inputs) {
   return std::visit(Interpreter(graph, node, inputs), node.operation);
 }
 
-std::map<std::string, PlainPicture> Interpret(const Graph& graph,
-                                              const std::vector<PlainPicture>& inputs) {
-  std::map<std::string, PlainPicture> tensors;
+std::map<std::string, PlainImage> Interpret(const Graph& graph,
+                                            const std::vector<PlainImage>& inputs) {
+  std::map<std::string, PlainImage> tensors;
   const auto name = [&](int tensor) { return graph.tensors[Index(tensor)].name; };
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     tensors.insert_or_assign(name(graph.inputs[i]), inputs[i]);
   }
   for (const Node& node : graph.nodes) {
-    std::vector<const PlainPicture*> read;
+    std::vector<const PlainImage*> read;
     for (const int tensor : node.inputs) read.push_back(&tensors.at(name(tensor)));
     NodeResult result = InterpretNode(graph, node, read);
     for (std::size_t i = 0; i < node.outputs.size(); ++i) {

@@ -55,7 +55,7 @@ float Expected(Padding padding, const Shape& shape, int channel, int y, int x) {
   return Value(channel, y, ((x % shape.width) + shape.width) % shape.width);
 }
 
-TEST(Tensor, HaloContinuesThePictureAsThePaddingSays) {
+TEST(Tensor, HaloContinuesTheImageAsThePaddingSays) {
   for (const Layout layout : {Layout::kPlanar, Layout::kBlocked}) {
     for (const Padding padding :
          {Padding::kZero, Padding::kWrapReplicate, Padding::kWrapCrossPole}) {
@@ -80,7 +80,7 @@ TEST(Tensor, HaloContinuesThePictureAsThePaddingSays) {
   }
 }
 
-TEST(Tensor, AnOddPictureHasNoOppositeMeridian) {
+TEST(Tensor, AnOddImageHasNoOppositeMeridian) {
   const TensorMemory memory({{1, 4, 5}, Layout::kPlanar, DataType::kFloat, 1});
   EXPECT_THROW(FillHalo(memory.view, Padding::kWrapCrossPole, 1), ContractError);
 }

@@ -85,7 +85,7 @@ Lap::Lap(const StreetPlan& plan, std::span<const size_t> tour, const LapOptions&
   speeds_ = WishedSpeeds(points_, options, random);
   dwell_.assign(n, 0);
   for (const size_t junction : junction_points) {
-    if (!random.Chance(options.stop_share)) continue;
+    if (!random.Chance(options.stop_fraction)) continue;
     const Vector2d p = line[junction % line.size()].head<2>();
     const auto nearest =
         std::min_element(points_.begin(), points_.end(), [&](const Vector2d& a, const Vector2d& b) {

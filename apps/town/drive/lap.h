@@ -12,7 +12,7 @@ struct LapOptions {
   uint64_t seed = 0;
   double minimum_speed = 6.5;  ///< metres per second, what drivers wish for on straight stretches
   double maximum_speed = 12;
-  double stop_share = 0.15;  ///< of the junctions, where the driver waits
+  double stop_fraction = 0.15;  ///< of the junctions, where the driver waits
 };
 
 /// Distances to the left of a line at three places along it, metres.

@@ -8,7 +8,7 @@ namespace {
 
 /// Returns the fraction of a pass's lateral shift at a distance: 0 outside the ramps, 1 between
 /// them.
-double ShareOf(const Pass& pass, double distance) {
+double ShiftFraction(const Pass& pass, double distance) {
   // Length over which the car changes sides, metres. At 10 m/s the lateral acceleration is then
   // below 5 m/s².
   const double ramp = 8 + 4.5 * pass.left;
@@ -48,7 +48,7 @@ double Ride::SpeedAt(double time) const {
 double Ride::LeftAt(double distance) const {
   const double right = from_kerb ? std::max(0.0, lap->RoomOnRight(distance) - *from_kerb) : 0;
   double left = 0;
-  for (const Pass& pass : passes) left = std::max(left, pass.left * ShareOf(pass, distance));
+  for (const Pass& pass : passes) left = std::max(left, pass.left * ShiftFraction(pass, distance));
   return left - right;
 }
 

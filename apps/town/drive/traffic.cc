@@ -126,9 +126,9 @@ Traffic::Traffic(const Town& town, const Lap& own_lap, const TrafficOptions& opt
     return laps_.emplace_back(plan, tour, lap_options);
   };
   const LapOptions normal;
-  const LapOptions cycling{.minimum_speed = 3.6, .maximum_speed = 5.2, .stop_share = 0.05};
-  const LapOptions slow{.minimum_speed = 4, .maximum_speed = 6, .stop_share = 0.1};
-  const LapOptions fast{.minimum_speed = 11, .maximum_speed = 14, .stop_share = 0};
+  const LapOptions cycling{.minimum_speed = 3.6, .maximum_speed = 5.2, .stop_fraction = 0.05};
+  const LapOptions slow{.minimum_speed = 4, .maximum_speed = 6, .stop_fraction = 0.1};
+  const LapOptions fast{.minimum_speed = 11, .maximum_speed = 14, .stop_fraction = 0};
   dispatcher.Encounter(own_lap, Pace::kStanding, 40);
   dispatcher.Encounter(add_lap(plan.tour, cycling), Pace::kCycling, 16);
   dispatcher.Encounter(add_lap(plan.tour, slow), Pace::kSlow, 50);

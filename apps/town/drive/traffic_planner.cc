@@ -69,9 +69,9 @@ bool TrafficPlanner::Wait(Mover* mover, const Track& track, const Tracks& heeded
 
 std::optional<Track> TrafficPlanner::Plan(Mover* mover, const Tracks& slower, const Tracks& heeded,
                                           bool may_wait) const {
-  constexpr int kMostWaits = 12;
+  constexpr int kMaxWaits = 12;
   mover->ride.delays.clear();
-  for (int i = 0; i <= kMostWaits; ++i) {
+  for (int i = 0; i <= kMaxWaits; ++i) {
     mover->ride.passes.clear();
     std::optional<std::vector<Pass>> passes =
         FindPasses(mover->ride, mover->footprint, slower, moments_);

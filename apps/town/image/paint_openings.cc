@@ -37,14 +37,14 @@ Texture PaintRoom(uint32_t seed) {
   const bool plant = random.Chance(0.35);
   const auto plant_x = static_cast<float>(random.Uniform(0.2, 0.8));
   const bool shelf = random.Chance(0.4);
-  const bool picture = random.Chance(0.4);
+  const bool painting = random.Chance(0.4);
   const float folds = static_cast<float>(9 + random.Int(9));
   return Texture::Paint(128, [=](float x, float y) {
     // The room darkens with depth; objects at the far wall are faintly visible.
     const float far = 0.2F + 0.5F * y + 0.12F * TiledFbm(x, y, 3, 4, seed);
     Rgba colour = (0.35F * far) * wall;
     if (y > 0.86F) colour = (0.5F * (1.6F - y)) * Rgba{0.3F, 0.29F, 0.27F, 1};  // the ceiling
-    if (picture && std::abs(x - 0.62F) < 0.1F && std::abs(y - 0.6F) < 0.11F)
+    if (painting && std::abs(x - 0.62F) < 0.1F && std::abs(y - 0.6F) < 0.11F)
       colour = 0.08F * Rgba{0.9F, 0.8F * x, 0.6F * y, 1};
     if (shelf && x < 0.34F && y < 0.62F) {
       const int book = static_cast<int>(x * 60);

@@ -39,14 +39,14 @@ cv::Scalar DrawColour(Random& random, double low, double high) {
 }
 
 /// Writes `text` centred on `centre`, as large as it fits in `box`.
-void WriteCentred(cv::Mat& picture, const std::string& text, cv::Point centre, cv::Size box,
-                  int font, int thickness, const cv::Scalar& ink) {
+void WriteCentred(cv::Mat& image, const std::string& text, cv::Point centre, cv::Size box, int font,
+                  int thickness, const cv::Scalar& ink) {
   int baseline = 0;
   const cv::Size unit = cv::getTextSize(text, font, 1.0, thickness, &baseline);
   const double scale = std::min(static_cast<double>(box.width) / unit.width,
                                 static_cast<double>(box.height) / unit.height);
   const cv::Size size = cv::getTextSize(text, font, scale, thickness, &baseline);
-  cv::putText(picture, text, {centre.x - size.width / 2, centre.y + size.height / 2}, font, scale,
+  cv::putText(image, text, {centre.x - size.width / 2, centre.y + size.height / 2}, font, scale,
               ink, thickness, cv::LINE_AA);
 }
 
@@ -55,7 +55,7 @@ constexpr std::array<int, 5> kFonts = {cv::FONT_HERSHEY_DUPLEX, cv::FONT_HERSHEY
                                        cv::FONT_HERSHEY_SCRIPT_COMPLEX};
 
 /// Draws blobs, bars and rings, as a printed motif.
-void DrawMotif(cv::Mat& picture, Random& random, const cv::Rect& area) {
+void DrawMotif(cv::Mat& image, Random& random, const cv::Rect& area) {
   const auto point = [&] {
     const int x = area.x + random.Int(area.width);
     return cv::Point(x, area.y + random.Int(area.height));
@@ -67,32 +67,32 @@ void DrawMotif(cv::Mat& picture, Random& random, const cv::Rect& area) {
     const int size = area.width / 10 + random.Int(area.width / 4);
     switch (random.Int(4)) {
       case 0:
-        cv::circle(picture, centre, size, colour, cv::FILLED, cv::LINE_AA);
+        cv::circle(image, centre, size, colour, cv::FILLED, cv::LINE_AA);
         break;
       case 1:
-        cv::circle(picture, centre, size, colour, 2 + size / 6, cv::LINE_AA);
+        cv::circle(image, centre, size, colour, 2 + size / 6, cv::LINE_AA);
         break;
       case 2:
-        cv::rectangle(picture, centre, centre + cv::Point(size, size / 2), colour, cv::FILLED);
+        cv::rectangle(image, centre, centre + cv::Point(size, size / 2), colour, cv::FILLED);
         break;
       default:
-        cv::line(picture, centre, point(), colour, 2 + size / 8, cv::LINE_AA);
+        cv::line(image, centre, point(), colour, 2 + size / 8, cv::LINE_AA);
         break;
     }
   }
 }
 
 /// Converts an 8-bit sRGB image, whose first row is at the top, to a texture.
-Texture FromPicture(const cv::Mat& picture) {
+Texture FromImage(const cv::Mat& image) {
   std::vector<Rgba> texels;
-  texels.reserve(picture.total());
-  for (int y = picture.rows - 1; y >= 0; --y) {
-    for (int x = 0; x < picture.cols; ++x) {
-      const auto& c = picture.at<cv::Vec3b>(y, x);
+  texels.reserve(image.total());
+  for (int y = image.rows - 1; y >= 0; --y) {
+    for (int x = 0; x < image.cols; ++x) {
+      const auto& c = image.at<cv::Vec3b>(y, x);
       texels.push_back(Srgb(c[2], c[1], c[0]));
     }
   }
-  return Texture(picture.cols, picture.rows, std::move(texels));
+  return Texture(image.cols, image.rows, std::move(texels));
 }
 
 }  // namespace
@@ -100,8 +100,8 @@ Texture FromPicture(const cv::Mat& picture) {
 Texture PaintSign(uint32_t seed) {
   Random random(seed);
   const bool dark = random.Chance(0.65);
-  cv::Mat picture(128, 512, CV_8UC3,
-                  dark ? DrawColour(random, 15, 100) : DrawColour(random, 160, 225));
+  cv::Mat image(128, 512, CV_8UC3,
+                dark ? DrawColour(random, 15, 100) : DrawColour(random, 160, 225));
   const cv::Scalar ink = dark ? DrawColour(random, 170, 240) : DrawColour(random, 10, 100);
   std::string text = RandomName(random);
   const std::string trade = random.Pick(std::span<const char* const>(kTrades));
@@ -113,63 +113,63 @@ Texture PaintSign(uint32_t seed) {
         text[i] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[i])));
     }
   }
-  WriteCentred(picture, text, {256, 64}, {random.Chance(0.3) ? 340 : 430, 60}, font,
+  WriteCentred(image, text, {256, 64}, {random.Chance(0.3) ? 340 : 430, 60}, font,
                3 + random.Int(4), ink);
-  if (random.Chance(0.4)) cv::rectangle(picture, {6, 6}, {505, 121}, ink, 3, cv::LINE_AA);
-  if (random.Chance(0.3)) cv::circle(picture, {34, 64}, 20, ink, 5, cv::LINE_AA);
-  return FromPicture(picture);
+  if (random.Chance(0.4)) cv::rectangle(image, {6, 6}, {505, 121}, ink, 3, cv::LINE_AA);
+  if (random.Chance(0.3)) cv::circle(image, {34, 64}, 20, ink, 5, cv::LINE_AA);
+  return FromImage(image);
 }
 
 Texture PaintNumberPlate(uint32_t seed) {
   Random random(seed);
-  cv::Mat picture(64, 256, CV_8UC3, cv::Scalar(205, 222, 225));
-  cv::rectangle(picture, {0, 0}, {22, 63}, {140, 60, 20}, cv::FILLED);
-  cv::rectangle(picture, {1, 1}, {254, 62}, {30, 30, 30}, 2);
+  cv::Mat image(64, 256, CV_8UC3, cv::Scalar(205, 222, 225));
+  cv::rectangle(image, {0, 0}, {22, 63}, {140, 60, 20}, cv::FILLED);
+  cv::rectangle(image, {1, 1}, {254, 62}, {30, 30, 30}, 2);
   std::string text;
   for (int i = 0; i < 3; ++i) text += static_cast<char>('A' + random.Int(26));
   text += ' ';
   for (int i = 0; i < 4; ++i) text += static_cast<char>('0' + random.Int(10));
-  WriteCentred(picture, text, {138, 32}, {210, 40}, cv::FONT_HERSHEY_DUPLEX, 3, {25, 25, 25});
-  return FromPicture(picture);
+  WriteCentred(image, text, {138, 32}, {210, 40}, cv::FONT_HERSHEY_DUPLEX, 3, {25, 25, 25});
+  return FromImage(image);
 }
 
 Texture PaintPoster(uint32_t seed) {
   Random random(seed);
-  cv::Mat picture(256, 128, CV_8UC3, DrawColour(random, 40, 235));
-  DrawMotif(picture, random, {0, 50, 128, 130});
+  cv::Mat image(256, 128, CV_8UC3, DrawColour(random, 40, 235));
+  DrawMotif(image, random, {0, 50, 128, 130});
   const cv::Scalar ink = DrawColour(random, 0, 60);
-  cv::rectangle(picture, {0, 0}, {127, 44}, DrawColour(random, 190, 240), cv::FILLED);
-  WriteCentred(picture, RandomName(random), {64, 22}, {112, 24},
+  cv::rectangle(image, {0, 0}, {127, 44}, DrawColour(random, 190, 240), cv::FILLED);
+  WriteCentred(image, RandomName(random), {64, 22}, {112, 24},
                random.Pick(std::span<const int>(kFonts)), 3, ink);
-  cv::rectangle(picture, {0, 200}, {127, 255}, DrawColour(random, 190, 240), cv::FILLED);
+  cv::rectangle(image, {0, 200}, {127, 255}, DrawColour(random, 190, 240), cv::FILLED);
   for (int y = 210; y < 250; y += 9)
-    cv::line(picture, {10, y}, {40 + random.Int(76), y}, ink, 3, cv::LINE_AA);
-  return FromPicture(picture);
+    cv::line(image, {10, y}, {40 + random.Int(76), y}, ink, 3, cv::LINE_AA);
+  return FromImage(image);
 }
 
 Texture PaintHouseNumber(uint32_t seed) {
   Random random(seed);
-  cv::Mat picture(64, 64, CV_8UC3,
-                  random.Chance(0.6) ? cv::Scalar(110, 50, 25) : cv::Scalar(40, 60, 35));
-  cv::rectangle(picture, {2, 2}, {61, 61}, {220, 225, 225}, 3);
-  WriteCentred(picture, std::to_string(1 + random.Int(98)), {32, 32}, {40, 34},
+  cv::Mat image(64, 64, CV_8UC3,
+                random.Chance(0.6) ? cv::Scalar(110, 50, 25) : cv::Scalar(40, 60, 35));
+  cv::rectangle(image, {2, 2}, {61, 61}, {220, 225, 225}, 3);
+  WriteCentred(image, std::to_string(1 + random.Int(98)), {32, 32}, {40, 34},
                cv::FONT_HERSHEY_DUPLEX, 4, {225, 230, 230});
-  return FromPicture(picture);
+  return FromImage(image);
 }
 
 Texture PaintMural(uint32_t seed) {
   Random random(seed);
   constexpr int kSize = 512;
-  cv::Mat picture(kSize, kSize, CV_8UC3, DrawColour(random, 90, 215));
-  DrawMotif(picture, random, {20, 170, kSize - 40, kSize - 260});
+  cv::Mat image(kSize, kSize, CV_8UC3, DrawColour(random, 90, 215));
+  DrawMotif(image, random, {20, 170, kSize - 40, kSize - 260});
   const cv::Scalar ink = DrawColour(random, 10, 90);
   const int font = random.Pick(std::span<const int>(kFonts));
-  WriteCentred(picture, RandomName(random), {kSize / 2, 90}, {420, 80}, font, 12, ink);
-  WriteCentred(picture, "SINCE " + std::to_string(1880 + random.Int(90)), {kSize / 2, 450},
-               {300, 34}, font, 5, ink);
-  cv::rectangle(picture, {10, 10}, {kSize - 11, kSize - 11}, ink, 8);
+  WriteCentred(image, RandomName(random), {kSize / 2, 90}, {420, 80}, font, 12, ink);
+  WriteCentred(image, "SINCE " + std::to_string(1880 + random.Int(90)), {kSize / 2, 450}, {300, 34},
+               font, 5, ink);
+  cv::rectangle(image, {10, 10}, {kSize - 11, kSize - 11}, ink, 8);
   // Paint flakes off, and the rest has faded.
-  const Texture flat = FromPicture(picture);
+  const Texture flat = FromImage(image);
   return Texture::Paint(kSize / 2, [&flat, seed](float x, float y) {
     Rgba c = flat.Sample(x, y, 1);
     const float age = TiledFbm(x, y, 4, 6, seed, 0.7F);

@@ -67,7 +67,7 @@ class RayDirections {
   int width_;
   int height_;
   bool normalizes_;
-  std::vector<Columns> columns_;        // by sample; up to kSquare columns beyond the picture
+  std::vector<Columns> columns_;        // by sample; up to kSquare columns beyond the image
   std::vector<std::vector<Row>> rows_;  // by sample, then row + 1; as many rows beyond
   Vector3f upward_;
 };

@@ -11,8 +11,8 @@ namespace {
 
 /// Builds an image of the pixels that `encode` makes of radiance.
 template <typename Encode>
-auto Picture(const FrameScene& scene, const Shader& shader, const RayDirections& directions,
-             const Vector3f& eye, double pixel_angle, Sampling sampling, const Encode& encode) {
+auto RenderImage(const FrameScene& scene, const Shader& shader, const RayDirections& directions,
+                 const Vector3f& eye, double pixel_angle, Sampling sampling, const Encode& encode) {
   const auto sample_angle =
       static_cast<float>(pixel_angle / std::sqrt(static_cast<double>(kSamples)));
   cv::Mat_<decltype(encode(Vector3f()))> image(directions.height(), directions.width());
@@ -42,23 +42,23 @@ cv::Vec3f BlueGreenRed(const Vector3f& radiance) {
 }
 
 template <typename Encode>
-auto PanoramaPicture(const FrameScene& scene, const Shader& shader,
-                     const EquirectangularCamera& camera, const Rigid3& world_from_camera,
-                     Sampling sampling, const Encode& encode) {
-  return Picture(
+auto RenderPanorama(const FrameScene& scene, const Shader& shader,
+                    const EquirectangularCamera& camera, const Rigid3& world_from_camera,
+                    Sampling sampling, const Encode& encode) {
+  return RenderImage(
       scene, shader, RayDirections::OfPanorama(camera, world_from_camera.rotation, kSamplePattern),
       world_from_camera.translation.cast<float>(), camera.AngleOfPixels(1), sampling, encode);
 }
 
 template <typename Pixel, typename Encode>
-CubeImages<Pixel> CubePictures(const FrameScene& scene, const Shader& shader, int size,
-                               const Rigid3& world_from_camera, Sampling sampling,
-                               const Encode& encode) {
+CubeImages<Pixel> RenderCube(const FrameScene& scene, const Shader& shader, int size,
+                             const Rigid3& world_from_camera, Sampling sampling,
+                             const Encode& encode) {
   CubeImages<Pixel> faces;
   for (int face = 0; face < kCubeFaces; ++face) {
     const Eigen::Quaterniond world_from_face = world_from_camera.rotation * CameraFromFace(face);
     // The angle of a pixel in the middle of a side, between those of the centre and the corners.
-    faces[static_cast<size_t>(face)] = Picture(
+    faces[static_cast<size_t>(face)] = RenderImage(
         scene, shader, RayDirections::OfCubeFace(size, world_from_face, kSamplePattern),
         world_from_camera.translation.cast<float>(), std::numbers::pi / 2 / size, sampling, encode);
   }
@@ -71,26 +71,26 @@ cv::Mat3b RenderColour(const FrameScene& scene, const Shader& shader,
                        const EquirectangularCamera& camera, const Rigid3& world_from_camera,
                        Sampling sampling) {
   const ToneCurve tone;
-  return PanoramaPicture(scene, shader, camera, world_from_camera, sampling,
-                         [&](const Vector3f& radiance) { return tone.Encode(radiance); });
+  return RenderPanorama(scene, shader, camera, world_from_camera, sampling,
+                        [&](const Vector3f& radiance) { return tone.Encode(radiance); });
 }
 
 cv::Mat3f RenderRadiance(const FrameScene& scene, const Shader& shader,
                          const EquirectangularCamera& camera, const Rigid3& world_from_camera,
                          Sampling sampling) {
-  return PanoramaPicture(scene, shader, camera, world_from_camera, sampling, BlueGreenRed);
+  return RenderPanorama(scene, shader, camera, world_from_camera, sampling, BlueGreenRed);
 }
 
 CubeImages<cv::Vec3b> RenderCubeColour(const FrameScene& scene, const Shader& shader, int size,
                                        const Rigid3& world_from_camera, Sampling sampling) {
   const ToneCurve tone;
-  return CubePictures<cv::Vec3b>(scene, shader, size, world_from_camera, sampling,
-                                 [&](const Vector3f& radiance) { return tone.Encode(radiance); });
+  return RenderCube<cv::Vec3b>(scene, shader, size, world_from_camera, sampling,
+                               [&](const Vector3f& radiance) { return tone.Encode(radiance); });
 }
 
 CubeImages<cv::Vec3f> RenderCubeRadiance(const FrameScene& scene, const Shader& shader, int size,
                                          const Rigid3& world_from_camera, Sampling sampling) {
-  return CubePictures<cv::Vec3f>(scene, shader, size, world_from_camera, sampling, BlueGreenRed);
+  return RenderCube<cv::Vec3f>(scene, shader, size, world_from_camera, sampling, BlueGreenRed);
 }
 
 }  // namespace orb360::town

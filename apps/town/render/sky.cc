@@ -83,7 +83,7 @@ Sky::Sky(const Light& light, uint64_t seed) : texels_(static_cast<size_t>(kSize)
   }
   constexpr int kRings = 16;
   constexpr int kSectors = 32;
-  for (int ring = 0; ring < kRings; ++ring) {  // equal steps of sin²: equal shares of irradiance
+  for (int ring = 0; ring < kRings; ++ring) {  // equal steps of sin²: equal fractions of irradiance
     const float sine = std::sqrt((static_cast<float>(ring) + 0.5F) / kRings);
     const float cosine = std::sqrt(1 - sine * sine);
     for (int sector = 0; sector < kSectors; ++sector) {

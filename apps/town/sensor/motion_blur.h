@@ -10,6 +10,6 @@ namespace orb360::town {
 /// Returns the mean of the images at the middles of equal parts of the time in which the shutter is
 /// open, so that moving and turning objects are smeared according to their motion. Light is
 /// averaged, not gray levels.
-cv::Mat3f Blurred(const MotionBlur& options, double seconds, const RadianceAt& picture);
+cv::Mat3f Blurred(const MotionBlur& options, double seconds, const RadianceAt& radiance);
 
 }  // namespace orb360::town

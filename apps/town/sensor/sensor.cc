@@ -34,10 +34,10 @@ cv::Mat3b Compressed(const cv::Mat3b& image, int quality) {
 
 }  // namespace
 
-cv::Mat3b TakePicture(const SensorOptions& options, int frame, double seconds,
-                      const RadianceAt& picture, const RadianceAt& meter) {
+cv::Mat3b CaptureImage(const SensorOptions& options, int frame, double seconds,
+                       const RadianceAt& radiance, const RadianceAt& meter) {
   cv::Mat3f light =
-      options.motion_blur ? Blurred(*options.motion_blur, seconds, picture) : picture(seconds);
+      options.motion_blur ? Blurred(*options.motion_blur, seconds, radiance) : radiance(seconds);
   if (options.dual_lens) light = StitchedFromTwoLenses(*options.dual_lens, light);
   if (options.auto_exposure) light *= ExposureGainAt(*options.auto_exposure, seconds, meter);
   if (options.noise) AddNoise(*options.noise, options.seed, frame, &light);

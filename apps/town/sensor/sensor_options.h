@@ -24,9 +24,9 @@ struct MotionBlur {
 /// looks forward, the other backward; the seam is the circle between them.
 struct DualLens {
   double baseline = 0.03;             ///< metres between the lenses: things at the seam are doubled
-  double exposure_difference = 0.15;  ///< stops by which the front picture is brighter
-  double rim_loss = 0.1;              ///< share of the light lost 90 degrees off a lens's axis
-  double overlap = 0.07;              ///< radians over which one picture blends into the other
+  double exposure_difference = 0.15;  ///< stops by which the front image is brighter
+  double rim_loss = 0.1;              ///< fraction of the light lost 90 degrees off a lens's axis
+  double overlap = 0.07;              ///< radians over which one image blends into the other
 };
 
 /// Photon noise and read noise.

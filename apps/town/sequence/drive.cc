@@ -6,7 +6,7 @@ namespace orb360::town {
 
 cv::Mat3b Drive::Colour(const FrameScene& scene, int frame) const {
   if (sensor().HasEffects()) {
-    return TakePicture(
+    return CaptureImage(
         sensor(), frame, frame / fps(), [this](double seconds) { return RadianceAt(seconds); },
         [this](double seconds) { return MeteredAt(seconds); });
   }

@@ -18,7 +18,7 @@ struct Recording {
   EquirectangularCamera camera;
   double fps = 20;
   int frames = 600;
-  int cube_size = 0;  ///< stitch pictures from six faces of that width; 0: render them directly
+  int cube_size = 0;  ///< stitch images from six faces of that width; 0: render them directly
   SensorOptions sensor = {};
   Sampling sampling = Sampling::kAdaptive;
 };

@@ -44,7 +44,7 @@ std::string Description(const Drive& drive) {
 }
 
 /// The images of a frame that are to be written; empty ones are not.
-struct Pictures {
+struct Images {
   cv::Mat3b colour;
   cv::Mat1f range;
   cv::Mat1f exact_range;
@@ -57,8 +57,8 @@ struct Pictures {
 };
 
 /// Renders the images of a frame that do not exist yet.
-Pictures RenderMissing(const Drive& drive, const SequenceWriter& writer,
-                       const FolderOptions& options, int frame) {
+Images RenderMissing(const Drive& drive, const SequenceWriter& writer, const FolderOptions& options,
+                     int frame) {
   const bool has_geometry = frame % options.depth_every == 0;
   const bool needs_masks =
       has_geometry && options.masks &&
@@ -67,28 +67,28 @@ Pictures RenderMissing(const Drive& drive, const SequenceWriter& writer,
   const bool needs_exr =
       has_geometry && options.exr && !writer.Has(SequenceWriter::kExactRange, frame);
   const bool needs_colour = !writer.Has(SequenceWriter::kColour, frame);
-  Pictures pictures;
-  if (!needs_colour && !needs_range && !needs_exr && !needs_masks) return pictures;
+  Images images;
+  if (!needs_colour && !needs_range && !needs_exr && !needs_masks) return images;
   const FrameScene scene = drive.SceneAt(frame);
-  if (needs_colour) pictures.colour = drive.Colour(scene, frame);
-  if (!needs_range && !needs_exr && !needs_masks) return pictures;
+  if (needs_colour) images.colour = drive.Colour(scene, frame);
+  if (!needs_range && !needs_exr && !needs_masks) return images;
   GeometryImage geometry = drive.Geometry(scene, frame);
-  if (needs_range) pictures.range = geometry.range;
-  if (needs_exr) pictures.exact_range = geometry.range;
+  if (needs_range) images.range = geometry.range;
+  if (needs_exr) images.exact_range = geometry.range;
   if (needs_masks) {
-    pictures.objects = geometry.object;
-    pictures.moving = geometry.object >= scene.first_moving_id();
+    images.objects = geometry.object;
+    images.moving = geometry.object >= scene.first_moving_id();
   }
-  return pictures;
+  return images;
 }
 
-void Write(const SequenceWriter& writer, int frame, const Pictures& pictures) {
-  if (!pictures.colour.empty()) writer.WriteColour(frame, pictures.colour);
-  if (!pictures.range.empty()) writer.WriteRange(frame, pictures.range);
-  if (!pictures.exact_range.empty()) writer.WriteExactRange(frame, pictures.exact_range);
-  if (!pictures.objects.empty()) {
-    writer.WriteMask(SequenceWriter::kObjects, frame, pictures.objects);
-    writer.WriteMask(kMoving, frame, pictures.moving);
+void Write(const SequenceWriter& writer, int frame, const Images& images) {
+  if (!images.colour.empty()) writer.WriteColour(frame, images.colour);
+  if (!images.range.empty()) writer.WriteRange(frame, images.range);
+  if (!images.exact_range.empty()) writer.WriteExactRange(frame, images.exact_range);
+  if (!images.objects.empty()) {
+    writer.WriteMask(SequenceWriter::kObjects, frame, images.objects);
+    writer.WriteMask(kMoving, frame, images.moving);
   }
 }
 
@@ -109,13 +109,13 @@ void RenderIntoFolder(const Drive& drive, const std::filesystem::path& folder,
   std::future<void> writing;
   int rendered = 0;
   for (int frame = 0; frame < drive.frames(); ++frame) {
-    Pictures pictures = RenderMissing(drive, writer, options, frame);
+    Images images = RenderMissing(drive, writer, options, frame);
     if (writing.valid()) writing.get();
     if (frame > 0) progress(frame, rendered);
-    if (pictures.IsEmpty()) continue;
+    if (images.IsEmpty()) continue;
     ++rendered;
-    writing = std::async(std::launch::async, [&writer, frame, pictures = std::move(pictures)] {
-      Write(writer, frame, pictures);
+    writing = std::async(std::launch::async, [&writer, frame, images = std::move(images)] {
+      Write(writer, frame, images);
     });
   }
   if (writing.valid()) writing.get();

@@ -50,7 +50,7 @@ void MeasurePath(const Drive& drive, DriveStatistics* s) {
     std::sort(turn_rates.begin(), turn_rates.end());
     s->turn_rate_95 = turn_rates[turn_rates.size() * 95 / 100];
     s->maximum_turn_rate = turn_rates.back();
-    s->standing_share = 1 - driving / static_cast<double>(turn_rates.size());
+    s->standing_fraction = 1 - driving / static_cast<double>(turn_rates.size());
   }
   if (driving > 0) s->mean_speed = s->path_length * drive.fps() / driving;
   s->revisits = FindRevisits(poses);
@@ -71,8 +71,8 @@ void AddRanges(const GeometryImage& geometry, uint16_t first_moving_id, DriveSta
               ? kRangeBins.size() + 1
               : static_cast<size_t>(std::lower_bound(kRangeBins.begin(), kRangeBins.end(), range) -
                                     kRangeBins.begin());
-      s->range_shares[bin] += weight;
-      if (geometry.object(row, column) >= first_moving_id) s->moving_share += weight;
+      s->range_fractions[bin] += weight;
+      if (geometry.object(row, column) >= first_moving_id) s->moving_fraction += weight;
     }
   }
 }
@@ -101,12 +101,12 @@ Revisits FindRevisits(std::span<const Rigid3> world_from_camera) {
       opposite |= agreement < -cosine;
     }
     const double step = travelled[i] - travelled[i - 1];
-    revisits.same_share += same ? step : 0;
-    revisits.opposite_share += opposite ? step : 0;
+    revisits.same_fraction += same ? step : 0;
+    revisits.opposite_fraction += opposite ? step : 0;
   }
   if (travelled.back() > 0) {
-    revisits.same_share /= travelled.back();
-    revisits.opposite_share /= travelled.back();
+    revisits.same_fraction /= travelled.back();
+    revisits.opposite_fraction /= travelled.back();
   }
   return revisits;
 }
@@ -118,7 +118,7 @@ DriveStatistics MeasureDrive(const Drive& drive, int every, int sought) {
   MeasurePath(drive, &s);
   OrbExtractor extractor({.num_features = sought});
   s.minimum_corners = sought;
-  int pictures = 0;
+  int images = 0;
   for (int frame = 0; frame < s.frames; frame += every) {
     const FrameScene scene = drive.SceneAt(frame);
     AddRanges(drive.Geometry(scene, frame), scene.first_moving_id(), &s);
@@ -127,11 +127,11 @@ DriveStatistics MeasureDrive(const Drive& drive, int every, int sought) {
     const auto corners = static_cast<double>(extractor.Extract(gray).keypoints.size());
     s.mean_corners += corners;
     s.minimum_corners = std::min(s.minimum_corners, corners);
-    ++pictures;
+    ++images;
   }
-  s.mean_corners /= pictures;
-  s.moving_share /= pictures;
-  for (double& share : s.range_shares) share /= pictures;
+  s.mean_corners /= images;
+  s.moving_fraction /= images;
+  for (double& fraction : s.range_fractions) fraction /= images;
   return s;
 }
 
@@ -158,15 +158,15 @@ std::string StatisticsTable(std::span<const std::string> names,
   row("path, m", 0, [](S s) { return s.path_length; });
   row("mean speed while driving, m/s", 1, [](S s) { return s.mean_speed; });
   row("largest speed, m/s", 1, [](S s) { return s.maximum_speed; });
-  row("standing, % of the time", 1, [](S s) { return 100 * s.standing_share; });
+  row("standing, % of the time", 1, [](S s) { return 100 * s.standing_fraction; });
   row("height between lowest and highest place, m", 1, [](S s) { return s.climb; });
   row("turn rate, 95th percentile, degrees/s", 1, [](S s) { return s.turn_rate_95; });
   row("largest turn rate, degrees/s", 1, [](S s) { return s.maximum_turn_rate; });
   row("turns added up, degrees", 0, [](S s) { return s.total_turn; });
   row("path driven before in the same direction, %", 0,
-      [](S s) { return 100 * s.revisits.same_share; });
+      [](S s) { return 100 * s.revisits.same_fraction; });
   row("path driven before in the opposite direction, %", 0,
-      [](S s) { return 100 * s.revisits.opposite_share; });
+      [](S s) { return 100 * s.revisits.opposite_fraction; });
   for (size_t bin = 0; bin < kRangeBins.size() + 2; ++bin) {
     char label[64];
     if (bin == kRangeBins.size() + 1) {
@@ -177,11 +177,11 @@ std::string StatisticsTable(std::span<const std::string> names,
       std::snprintf(label, sizeof label, "%g to %g m, %% of the sphere",
                     bin == 0 ? 0.0 : kRangeBins[bin - 1], kRangeBins[bin]);
     }
-    row(label, 1, [bin](S s) { return 100 * s.range_shares[bin]; });
+    row(label, 1, [bin](S s) { return 100 * s.range_fractions[bin]; });
   }
-  row("moving, % of the sphere", 1, [](S s) { return 100 * s.moving_share; });
+  row("moving, % of the sphere", 1, [](S s) { return 100 * s.moving_fraction; });
   row("ORB corners, mean", 0, [](S s) { return s.mean_corners; });
-  row("ORB corners, poorest picture", 0, [](S s) { return s.minimum_corners; });
+  row("ORB corners, poorest image", 0, [](S s) { return s.minimum_corners; });
   return table;
 }
 

@@ -11,8 +11,8 @@ namespace orb360::town {
 
 /// The revisits of a path: within 5 m of a place, after more than 50 m of travel.
 struct Revisits {
-  double same_share = 0;      ///< of the path, heading within 45 degrees of the earlier one
-  double opposite_share = 0;  ///< of the path, heading within 45 degrees of the reverse
+  double same_fraction = 0;      ///< of the path, heading within 45 degrees of the earlier one
+  double opposite_fraction = 0;  ///< of the path, heading within 45 degrees of the reverse
 };
 Revisits FindRevisits(std::span<const Rigid3> world_from_camera);
 
@@ -27,16 +27,16 @@ struct DriveStatistics {
   double path_length = 0;    ///< metres
   double mean_speed = 0;     ///< metres per second, while driving
   double maximum_speed = 0;  ///< metres per second
-  double standing_share = 0;
+  double standing_fraction = 0;
   double climb = 0;              ///< metres between the lowest and the highest place
   double turn_rate_95 = 0;       ///< degrees per second, 95th percentile
   double maximum_turn_rate = 0;  ///< degrees per second
   double total_turn = 0;         ///< degrees, all turns to either side added up
   Revisits revisits;
-  std::array<double, kRangeBins.size() + 2> range_shares{};  ///< of the sphere's solid angle
-  double moving_share = 0;                                   ///< of the solid angle, what moves
-  double mean_corners = 0;     ///< corners found in a picture, at most as many as were sought
-  double minimum_corners = 0;  ///< in the poorest of the pictures looked at
+  std::array<double, kRangeBins.size() + 2> range_fractions{};  ///< of the sphere's solid angle
+  double moving_fraction = 0;                                   ///< of the solid angle, what moves
+  double mean_corners = 0;     ///< corners found in an image, at most as many as were sought
+  double minimum_corners = 0;  ///< in the poorest of the images looked at
 };
 
 /// Measures a drive: its poses, and ranges and corners (ORB, `sought` of them) in every `every`-th

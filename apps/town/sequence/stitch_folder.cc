@@ -182,14 +182,14 @@ cv::Mat1w StitchObjectFiles(const FaceFiles& files, const EquirectangularCamera&
 /// Lists the files in the folders with a prefix if there are such folders; every frame must have
 /// images.
 FrameFiles ListOptionalFrames(const std::filesystem::path& recording, const std::string& prefix,
-                              const FrameFiles& pictures) {
+                              const FrameFiles& images) {
   bool is_there = false;
   for (size_t face = 0; face < kCubeFaces; ++face)
     is_there |= std::filesystem::exists(FaceFolder(recording, prefix, face));
   if (!is_there) return {};
   FrameFiles frames = ListFrames(recording, prefix);
   for (const auto& [name, files] : frames) {
-    if (!pictures.contains(name)) throw UserError(files[0].string() + ": has no picture");
+    if (!images.contains(name)) throw UserError(files[0].string() + ": has no image");
   }
   return frames;
 }

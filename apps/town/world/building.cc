@@ -12,7 +12,7 @@ void AddBuilding(const Lot& lot, Random& random, MeshBuilder& builder) {
   const Vector3f front_right = lot.front_left + lot.width * lot.right;
   const Vector3f back_right = front_right + lot.depth * back;
   const Vector3f back_left = lot.front_left + lot.depth * back;
-  constexpr double kWindowsAside = 0.5;  // share of the sides that have them
+  constexpr double kWindowsAside = 0.5;  // fraction of the sides that have them
   AddFront(builder, style, {lot.front_left, lot.right, up, -back}, lot.width, lot.ground_drop,
            random);
   AddSide(builder, style, {front_right, back, up, lot.right}, lot.depth, lot.ground_drop,

@@ -71,10 +71,10 @@ Vector3f Joint(const Vector3f& from, const Vector3f& to, float first, float seco
                const Vector3f& outward) {
   const Vector3f along = to - from;
   const float reach = std::min(along.norm(), 0.999F * (first + second));
-  const float share = (first * first - second * second + reach * reach) / (2 * reach);
+  const float distance = (first * first - second * second + reach * reach) / (2 * reach);
   const Vector3f direction = along.normalized();
   const Vector3f across = (outward - outward.dot(direction) * direction).normalized();
-  return from + share * direction + std::sqrt(first * first - share * share) * across;
+  return from + distance * direction + std::sqrt(first * first - distance * distance) * across;
 }
 
 }  // namespace

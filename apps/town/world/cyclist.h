@@ -5,7 +5,7 @@
 
 namespace orb360::town {
 
-inline constexpr uint32_t kPedalPhases = 8;         ///< still pictures of one turn of the pedals
+inline constexpr uint32_t kPedalPhases = 8;         ///< still images of one turn of the pedals
 inline constexpr double kMetresPerPedalTurn = 4.6;  ///< of the road
 inline constexpr double kBicycleLength = 1.75;      ///< metres
 inline constexpr double kHandlebarWidth = 0.56;     ///< metres

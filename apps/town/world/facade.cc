@@ -82,7 +82,7 @@ void AddUpperFloor(MeshBuilder& b, const FacadeStyle& style, const Panel& p, flo
       for (const float x : {opening.x0 - half, opening.x1 + 0.02F}) {
         const float end = x + half - 0.02F;
         b.AddBox(b.materials().trim, p, x, end, opening.z0, opening.z1, 0, 0.045F);
-        b.AddPicture(b.materials().louvres, p, x, end, opening.z0, opening.z1, 0.047F);
+        b.AddImage(b.materials().louvres, p, x, end, opening.z0, opening.z1, 0.047F);
       }
     }
     if (random.Chance(0.03)) {  // air conditioner
@@ -97,9 +97,8 @@ void AddDoor(MeshBuilder& b, const FacadeStyle& style, const Panel& p, const Ope
              Random& random) {
   const Materials& m = b.materials();
   b.set_tint({1, 1, 1, 1});
-  b.AddPicture(PickFrom(random, m.doors), p, o.x0, o.x1, o.z0, o.z1, -style.reveal);
-  b.AddPicture(PickFrom(random, m.house_numbers), p, o.x1 + 0.2F, o.x1 + 0.38F, 1.75F, 1.93F,
-               0.012F);
+  b.AddImage(PickFrom(random, m.doors), p, o.x0, o.x1, o.z0, o.z1, -style.reveal);
+  b.AddImage(PickFrom(random, m.house_numbers), p, o.x1 + 0.2F, o.x1 + 0.38F, 1.75F, 1.93F, 0.012F);
   b.set_tint(style.trim_tint);
   AddSteps(b, p, o.x0 - 0.2F, o.x1 + 0.2F, o.z0, drop);
   if (style.surrounds) {
@@ -144,7 +143,7 @@ void AddGroundFloor(MeshBuilder& b, const FacadeStyle& style, const Panel& p, fl
     AddSurround(b, style, p, opening);
     if (front && random.Chance(0.08)) {
       b.set_tint({1, 1, 1, 1});
-      b.AddPicture(PickFrom(random, m.posters), p, left + 0.05F, left + 0.5F, 0.9F, 1.8F, 0.008F);
+      b.AddImage(PickFrom(random, m.posters), p, left + 0.05F, left + 0.5F, 0.9F, 1.8F, 0.008F);
     }
   }
 }
@@ -246,8 +245,8 @@ void AddSide(MeshBuilder& b, const FacadeStyle& style, const Panel& p, float wid
     const float size = std::min({width - 1.6F, eaves - 4.2F, 6.5F});
     const float x = 0.5F * (width - size);
     b.set_tint({1, 1, 1, 1});
-    b.AddPicture(PickFrom(random, m.murals), p, x, x + size, eaves - size - 0.8F, eaves - 0.8F,
-                 0.01F);
+    b.AddImage(PickFrom(random, m.murals), p, x, x + size, eaves - size - 0.8F, eaves - 0.8F,
+               0.01F);
   } else if (style.ivy) {
     AddIvy(b, p, width, eaves, random);
   }

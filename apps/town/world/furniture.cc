@@ -86,8 +86,7 @@ Mesh MakeRoadSign(const Materials& materials, Random random) {
   } else {
     b.set_tint({1, 1, 1, 1});
     const Panel plate{{0.5F, 0.05F, 2.5F}, {-1, 0, 0}, kUp, {0, 1, 0}};
-    b.AddPicture(random.Pick(std::span<const MaterialId>(materials.signs)), plate, 0, 1.0F, 0,
-                 0.25F);
+    b.AddImage(random.Pick(std::span<const MaterialId>(materials.signs)), plate, 0, 1.0F, 0, 0.25F);
   }
   return std::move(b.mesh());
 }
@@ -173,7 +172,7 @@ Mesh MakeCabinet(const Materials& materials, Random random) {
   b.set_tint({1, 1, 1, 1});
   const Panel front{{0.184F, -width, 0}, {0, 1, 0}, kUp, {1, 0, 0}};
   const MaterialId bill = random.Pick(std::span<const MaterialId>(materials.posters));
-  b.AddPicture(bill, front, 0.08F, 0.08F + 0.3F, 0.45F, 0.95F);
+  b.AddImage(bill, front, 0.08F, 0.08F + 0.3F, 0.45F, 0.95F);
   return std::move(b.mesh());
 }
 
@@ -235,10 +234,10 @@ Mesh MakeBusShelter(const Materials& materials, Random random) {
   const MaterialId poster = random.Pick(std::span<const MaterialId>(materials.posters));
   const Panel inner{{-0.1F, kHalf - 0.063F, 0.35F}, {-1, 0, 0}, kUp, {0, -1, 0}};
   const Panel outer{{kBack + 0.05F, kHalf + 0.063F, 0.35F}, {1, 0, 0}, kUp, {0, 1, 0}};
-  b.AddPicture(poster, inner, 0, 0.55F, 0, 1.7F);
-  b.AddPicture(poster, outer, 0, 0.55F, 0, 1.7F);
+  b.AddImage(poster, inner, 0, 0.55F, 0, 1.7F);
+  b.AddImage(poster, outer, 0, 0.55F, 0, 1.7F);
   const Panel name{{0.302F, -1.1F, kHeight - 0.01F}, {0, 1, 0}, kUp, {1, 0, 0}};
-  b.AddPicture(random.Pick(std::span<const MaterialId>(materials.signs)), name, 0, 2.2F, 0, 0.12F);
+  b.AddImage(random.Pick(std::span<const MaterialId>(materials.signs)), name, 0, 2.2F, 0, 0.12F);
   return std::move(b.mesh());
 }
 

@@ -48,9 +48,9 @@ bool ClearOfRoads(const StreetPlan& plan, const Rectangle& r, double margin) {
     return std::any_of(plan.parks.begin(), plan.parks.end(),
                        [&](const Park& park) { return park.Contains(p); });
   };
-  for (double share = 0; share <= 1.001; share += 0.125) {
-    for (const Vector2d& p : {r.At(share * r.width, 0), r.At(share * r.width, r.depth),
-                              r.At(0, share * r.depth), r.At(r.width, share * r.depth)}) {
+  for (double fraction = 0; fraction <= 1.001; fraction += 0.125) {
+    for (const Vector2d& p : {r.At(fraction * r.width, 0), r.At(fraction * r.width, r.depth),
+                              r.At(0, fraction * r.depth), r.At(r.width, fraction * r.depth)}) {
       if (plan.DistanceToRoad(p) < margin || is_in_park(p)) return false;
     }
   }
@@ -138,9 +138,9 @@ std::vector<Lot> LayOutLots(const StreetPlan& plan, Random& random) {
         // streets are close together.
         std::optional<Rectangle> lot;
         double end = s;
-        for (const double share : {1.0, 0.8, 0.62}) {
-          end = std::min(s + share * width, street.Length());
-          const Rectangle tried = AlongKerb(street, side, s, end, setback, share * depth);
+        for (const double fraction : {1.0, 0.8, 0.62}) {
+          end = std::min(s + fraction * width, street.Length());
+          const Rectangle tried = AlongKerb(street, side, s, end, setback, fraction * depth);
           if (tried.width <= 5 || !ClearOfRoads(plan, tried, street.pavement - 0.6) ||
               !is_free(tried))
             continue;

@@ -87,8 +87,8 @@ void MeshBuilder::AddRectangle(MaterialId material, const Panel& panel, float x0
           {low, Vector2f(high.x(), low.y()), high, Vector2f(low.x(), high.y())});
 }
 
-void MeshBuilder::AddPicture(MaterialId material, const Panel& panel, float x0, float x1, float z0,
-                             float z1, float depth) {
+void MeshBuilder::AddImage(MaterialId material, const Panel& panel, float x0, float x1, float z0,
+                           float z1, float depth) {
   AddQuad(material,
           {panel.At(x0, z0, depth), panel.At(x1, z0, depth), panel.At(x1, z1, depth),
            panel.At(x0, z1, depth)},
@@ -146,11 +146,11 @@ void MeshBuilder::AddTube(MaterialId material, const Vector3f& a, const Vector3f
   const float circumference = 2 * std::numbers::pi_v<float> * std::max(radius_a, radius_b);
   const auto first = static_cast<uint32_t>(mesh_.positions.size());
   for (int i = 0; i <= sides; ++i) {
-    const float share = static_cast<float>(i) / static_cast<float>(sides);
-    const float angle = 2 * std::numbers::pi_v<float> * share;
+    const float fraction = static_cast<float>(i) / static_cast<float>(sides);
+    const float angle = 2 * std::numbers::pi_v<float> * fraction;
     const Vector3f normal = std::cos(angle) * x + std::sin(angle) * y;
-    AddVertex(a + radius_a * normal, normal, scale * circumference * share, 0);
-    AddVertex(b + radius_b * normal, normal, scale * circumference * share, scale * length);
+    AddVertex(a + radius_a * normal, normal, scale * circumference * fraction, 0);
+    AddVertex(b + radius_b * normal, normal, scale * circumference * fraction, scale * length);
   }
   for (uint32_t i = 0; i < static_cast<uint32_t>(sides); ++i) {
     const uint32_t k = first + 2 * i;

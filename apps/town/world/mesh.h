@@ -19,7 +19,7 @@ struct Vertex {
   float u = 0;  ///< in tiles of the texture
   float v = 0;
   Eigen::Matrix<int8_t, 3, 1> normal{0, 0, 127};  ///< unit normal times 127
-  uint8_t openness = 255;  ///< share of the sky a cosine-weighted look sees, times 255
+  uint8_t openness = 255;  ///< fraction of the sky a cosine-weighted look sees, times 255
   std::array<uint8_t, 4> tint{255, 255, 255, 255};  ///< square root of a linear factor, times 255
 };
 static_assert(sizeof(Vertex) == 16, "three of these are read for each hit");
@@ -77,8 +77,8 @@ class MeshBuilder {
   void AddRectangle(MaterialId material, const Panel& panel, float x0, float x1, float z0, float z1,
                     float depth = 0);
   /// As above, but the unit tile of the texture spans the rectangle.
-  void AddPicture(MaterialId material, const Panel& panel, float x0, float x1, float z0, float z1,
-                  float depth = 0);
+  void AddImage(MaterialId material, const Panel& panel, float x0, float x1, float z0, float z1,
+                float depth = 0);
   /// Adds a quad of any orientation, textured in metres along its first edge and across it.
   void AddFace(MaterialId material, const Vector3f& a, const Vector3f& b, const Vector3f& c,
                const Vector3f& d);

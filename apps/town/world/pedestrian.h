@@ -5,7 +5,7 @@
 
 namespace orb360::town {
 
-inline constexpr uint32_t kWalkPhases = 12;    ///< still pictures of one stride
+inline constexpr uint32_t kWalkPhases = 12;    ///< still images of one stride
 inline constexpr double kStrideLength = 1.45;  ///< metres, two steps
 
 /// Makes a walking person in one of kWalkPhases: x forward, the origin between the feet. The same

@@ -20,9 +20,9 @@ class StreetFrame {
 
   /// Returns true if the edges of a piece lie on the carriageway and not on an island in it.
   bool IsRoad(double s0, double s1, double y0, double y1) const {
-    for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-      const double s = std::lerp(s0, s1, share);
-      const double y = std::lerp(y0, y1, share);
+    for (const double fraction : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      const double s = std::lerp(s0, s1, fraction);
+      const double y = std::lerp(y0, y1, fraction);
       for (const auto& [station, offset] :
            {std::pair(s, y0), std::pair(s, y1), std::pair(s0, y), std::pair(s1, y)}) {
         if (plan_->DistanceToRoad(PlanAt(station, offset)) > 0) return false;

@@ -14,7 +14,7 @@ struct Instance {
   Eigen::Isometry3f world_from_model = Eigen::Isometry3f::Identity();
   Rgba tint;           ///< linear factor on the surfaces with Finish::kPaint
   float lookout = 3;   ///< metres above its origin from which it sees its surroundings freely
-  float openness = 1;  ///< share of the sky seen from there
+  float openness = 1;  ///< fraction of the sky seen from there
 };
 
 /// The scenery that is rendered: everything that stands still, and the models of instances.

@@ -73,8 +73,8 @@ void AddHangingSign(MeshBuilder& b, const Panel& p, float x, float z, MaterialId
   b.set_tint({1, 1, 1, 1});
   const Panel left{p.At(x - 0.02F, z, 0.15F), p.out, p.up, -p.right};
   const Panel right{p.At(x + 0.02F, z, 0.95F), -p.out, p.up, p.right};
-  b.AddPicture(sign, left, 0, 0.8F, -0.14F, 0.08F);
-  b.AddPicture(sign, right, 0, 0.8F, -0.14F, 0.08F);
+  b.AddImage(sign, left, 0, 0.8F, -0.14F, 0.08F);
+  b.AddImage(sign, right, 0, 0.8F, -0.14F, 0.08F);
 }
 
 }  // namespace
@@ -108,15 +108,15 @@ void AddShopFront(MeshBuilder& b, const FacadeStyle& style, const Panel& p, floa
       if (closed || !random.Chance(0.12)) continue;
       b.set_tint({1, 1, 1, 1});  // a bill stuck to the pane
       const auto x = static_cast<float>(random.Uniform(edge(i) + 0.1, edge(i + 1) - 0.6));
-      b.AddPicture(PickFrom(random, m.posters), p, x, x + 0.4F, z0 + 0.3F, z0 + 1.1F,
-                   -kReveal - 0.5F * kPaneDepth);
+      b.AddImage(PickFrom(random, m.posters), p, x, x + 0.4F, z0 + 0.3F, z0 + 1.1F,
+                 -kReveal - 0.5F * kPaneDepth);
     }
   };
   glaze(x0, door);
   glaze(door_end, x1);
   const float lintel = std::min(z1, 2.3F);
   b.set_tint({1, 1, 1, 1});
-  b.AddPicture(PickFrom(random, m.doors), p, door, door_end, 0.02F, lintel, -kReveal);
+  b.AddImage(PickFrom(random, m.doors), p, door, door_end, 0.02F, lintel, -kReveal);
   if (z1 > lintel)
     AddPane(b, PickFrom(random, m.rooms), p, {door, door_end, lintel, z1}, -kReveal, random);
   if (closed) {
@@ -126,8 +126,8 @@ void AddShopFront(MeshBuilder& b, const FacadeStyle& style, const Panel& p, floa
       const auto edge = [&](int k) {
         return std::lerp(x0, x1, static_cast<float>(k) / static_cast<float>(parts));
       };
-      b.AddPicture(PickFrom(random, m.roller_shutters), p, edge(i), edge(i + 1), 0.02F, z1,
-                   -0.5F * kReveal);
+      b.AddImage(PickFrom(random, m.roller_shutters), p, edge(i), edge(i + 1), 0.02F, z1,
+                 -0.5F * kReveal);
     }
   }
   b.set_tint({0.8F, 0.79F, 0.77F, 1});
@@ -142,8 +142,8 @@ void AddShopFront(MeshBuilder& b, const FacadeStyle& style, const Panel& p, floa
   const float sign_width = std::min(right - left - 0.5F, 4 * kSign);
   const float middle = 0.5F * (left + right);
   const MaterialId sign = PickFrom(random, m.signs);
-  b.AddPicture(sign, p, middle - 0.5F * sign_width, middle + 0.5F * sign_width, sign_bottom,
-               sign_bottom + kSign, 0.115F);
+  b.AddImage(sign, p, middle - 0.5F * sign_width, middle + 0.5F * sign_width, sign_bottom,
+             sign_bottom + kSign, 0.115F);
   if (random.Chance(0.3)) AddHangingSign(b, p, right - 0.2F, sign_bottom - 0.1F, sign);
   if (!closed && random.Chance(0.45)) AddAwning(b, p, x0, x1, z1 - 0.02F, random);
 }

@@ -73,9 +73,9 @@ void Grow(MeshBuilder& b, const Species& species, const Vector3f& base, const Ve
     Vector3f side = RandomDirection(random);
     side.z() = species.rise + 0.5F * std::abs(side.z());
     const Vector3f child = (0.55F * bent + species.spread * side.normalized()).normalized();
-    const auto share = static_cast<float>(random.Uniform(-0.12, 0.12)) + species.shortening;
+    const auto ratio = static_cast<float>(random.Uniform(-0.12, 0.12)) + species.shortening;
     Grow(b, species, i % 2 == 0 ? end : Vector3f(0.35F * middle + 0.65F * end), child,
-         length * share, 0.5F * radius, levels - 1, random, tips);
+         length * ratio, 0.5F * radius, levels - 1, random, tips);
   }
 }
 

@@ -209,11 +209,11 @@ float VehicleLength(VehicleKind kind) { return ShapeOf(kind).length; }
 float VehicleWidth(VehicleKind kind) { return ShapeOf(kind).width; }
 
 VehicleKind DrawVehicleKind(Random& random) {
-  const double share = random.Uniform();
-  if (share < 0.3) return VehicleKind::kHatchback;
-  if (share < 0.5) return VehicleKind::kSaloon;
-  if (share < 0.7) return VehicleKind::kSuv;
-  return share < 0.86 ? VehicleKind::kEstate : VehicleKind::kVan;
+  const double fraction = random.Uniform();
+  if (fraction < 0.3) return VehicleKind::kHatchback;
+  if (fraction < 0.5) return VehicleKind::kSaloon;
+  if (fraction < 0.7) return VehicleKind::kSuv;
+  return fraction < 0.86 ? VehicleKind::kEstate : VehicleKind::kVan;
 }
 
 Mesh MakeVehicle(VehicleKind kind, const Materials& materials) {

@@ -102,9 +102,9 @@ std::vector<OutlinePoint> Outline(const VehicleShape& s) {
   std::vector<float> stations;
   const float radius = ArchRadius(s);
   for (const float axle : {s.rear_axle, s.front_axle}) {
-    for (const float share :
+    for (const float fraction :
          {-1.02F, -1.0F, -0.93F, -0.8F, -0.6F, -0.3F, 0.0F, 0.3F, 0.6F, 0.8F, 0.93F, 1.0F, 1.02F})
-      stations.push_back(axle + share * radius);
+      stations.push_back(axle + fraction * radius);
   }
   for (int i = 1; i < 5; ++i) {
     stations.push_back(std::lerp(s.rear_axle + 1.02F * radius, s.front_axle - 1.02F * radius,
@@ -116,8 +116,9 @@ std::vector<OutlinePoint> Outline(const VehicleShape& s) {
   constexpr int kSteps = 9;
   const float edge = HalfWidth(s, corner);
   for (int i = 0; i <= kSteps; ++i) {
-    const float share = static_cast<float>(i) / kSteps;
-    const float y = edge * (1.6F * share - 0.6F * share * share);  // closer towards the corner
+    const float fraction = static_cast<float>(i) / kSteps;
+    const float y =
+        edge * (1.6F * fraction - 0.6F * fraction * fraction);  // closer towards the corner
     const float t = y / (0.5F * s.width);
     quarter.push_back({0.5F * s.length * std::pow(1 - std::pow(t, kRoundness), 1 / kRoundness), y});
   }
@@ -159,8 +160,8 @@ void AddFlankPatch(MeshBuilder& b, const VehicleShape& s, float x0, float x1, fl
     std::vector<std::vector<Vector3f>> rows;
     for (const float x : {side < 0 ? x0 : x1, side < 0 ? x1 : x0}) {
       std::vector<Vector3f> row;
-      for (const float share : {0.0F, 0.35F, 0.7F, 1.0F}) {
-        const Vector3f q = SkinAt(s, {x, side * HalfWidth(s, x)}, std::lerp(z0, z1, share));
+      for (const float fraction : {0.0F, 0.35F, 0.7F, 1.0F}) {
+        const Vector3f q = SkinAt(s, {x, side * HalfWidth(s, x)}, std::lerp(z0, z1, fraction));
         row.push_back(q + Vector3f(0, side * kProud, 0));
       }
       rows.push_back(std::move(row));
@@ -196,10 +197,10 @@ void AddLampsAndGrille(MeshBuilder& b, const VehicleShape& s) {
   const Panel rear{{0, 0, 0}, {0, -1, 0}, {0, 0, 1}, {-1, 0, 0}};
   b.set_tint({1, 1, 1, 1});
   const float rear_plate = std::max(s.tail - 0.46F, 0.42F);
-  b.AddPicture(m.number_plate, front, -0.26F, 0.26F, 0.42F, 0.53F,
-               SkinAt(s, {0.5F * s.length, 0}, 0.48F).x() + 0.012F);
-  b.AddPicture(m.number_plate, rear, -0.26F, 0.26F, rear_plate, rear_plate + 0.11F,
-               0.5F * s.length + 0.008F);
+  b.AddImage(m.number_plate, front, -0.26F, 0.26F, 0.42F, 0.53F,
+             SkinAt(s, {0.5F * s.length, 0}, 0.48F).x() + 0.012F);
+  b.AddImage(m.number_plate, rear, -0.26F, 0.26F, rear_plate, rear_plate + 0.11F,
+             0.5F * s.length + 0.008F);
 }
 
 void AddDoors(MeshBuilder& b, const VehicleShape& s) {
@@ -243,10 +244,10 @@ void AddBody(MeshBuilder& b, const VehicleShape& s) {
     // The deck closes over a spine along the middle, which is slightly crowned.
     const Vector3f edge = row.back();
     const Vector3f spine(std::clamp(edge.x(), -0.75F * half, 0.75F * half), 0, 0);
-    for (const float share : {0.35F, 0.7F, 1.0F}) {
-      Vector3f q = edge + share * (spine - edge);
+    for (const float fraction : {0.35F, 0.7F, 1.0F}) {
+      Vector3f q = edge + fraction * (spine - edge);
       q.z() = DeckHeight(s, q.x()) + 0.006F +
-              0.035F * share * (2 - share) * (1 - 0.6F * Endness(s, {q.x(), 0}));
+              0.035F * fraction * (2 - fraction) * (1 - 0.6F * Endness(s, {q.x(), 0}));
       row.push_back(q);
     }
     rows.push_back(std::move(row));

@@ -23,7 +23,7 @@ struct Options {
   int height = 512;
   int threads = 2;
   std::string precision = "float";
-  float known = 0.005f;  // share of the pixels that have a depth and a confidence
+  float known = 0.005f;  // fraction of the pixels that have a depth and a confidence
 };
 
 std::vector<std::vector<float>> MakeInputs(const Executor& executor, float known) {
@@ -50,7 +50,7 @@ int Main(int argc, char** argv) {
   app.add_option("--height", options.height, "of the panorama, pixels");
   app.add_option("--threads", options.threads)->check(CLI::PositiveNumber);
   app.add_option("--precision", options.precision)->check(CLI::IsMember({"float", "bf16"}));
-  app.add_option("--known", options.known, "share of the pixels that have a depth");
+  app.add_option("--known", options.known, "fraction of the pixels that have a depth");
   CLI11_PARSE(app, argc, argv);
 
   std::vector<double> load, pack;

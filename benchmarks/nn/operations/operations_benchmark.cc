@@ -28,15 +28,15 @@ TensorFormat Format(const Shape& shape, Layout layout = Layout::kPlanar) {
 }
 
 // One pixel in twenty is known.
-PlainPicture SparseConfidence(const Shape& shape) {
-  PlainPicture c = RandomPicture(shape, -19.0f, 1.0f, 9);
+PlainImage SparseConfidence(const Shape& shape) {
+  PlainImage c = RandomImage(shape, -19.0f, 1.0f, 9);
   for (double& value : c.values) value = std::max(value, 0.0);
   return c;
 }
 
 // The argument of every benchmark is the number of threads.
 void TimeNetwork(benchmark::State& state, PropagationNetwork network) {
-  const FilledTensor x(RandomPicture({1, kHeight, kWidth}, 1.0f, 80.0f, 1), Layout::kPlanar, 0);
+  const FilledTensor x(RandomImage({1, kHeight, kWidth}, 1.0f, 80.0f, 1), Layout::kPlanar, 0);
   const FilledTensor c(SparseConfidence({1, kHeight, kWidth}), Layout::kPlanar, 0);
   const TensorMemory y(Format({1, kHeight, kWidth}));
   const TensorMemory y_confidence(Format({1, kHeight, kWidth}));
@@ -61,8 +61,8 @@ void NormalizedConvolutionLayer(benchmark::State& state) {
   const int size = static_cast<int>(state.range(3));
   const NormalizedChain chain({RandomLayer(outputs, inputs, size, kPadding, 1)});
   const Shape in{inputs, kHeight, kWidth};
-  const FilledTensor x(RandomPicture(in, -3.0f, 3.0f, 1), Layout::kPlanar, 0);
-  const FilledTensor c(RandomPicture(in, 0.0f, 1.0f, 2), Layout::kPlanar, 0);
+  const FilledTensor x(RandomImage(in, -3.0f, 3.0f, 1), Layout::kPlanar, 0);
+  const FilledTensor c(RandomImage(in, 0.0f, 1.0f, 2), Layout::kPlanar, 0);
   const TensorMemory y(Format({outputs, kHeight, kWidth}));
   const TensorMemory y_confidence(Format({outputs, kHeight, kWidth}));
   const Scratch scratch(chain.ScratchBytes(kWidth, threads));
@@ -89,7 +89,7 @@ std::size_t Count(const Shape& shape) {
 
 void PoolByConfidence(benchmark::State& state) {
   const Shape shape{2, kHeight, kWidth};
-  const FilledTensor x(RandomPicture(shape, -3.0f, 3.0f, 1), Layout::kPlanar, 0);
+  const FilledTensor x(RandomImage(shape, -3.0f, 3.0f, 1), Layout::kPlanar, 0);
   const FilledTensor c(SparseConfidence(shape), Layout::kPlanar, 0);
   const TensorMemory y(Format({2, kHeight / 2, kWidth / 2}));
   const TensorMemory y_confidence(Format({2, kHeight / 2, kWidth / 2}));
@@ -100,7 +100,7 @@ void PoolByConfidence(benchmark::State& state) {
 
 void MedianLogarithm(benchmark::State& state) {
   const Shape shape{1, kHeight, kWidth};
-  const FilledTensor depth(RandomPicture(shape, 1.0f, 80.0f, 1), Layout::kPlanar, 0);
+  const FilledTensor depth(RandomImage(shape, 1.0f, 80.0f, 1), Layout::kPlanar, 0);
   const FilledTensor confidence(SparseConfidence(shape), Layout::kPlanar, 0);
   const TensorMemory x(Format(shape));
   const TensorMemory c(Format(shape));
@@ -113,8 +113,8 @@ void MedianLogarithm(benchmark::State& state) {
 void Convex(benchmark::State& state) {
   const Shape half{1, kHeight / 2, kWidth / 2};
   const Shape stack{kConvexUpsampleWeights, kHeight / 2, kWidth / 2};
-  const FilledTensor x(RandomPicture(half, -3.0f, 3.0f, 1), Layout::kPlanar, 1);
-  const FilledTensor weights(RandomPicture(stack, -3.0f, 3.0f, 1), Layout::kPlanar, 0);
+  const FilledTensor x(RandomImage(half, -3.0f, 3.0f, 1), Layout::kPlanar, 1);
+  const FilledTensor weights(RandomImage(stack, -3.0f, 3.0f, 1), Layout::kPlanar, 0);
   const TensorMemory y(Format({1, kHeight, kWidth}));
   Time(state, Count(stack) + 5 * Count(half),
        [&](int threads) { ConvexUpsample(x.view, weights.view, y.view, kPadding, threads); });
@@ -125,34 +125,34 @@ constexpr Shape kSmall{32, kHeight / 4, kWidth / 4};
 constexpr Shape kLarge{32, kHeight / 2, kWidth / 2};
 
 void Nearest(benchmark::State& state) {
-  const FilledTensor x(RandomPicture(kSmall, -3.0f, 3.0f, 1), Layout::kBlocked, 1);
+  const FilledTensor x(RandomImage(kSmall, -3.0f, 3.0f, 1), Layout::kBlocked, 1);
   const TensorMemory y(Format(kLarge, Layout::kBlocked));
   Time(state, 5 * Count(kSmall), [&](int threads) { UpsampleNearest(x.view, y.view, threads); });
 }
 
 void Bilinear(benchmark::State& state) {
-  const FilledTensor x(RandomPicture(kSmall, -3.0f, 3.0f, 1), Layout::kBlocked, 1);
+  const FilledTensor x(RandomImage(kSmall, -3.0f, 3.0f, 1), Layout::kBlocked, 1);
   const TensorMemory y(Format(kLarge, Layout::kBlocked));
   Time(state, 5 * Count(kSmall),
        [&](int threads) { UpsampleBilinear(x.view, y.view, kPadding, threads); });
 }
 
 void AverageOfSquares(benchmark::State& state) {
-  const FilledTensor x(RandomPicture(kLarge, -3.0f, 3.0f, 1), Layout::kBlocked, 1);
+  const FilledTensor x(RandomImage(kLarge, -3.0f, 3.0f, 1), Layout::kBlocked, 1);
   const TensorMemory y(Format(kSmall, Layout::kBlocked));
   Time(state, 5 * Count(kSmall), [&](int threads) { AveragePool(x.view, y.view, threads); });
 }
 
 void AverageOfAll(benchmark::State& state) {
   const Shape shape{160, kHeight / 32, kWidth / 32};
-  const FilledTensor x(RandomPicture(shape, -3.0f, 3.0f, 1), Layout::kBlocked, 1);
+  const FilledTensor x(RandomImage(shape, -3.0f, 3.0f, 1), Layout::kBlocked, 1);
   const TensorMemory y(Format({160, 1, 1}, Layout::kBlocked));
   Time(state, Count(shape), [&](int threads) { GlobalAveragePool(x.view, y.view, threads); });
 }
 
 void DenseLayer(benchmark::State& state) {
   const Dense dense(RandomFloats(64 * 160, -1, 1, 1), RandomFloats(64, -1, 1, 2), 64, 160);
-  const FilledTensor x(RandomPicture({160, 1, 1}, -3.0f, 3.0f, 1), Layout::kBlocked, 0);
+  const FilledTensor x(RandomImage({160, 1, 1}, -3.0f, 3.0f, 1), Layout::kBlocked, 0);
   const TensorMemory y(Format({64, 1, 1}, Layout::kBlocked));
   Time(state, 64 * 160, [&](int) { dense.Run(x.view, y.view); });
 }
@@ -162,14 +162,14 @@ using Unary = void (*)(const TensorView&, const TensorView&, int);
 template <Unary kFunction>
 void OneByOne(benchmark::State& state) {
   const Shape shape{1, kHeight, kWidth};
-  const FilledTensor x(RandomPicture(shape, 0.1f, 3.0f, 1), Layout::kPlanar, 0);
+  const FilledTensor x(RandomImage(shape, 0.1f, 3.0f, 1), Layout::kPlanar, 0);
   const TensorMemory y(Format(shape));
   Time(state, 2 * Count(shape), [&](int threads) { kFunction(x.view, y.view, threads); });
 }
 
 void AddTensors(benchmark::State& state) {
-  const FilledTensor x(RandomPicture(kLarge, -3.0f, 3.0f, 1), Layout::kBlocked, 1);
-  const FilledTensor y(RandomPicture(kLarge, -3.0f, 3.0f, 1), Layout::kBlocked, 1);
+  const FilledTensor x(RandomImage(kLarge, -3.0f, 3.0f, 1), Layout::kBlocked, 1);
+  const FilledTensor y(RandomImage(kLarge, -3.0f, 3.0f, 1), Layout::kBlocked, 1);
   Time(state, 3 * Count(kLarge), [&](int threads) { Add(x.view, y.view, y.view, threads); });
 }
 

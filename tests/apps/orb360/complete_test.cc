@@ -17,7 +17,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-/// A network that takes pictures with sides of multiples of 8: the mean of the points' logarithms
+/// A network that takes images with sides of multiples of 8: the mean of the points' logarithms
 /// around each pixel.
 class CompleteTest : public testing::Test {
  protected:

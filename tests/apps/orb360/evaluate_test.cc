@@ -53,7 +53,7 @@ class EvaluateTest : public testing::Test {
 TEST_F(EvaluateTest, JsonHasTheErrorsOfAScaledTrajectory) {
   const nlohmann::json report = Report(Truth(), Estimate());
   EXPECT_EQ(report["pairs"], 45);
-  EXPECT_NEAR(report["tracked_share"], 0.75, 1e-9);
+  EXPECT_NEAR(report["tracked_fraction"], 0.75, 1e-9);
   EXPECT_NEAR(report["scale_factor"], 2.0, 1e-6);
   EXPECT_NEAR(report["ate_rmse_sim3"], 0.0, 1e-6);
   EXPECT_GT(report["ate_rmse_se3"], 0.1);
@@ -68,7 +68,7 @@ TEST_F(EvaluateTest, FoldersStandForTheFilesInThem) {
                 "landmarks_per_keyframe": 210.5})");
   const nlohmann::json report = Report(folder_.path(), folder_.path());
   EXPECT_EQ(report["pairs"], 45);
-  EXPECT_NEAR(report["tracked_share"], 0.9, 1e-9);
+  EXPECT_NEAR(report["tracked_fraction"], 0.9, 1e-9);
   EXPECT_EQ(report["features_per_keyframe"], 321.5);
   EXPECT_EQ(report["landmarks_per_keyframe"], 210.5);
 }

@@ -76,7 +76,7 @@ class RunTest : public testing::Test {
     return folder_ / "input" / name;
   }
 
-  /// For what is refused before a picture is looked at.
+  /// For what is refused before an image is looked at.
   void WriteBlanks() const {
     WriteFolder(Input(), std::vector<cv::Mat>(3, cv::Mat(kSize, CV_8UC1, cv::Scalar(99))));
   }
@@ -359,20 +359,20 @@ TEST_F(RunTest, ByDefaultWhatMovesWithTheCameraIsMasked) {
   // Five frames a second: the clip is long enough to tell.
   EXPECT_EQ(Run({"--fps", "5"}).status, 0);
   // Below 45 degrees lie (1 - sin(45 deg)) / 2 = 14.6 % of the sphere.
-  EXPECT_NEAR(Summary()["masked_share"], 0.146, 0.04);
+  EXPECT_NEAR(Summary()["masked_fraction"], 0.146, 0.04);
   EXPECT_EQ(Run({"--fps", "5", "--mask", "none"}).status, 0);
-  EXPECT_EQ(Summary()["masked_share"], 0.0);
+  EXPECT_EQ(Summary()["masked_fraction"], 0.0);
 }
 
-TEST_F(RunTest, SaveSparseWritesEveryKeyframeWithItsPicture) {
+TEST_F(RunTest, SaveSparseWritesEveryKeyframeWithItsImage) {
   WriteRoom();
   EXPECT_EQ(Run({"--save-sparse", "--start", "2"}).status, 0);
   const std::vector<StampedPose> keyframes = ReadTrajectory(OutFile("keyframes.txt"));
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(OutFile("sparse"))) {
     const SparseSample sample = ReadSparseSample(entry.path());
-    const cv::Mat picture = cv::imread(Image(sample.frame_index), cv::IMREAD_COLOR);
-    EXPECT_EQ(cv::norm(sample.image, picture, cv::NORM_INF), 0.0);
+    const cv::Mat image = cv::imread(Image(sample.frame_index), cv::IMREAD_COLOR);
+    EXPECT_EQ(cv::norm(sample.image, image, cv::NORM_INF), 0.0);
     EXPECT_GT(cv::countNonZero(sample.sparse.range), 50);
     EXPECT_TRUE(std::ranges::any_of(keyframes, [&](const StampedPose& pose) {
       return std::abs(pose.timestamp - sample.timestamp) < 1e-6;
@@ -410,7 +410,7 @@ TEST_F(RunTest, AMapIsKeptAndTheNextRunIsLocatedInItsWorld) {
 TEST_F(RunTest, AMapThatDoesNotFitIsRefused) {
   WriteBlanks();
   const std::string path = folder_ / "room.map";
-  WriteFileAtomically(path, "a picture");
+  WriteFileAtomically(path, "an image");
   EXPECT_THAT(Refusal({"--map-in", path}), HasSubstr("is not a map of orb360"));
   Map map;
   map.AddKeyframe(0, 0.0, {}, std::make_shared<Features>());

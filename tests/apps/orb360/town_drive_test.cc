@@ -59,7 +59,7 @@ TempFolder* TownDriveSlow::folder_ = nullptr;
 
 TEST_F(TownDriveSlow, IsTrackedInMetresAndItsCloudLiesOnTheStreet) {
   const nlohmann::json errors = Track({"--mask", "none"}, false);
-  EXPECT_EQ(errors["tracked_share"], 1);
+  EXPECT_EQ(errors["tracked_fraction"], 1);
   EXPECT_NEAR(errors["scale_factor"].get<double>(), 1, 0.02);
   EXPECT_LT(errors["ate_rmse_sim3"], 0.1);
   EXPECT_GT(errors["cloud"]["accuracy_25cm"], 0.5);
@@ -72,7 +72,7 @@ TEST_F(TownDriveSlow, IsRoughlyInMetresByDenseDepthWhereNoLandmarkLiesOnTheGroun
   const std::string path = *folder_ / "mask.png";
   cv::imwrite(path, mask);
   const nlohmann::json errors = Track({"--mask", path}, true);
-  EXPECT_EQ(errors["tracked_share"], 1);
+  EXPECT_EQ(errors["tracked_fraction"], 1);
   // The network has not learned to go without points on the ground; in units of its own, the map's
   // would be about 5.
   EXPECT_NEAR(errors["scale_factor"].get<double>(), 1, 0.3);
@@ -98,7 +98,7 @@ TEST_F(TownDriveSlow, TakesItsMetresFromLandmarksAsSoonAsTheyLieOnTheGround) {
       Run({"--mask", "none", "--max-frames", std::to_string(kSmooth)}, drive);
   EXPECT_NE(before.value("rough", true), false);
   const nlohmann::json errors = Track({"--mask", "none"}, false, drive);
-  EXPECT_EQ(errors["tracked_share"], 1);
+  EXPECT_EQ(errors["tracked_fraction"], 1);
   EXPECT_NEAR(errors["scale_factor"].get<double>(), 1, 0.03);
 }
 

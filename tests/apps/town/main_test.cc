@@ -110,7 +110,7 @@ TEST_F(TownCommandTest, AnswersBadCircuitsAndRecordingsWithOneLine) {
 }
 
 TEST_F(TownCommandTest, AnswersAFullDiskWithOneLine) {
-  // A limit on the size of files stands in for the disk: 20 kB hold the texts but no picture.
+  // A limit on the size of files stands in for the disk: 20 kB hold the texts but no image.
   const std::string scene = " --scene " + Wall() + " --path " +
                             Write("path.txt", "0 5 5 1\n2 7 5 1\n") + " --frames 3 --width 512";
   FILE* pipe = popen(

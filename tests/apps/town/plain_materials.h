@@ -4,7 +4,7 @@
 
 namespace orb360::town {
 
-/// Materials for tests that need no pictures: 0 plain, 1 plain with tiles of 4 m, 2 a cut-out that
+/// Materials for tests that need no images: 0 plain, 1 plain with tiles of 4 m, 2 a cut-out that
 /// is there only where u < 0.5 (in each tile).
 inline Materials PlainMaterials() {
   Materials materials{};

@@ -8,14 +8,14 @@
 namespace orb360::nn {
 namespace {
 
-Shape SizeOfPicture(const Graph& graph, const Dump& inputs) {
+Shape SizeOfImage(const Graph& graph, const Dump& inputs) {
   return inputs.at(graph.tensors[static_cast<std::size_t>(graph.inputs.front())].name).shape;
 }
 
 }  // namespace
 
 DumpRun::DumpRun(const Graph& graph, const Dump& inputs, const ExecutorOptions& options)
-    : executor_(graph, SizeOfPicture(graph, inputs).height, SizeOfPicture(graph, inputs).width,
+    : executor_(graph, SizeOfImage(graph, inputs).height, SizeOfImage(graph, inputs).width,
                 options),
       workspace_(executor_) {
   std::vector<std::span<const float>> from;

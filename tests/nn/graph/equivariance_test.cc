@@ -12,16 +12,16 @@
 #include "nn/graph/network_file.h"
 #include "tests/nn/dump.h"
 #include "tests/nn/graph/dump_run.h"
-#include "tests/nn/kernels/plain_picture.h"
+#include "tests/nn/kernels/plain_image.h"
 
 namespace orb360::nn {
 namespace {
 
-/// `picture` turned to the right by so many columns.
-DumpedTensor Rolled(const DumpedTensor& picture, int columns) {
-  DumpedTensor rolled = picture;
-  const int width = picture.shape.width;
-  for (std::size_t i = 0; i < picture.values.size(); i += static_cast<std::size_t>(width)) {
+/// `image` turned to the right by so many columns.
+DumpedTensor Rolled(const DumpedTensor& image, int columns) {
+  DumpedTensor rolled = image;
+  const int width = image.shape.width;
+  for (std::size_t i = 0; i < image.values.size(); i += static_cast<std::size_t>(width)) {
     const auto row = rolled.values.begin() + static_cast<std::ptrdiff_t>(i);
     std::rotate(row, row + (width - columns % width), row + width);
   }
@@ -37,20 +37,20 @@ float FarthestApart(const DumpedTensor& a, const DumpedTensor& b) {
   return farthest;
 }
 
-/// The project's own network with few channels and weights of a seed, on a random picture.
+/// The project's own network with few channels and weights of a seed, on a random image.
 class PanoramaNetwork : public ::testing::TestWithParam<int> {
  protected:
   PanoramaNetwork() {
     const Shape shape{1, 128, 320};
     const auto random = [&](int channels, float low, float high, unsigned seed) {
       const Shape size{channels, shape.height, shape.width};
-      const PlainPicture picture = RandomPicture(size, low, high, seed);
-      return DumpedTensor{size, {picture.values.begin(), picture.values.end()}};
+      const PlainImage image = RandomImage(size, low, high, seed);
+      return DumpedTensor{size, {image.values.begin(), image.values.end()}};
     };
     inputs_["image"] = random(3, 0, 1, 1);
     inputs_["depth"] = random(1, 1, 80, 2);
     inputs_["confidence"] = random(1, 0, 1, 3);
-    constexpr float kUnknown = 0.95F;  // share of the pixels without a depth
+    constexpr float kUnknown = 0.95F;  // fraction of the pixels without a depth
     for (float& confidence : inputs_["confidence"].values) {
       confidence = std::max(confidence - kUnknown, 0.0F) / (1 - kUnknown);
     }
@@ -65,9 +65,9 @@ class PanoramaNetwork : public ::testing::TestWithParam<int> {
   Dump inputs_;
 };
 
-TEST_P(PanoramaNetwork, TurnsItsResultWithThePictureBitForBit) {
+TEST_P(PanoramaNetwork, TurnsItsResultWithTheImageBitForBit) {
   const Dump outputs = Outputs(inputs_);
-  // The lowest level has a pixel for 64 of the picture's.
+  // The lowest level has a pixel for 64 of the image's.
   for (const int columns : {64, 128, 256}) {
     Dump turned;
     for (const auto& [name, input] : inputs_) turned[name] = Rolled(input, columns);
@@ -76,7 +76,7 @@ TEST_P(PanoramaNetwork, TurnsItsResultWithThePictureBitForBit) {
       EXPECT_TRUE(result.at(name).values == Rolled(outputs.at(name), columns).values)
           << name << " turned by " << columns;
     }
-    // A mean over the picture is added up in another order.
+    // A mean over the image is added up in another order.
     EXPECT_LE(FarthestApart(result.at("log_metric_scale"), outputs.at("log_metric_scale")), 1e-6F);
   }
 }
@@ -100,7 +100,7 @@ TEST_P(PanoramaNetwork, DoesNotDependOnTheUnitOfDepth) {
   }
 }
 
-TEST_P(PanoramaNetwork, SeesPointsAndPicture) {
+TEST_P(PanoramaNetwork, SeesPointsAndImage) {
   const Dump outputs = Outputs(inputs_);
   for (const char* const name : {"image", "depth"}) {
     Dump inputs = inputs_;

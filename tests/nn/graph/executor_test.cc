@@ -15,19 +15,19 @@
 namespace orb360::nn {
 namespace {
 
-PlainPicture ToPicture(const TensorView& tensor) {
-  PlainPicture picture(tensor.shape);
+PlainImage ToImage(const TensorView& tensor) {
+  PlainImage image(tensor.shape);
   for (int c = 0; c < tensor.shape.channels; ++c) {
     for (int y = 0; y < tensor.shape.height; ++y) {
-      for (int x = 0; x < tensor.shape.width; ++x) picture.at(c, y, x) = At(tensor, c, y, x);
+      for (int x = 0; x < tensor.shape.width; ++x) image.at(c, y, x) = At(tensor, c, y, x);
     }
   }
-  return picture;
+  return image;
 }
 
 // Every node against double precision on the numbers that the executor gave it: what is allowed is
 // then the rounding of that node alone.
-void ExpectEveryNodeRight(const Graph& graph, const std::vector<PlainPicture>& inputs) {
+void ExpectEveryNodeRight(const Graph& graph, const std::vector<PlainImage>& inputs) {
   const Shape& size = inputs.front().shape;
   const Executor executor(graph, size.height, size.width, {.threads = 2, .keeps_tensors = true});
   NetworkRun run(executor, inputs);
@@ -37,13 +37,13 @@ void ExpectEveryNodeRight(const Graph& graph, const std::vector<PlainPicture>& i
     return executor.Find(workspace, graph.tensors[static_cast<std::size_t>(tensor)].name);
   };
   for (const Node& node : graph.nodes) {
-    std::vector<PlainPicture> pictures;
-    for (const int tensor : node.inputs) pictures.push_back(ToPicture(find(tensor)));
-    std::vector<const PlainPicture*> read;
-    for (const PlainPicture& picture : pictures) read.push_back(&picture);
+    std::vector<PlainImage> images;
+    for (const int tensor : node.inputs) images.push_back(ToImage(find(tensor)));
+    std::vector<const PlainImage*> read;
+    for (const PlainImage& image : images) read.push_back(&image);
     NodeResult expected = InterpretNode(graph, node, read);
     for (std::size_t i = 0; i < node.outputs.size(); ++i) {
-      PlainPicture& tolerance = expected.magnitudes[i];
+      PlainImage& tolerance = expected.magnitudes[i];
       // The errors of some hundreds of additions grow like the root of their number; functions like
       // log are exact to the last bits of the largest of their result and 0.1.
       for (double& value : tolerance.values) value = 64 * 0x1p-24 * (value + 0.1);
@@ -65,7 +65,7 @@ TEST(Executor, EveryNodeOfRandomNetworksAgreesWithDoublePrecision) {
 TEST(Executor, FusionAndSharedMemoryChangeNothingButRounding) {
   for (unsigned seed = 1; seed <= 120; ++seed) {
     const Graph graph = RandomNetwork(40, seed).Build();
-    const std::vector<PlainPicture> inputs = RandomInputs(8, 16, seed);
+    const std::vector<PlainImage> inputs = RandomInputs(8, 16, seed);
     const Executor fused(graph, 8, 16);
     const Executor plain(graph, 8, 16, {.keeps_tensors = true});
     EXPECT_LE(fused.planned_bytes(), plain.planned_bytes());
@@ -102,7 +102,7 @@ TEST(Executor, AddsWhatAConvolutionReadsOrAnotherOneWrites) {
   net.Output("y", "leaky");
   net.Output("z", "b+c");
   const Graph graph = net.Build();
-  const std::vector<PlainPicture> inputs = {RandomPicture({16, 9, 11}, -1, 1, 1)};
+  const std::vector<PlainImage> inputs = {RandomImage({16, 9, 11}, -1, 1, 1)};
   const auto expected = Interpret(graph, inputs);
   for (const bool keeps : {false, true}) {
     const auto outputs = RunOnce(Executor(graph, 9, 11, {.keeps_tensors = keeps}), inputs);
@@ -125,7 +125,7 @@ TEST(Executor, BFloat16StaysNearFloatOrIsRefused) {
   std::int64_t count = 0;
   for (unsigned seed = 1; seed <= 60; ++seed) {
     const Graph graph = RandomNetwork(40, seed).Build();
-    const std::vector<PlainPicture> inputs = RandomInputs(8, 16, seed);
+    const std::vector<PlainImage> inputs = RandomInputs(8, 16, seed);
     const auto expected = RunOnce(Executor(graph, 8, 16), inputs);
     const auto actual = RunOnce(Executor(graph, 8, 16, half), inputs);
     // Fusion changes where numbers are rounded to bfloat16, but not by how much.
@@ -152,7 +152,7 @@ TEST(Executor, BFloat16StaysNearFloatOrIsRefused) {
 TEST(Executor, ThreadsDoNotChangeABit) {
   for (unsigned seed = 1; seed <= 8; ++seed) {
     const Graph graph = RandomNetwork(40, seed).Build();
-    const std::vector<PlainPicture> inputs = RandomInputs(16, 32, seed);
+    const std::vector<PlainImage> inputs = RandomInputs(16, 32, seed);
     EXPECT_EQ(RunOnce(Executor(graph, 16, 32, {.threads = 1}), inputs),
               RunOnce(Executor(graph, 16, 32, {.threads = 2}), inputs))
         << seed;
@@ -162,12 +162,12 @@ TEST(Executor, ThreadsDoNotChangeABit) {
 TEST(Executor, RunsAreIndependentOfEachOther) {
   const Graph graph = RandomNetwork(60, 3).Build();
   const Executor executor(graph, 16, 32);
-  const std::vector<PlainPicture> first = RandomInputs(16, 32, 1);
-  const std::vector<PlainPicture> second = RandomInputs(16, 32, 2);
+  const std::vector<PlainImage> first = RandomInputs(16, 32, 1);
+  const std::vector<PlainImage> second = RandomInputs(16, 32, 2);
   const auto expected_first = RunOnce(executor, first);
   const auto expected_second = RunOnce(executor, second);
   ASSERT_NE(expected_first, expected_second);
-  // One workspace after another picture, and several at once.
+  // One workspace after another image, and several at once.
   Executor::Workspace workspace(executor);
   for (int i = 0; i < 2; ++i) {
     NetworkRun a(executor, first);
@@ -193,7 +193,7 @@ TEST(Executor, RunsAreIndependentOfEachOther) {
   EXPECT_THAT(is_right, testing::Each(1));
 }
 
-TEST(Executor, TakesOddPicturesAndSinglePixelsWhereTheGraphDoes) {
+TEST(Executor, TakesOddImagesAndSinglePixelsWhereTheGraphDoes) {
   NetworkBuilder net(1);
   net.Input("x", 3);
   net.Convolution("a", "x", 3, 20, 3, 2);
@@ -208,7 +208,7 @@ TEST(Executor, TakesOddPicturesAndSinglePixelsWhereTheGraphDoes) {
   const Graph graph = net.Build();
   for (const auto& [height, width] : {std::pair{1, 1}, {1, 7}, {5, 1}, {7, 9}, {33, 35}}) {
     SCOPED_TRACE(testing::Message() << width << "x" << height);
-    ExpectEveryNodeRight(graph, {RandomPicture({3, height, width}, 0.1f, 1, 1)});
+    ExpectEveryNodeRight(graph, {RandomImage({3, height, width}, 0.1f, 1, 1)});
   }
 }
 
@@ -216,12 +216,12 @@ TEST(Executor, AnInputMayBeAnOutput) {
   NetworkBuilder net;
   net.Input("x", 2);
   net.Output("same", "x");
-  const std::vector<PlainPicture> inputs = {RandomPicture({2, 3, 5}, 0, 1, 1)};
+  const std::vector<PlainImage> inputs = {RandomImage({2, 3, 5}, 0, 1, 1)};
   const auto outputs = RunOnce(Executor(net.Build(), 3, 5), inputs);
   EXPECT_EQ(std::vector<double>(outputs[0].begin(), outputs[0].end()), inputs[0].values);
 }
 
-TEST(Executor, RefusesPicturesOfOtherSizes) {
+TEST(Executor, RefusesImagesOfOtherSizes) {
   const Graph graph = RandomNetwork(10, 1).Build();
   EXPECT_NO_THROW(Executor(graph, 8, 24));
   for (const auto& [height, width] : {std::pair{8, 12}, {4, 8}, {0, 8}, {-8, 8}, {8, 1 << 20}}) {

@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "nn/graph/buffer_assignment.h"
 #include "nn/graph/cpu_backend.h"
-#include "nn/graph/placement.h"
 #include "nn/tensor.h"
 #include "tests/nn/graph/random_network.h"
 
@@ -77,11 +77,11 @@ TEST(MemoryPlan, TensorsOfRandomNetworksNeverOverlap) {
   for (unsigned seed = 1; seed <= 100; ++seed) {
     const Graph graph = RandomNetwork(50, seed).Build();
     const Lowered lowered = Lower(graph, FuseNodes(graph), backend, 16, 32);
-    const Placement placement = PlaceValues(lowered, /*keeps_values=*/false);
-    ExpectNoOverlap(placement.pieces, placement.offsets, placement.bytes);
+    const BufferAssignment assignment = AssignBuffers(lowered, /*keeps_values=*/false);
+    ExpectNoOverlap(assignment.pieces, assignment.offsets, assignment.bytes);
     if (HasFatalFailure()) return;
-    EXPECT_GE(placement.bytes, LeastBytes(placement.pieces));
-    EXPECT_LE(placement.bytes, placement.separate_bytes);
+    EXPECT_GE(assignment.bytes, LeastBytes(assignment.pieces));
+    EXPECT_LE(assignment.bytes, assignment.separate_bytes);
   }
 }
 

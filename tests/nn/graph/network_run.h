@@ -3,15 +3,15 @@
 #include <vector>
 
 #include "nn/graph/executor.h"
-#include "tests/nn/kernels/plain_picture.h"
+#include "tests/nn/kernels/plain_image.h"
 
 namespace orb360::nn {
 
 /// Inputs and outputs of one run as floats.
 struct NetworkRun {
-  NetworkRun(const Executor& executor, const std::vector<PlainPicture>& pictures) {
-    for (const PlainPicture& picture : pictures) {
-      inputs.emplace_back(picture.values.begin(), picture.values.end());
+  NetworkRun(const Executor& executor, const std::vector<PlainImage>& images) {
+    for (const PlainImage& image : images) {
+      inputs.emplace_back(image.values.begin(), image.values.end());
     }
     for (const Executor::Port& output : executor.outputs()) {
       const auto [channels, height, width] = output.shape;
@@ -30,7 +30,7 @@ struct NetworkRun {
 
 /// The outputs of one run in a workspace of its own.
 inline std::vector<std::vector<float>> RunOnce(const Executor& executor,
-                                               const std::vector<PlainPicture>& inputs) {
+                                               const std::vector<PlainImage>& inputs) {
   NetworkRun run(executor, inputs);
   Executor::Workspace workspace(executor);
   run(executor, &workspace);

@@ -170,7 +170,7 @@ TEST(ParseGraph, RefusesNodesWithTheirNameAndTheReason) {
       {"g", R"({"inputs": ["product"]})", "dense takes 1x1 only"},
       {"g", R"({"weights": {"weight": "e1.weight"}})", "should be Ox20"},
       {"mask", R"({"inputs": ["image"]})", "should be Ox3xKxK"},
-      {"sum", R"({"inputs": ["a1", "half"]})", "\"half\" has 20 channels at 1/4 of the picture"},
+      {"sum", R"({"inputs": ["a1", "half"]})", "\"half\" has 20 channels at 1/4 of the image"},
       {"sum", R"({"inputs": ["a1", "mean"]})", "nothing before"},
       {"all", R"({"inputs": ["n1", "pooled"]})", "\"pooled\" has 2 channels at 1/2"},
       {"all", R"({"inputs": []})", "should have 1 or more"},
@@ -291,7 +291,7 @@ TEST(ParseGraph, RefusesSizesThatAnOperationCouldMeetAndNotTake) {
   };
   EXPECT_THAT(build(2, crossing), HasSubstr("needs an even width"));
   EXPECT_EQ(build(4, crossing), "accepted");
-  // Beyond any picture.
+  // Beyond any image.
   const auto repeated = [](const char* op, int times) {
     return [=](NetworkBuilder* net) {
       std::string last = "x";

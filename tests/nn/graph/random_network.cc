@@ -192,9 +192,9 @@ class Author {
     if (x.level == kSingle || x.level == 0) return;
     const std::string value =
         net_.Node(NewName(), "slice", {x.name}, {{"first", x.channels - 1}, {"count", 1}});
-    const std::string shares = net_.Convolution(NewName(), x.name, x.channels, 36, 1);
+    const std::string weights = net_.Convolution(NewName(), x.name, x.channels, 36, 1);
     made_.push_back(
-        {net_.Node(NewName(), "convex_upsample", {value, shares}, {{"padding", Padding(x)}}), 1,
+        {net_.Node(NewName(), "convex_upsample", {value, weights}, {{"padding", Padding(x)}}), 1,
          x.level - 1});
   }
   void AddGlobalBranch(const Made& x) {
@@ -213,10 +213,10 @@ class Author {
 
 NetworkBuilder RandomNetwork(int nodes, unsigned seed) { return Author(seed).Write(nodes); }
 
-std::vector<PlainPicture> RandomInputs(int height, int width, unsigned seed) {
-  std::vector<PlainPicture> inputs = {RandomPicture({3, height, width}, 0, 1, seed),
-                                      RandomPicture({1, height, width}, -8, 12, seed + 1),
-                                      RandomPicture({1, height, width}, 0, 1, seed + 2)};
+std::vector<PlainImage> RandomInputs(int height, int width, unsigned seed) {
+  std::vector<PlainImage> inputs = {RandomImage({3, height, width}, 0, 1, seed),
+                                    RandomImage({1, height, width}, -8, 12, seed + 1),
+                                    RandomImage({1, height, width}, 0, 1, seed + 2)};
   for (std::size_t i = 0; i < inputs[1].values.size(); ++i) {
     if (inputs[1].values[i] > 0) continue;  // no point
     inputs[1].values[i] = inputs[2].values[i] = 0;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "tests/nn/graph/network_builder.h"
-#include "tests/nn/kernels/plain_picture.h"
+#include "tests/nn/kernels/plain_image.h"
 
 namespace orb360::nn {
 
@@ -12,7 +12,7 @@ namespace orb360::nn {
 /// size_multiple 8.
 NetworkBuilder RandomNetwork(int nodes, unsigned seed);
 
-/// Inputs for it: a picture in 0..1 and a sparse depth with its confidence.
-std::vector<PlainPicture> RandomInputs(int height, int width, unsigned seed);
+/// Inputs for it: an image in 0..1 and a sparse depth with its confidence.
+std::vector<PlainImage> RandomInputs(int height, int width, unsigned seed);
 
 }  // namespace orb360::nn

@@ -231,7 +231,7 @@ class PublishedReference : public ::testing::Test {
     const Hdf5Handle file(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     const Hdf5Handle set(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
     const Hdf5Handle space(H5Dget_space(set.get()), H5Sclose);
-    hsize_t sizes[4] = {1, 1, 1, 1};  // of a picture: 1 x channels x height x width
+    hsize_t sizes[4] = {1, 1, 1, 1};  // of an image: 1 x channels x height x width
     H5Sget_simple_extent_dims(space.get(), sizes, nullptr);
     DumpedTensor tensor{
         {static_cast<int>(sizes[1]), static_cast<int>(sizes[2]), static_cast<int>(sizes[3])},
@@ -269,7 +269,7 @@ TEST_F(PublishedReference, IsReproducedNodeByNodeWithinATenthOfAMillimetre) {
   const DumpRun run(graph, inputs, {.threads = 2, .keeps_tensors = true});
   for (const auto& [tensor, key] : tensors) {
     const bool is_confidence = tensor.ends_with(".c");
-    const float tolerance = is_confidence ? 1e-6f : 1e-4f;  // shares; metres
+    const float tolerance = is_confidence ? 1e-6f : 1e-4f;  // fractions; metres
     EXPECT_EQ(WorstDifference(run.Find(tensor), Read(key), tolerance), "") << tensor;
   }
   EXPECT_EQ(WorstDifference(DumpRun(graph, inputs).outputs().at("depth"), Read("out/x"), 1e-4f),

@@ -6,7 +6,7 @@
 
 #include "nn/base/check.h"
 #include "tests/dispatch_targets.h"
-#include "tests/nn/kernels/plain_picture.h"
+#include "tests/nn/kernels/plain_image.h"
 
 namespace orb360::nn {
 namespace {
@@ -15,10 +15,10 @@ TEST(AveragePool, IsTheMeanOfEverySquare) {
   ForEachDispatchTarget([] {
     for (const Layout layout : {Layout::kPlanar, Layout::kBlocked}) {
       for (const Shape pooled : {Shape{1, 1, 1}, Shape{3, 2, 67}, Shape{17, 3, 5}}) {
-        const PlainPicture x =
-            RandomPicture({pooled.channels, 2 * pooled.height, 2 * pooled.width}, -3.0f, 3.0f, 1);
-        PlainPicture expected(pooled);
-        PlainPicture tolerance(pooled);
+        const PlainImage x =
+            RandomImage({pooled.channels, 2 * pooled.height, 2 * pooled.width}, -3.0f, 3.0f, 1);
+        PlainImage expected(pooled);
+        PlainImage tolerance(pooled);
         for (int c = 0; c < pooled.channels; ++c) {
           for (int v = 0; v < pooled.height; ++v) {
             for (int u = 0; u < pooled.width; ++u) {
@@ -53,16 +53,16 @@ TEST(GlobalAveragePool, IsTheMeanOfEveryChannelInEveryLayout) {
     for (const Layout from : {Layout::kPlanar, Layout::kBlocked}) {
       for (const Layout to : {Layout::kPlanar, Layout::kBlocked}) {
         for (const Shape shape : {Shape{1, 1, 1}, Shape{18, 16, 33}, Shape{160, 4, 8}}) {
-          const PlainPicture x = RandomPicture(shape, -1.0f, 3.0f, 1);
-          PlainPicture expected({shape.channels, 1, 1});
-          PlainPicture tolerance(expected.shape);
+          const PlainImage x = RandomImage(shape, -1.0f, 3.0f, 1);
+          PlainImage expected({shape.channels, 1, 1});
+          PlainImage tolerance(expected.shape);
           for (int c = 0; c < shape.channels; ++c) {
             for (int v = 0; v < shape.height; ++v) {
               for (int u = 0; u < shape.width; ++u) {
-                const double share = x.at(c, v, u) / (shape.height * shape.width);
-                expected.at(c, 0, 0) += share;
+                const double fraction = x.at(c, v, u) / (shape.height * shape.width);
+                expected.at(c, 0, 0) += fraction;
                 tolerance.at(c, 0, 0) +=
-                    (shape.height * shape.width + 1) * 0x1p-24 * std::abs(share);
+                    (shape.height * shape.width + 1) * 0x1p-24 * std::abs(fraction);
               }
             }
           }
@@ -80,7 +80,7 @@ TEST(GlobalAveragePool, IsTheMeanOfEveryChannelInEveryLayout) {
 }
 
 TEST(GlobalAveragePool, KeepsWhatIsNotANumberInItsChannel) {
-  PlainPicture x({3, 2, 2});
+  PlainImage x({3, 2, 2});
   x.at(1, 1, 0) = std::numeric_limits<double>::quiet_NaN();
   const FilledTensor input(x, Layout::kBlocked, 0);
   const TensorMemory y({{3, 1, 1}, Layout::kPlanar, DataType::kFloat, 0});

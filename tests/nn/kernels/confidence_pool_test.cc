@@ -6,7 +6,7 @@
 
 #include "nn/base/check.h"
 #include "tests/dispatch_targets.h"
-#include "tests/nn/kernels/plain_picture.h"
+#include "tests/nn/kernels/plain_image.h"
 
 namespace orb360::nn {
 namespace {
@@ -15,7 +15,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 struct Pooled {
-  Pooled(const PlainPicture& x, const PlainPicture& c, ConfidenceRule rule, int threads)
+  Pooled(const PlainImage& x, const PlainImage& c, ConfidenceRule rule, int threads)
       : value({{x.shape.channels, x.shape.height / 2, x.shape.width / 2},
                Layout::kPlanar,
                DataType::kFloat,
@@ -34,18 +34,18 @@ TEST(ConfidencePool, TakesWhatIsMostConfidentTheFirstAmongEquals) {
     for (const ConfidenceRule rule : {ConfidenceRule::kQuarter, ConfidenceRule::kSquareRoot}) {
       for (const Shape pooled : {Shape{1, 1, 1}, Shape{2, 3, 5}, Shape{3, 2, 67}}) {
         const Shape shape{pooled.channels, 2 * pooled.height, 2 * pooled.width};
-        const PlainPicture x = RandomPicture(shape, -3.0f, 3.0f, 1);
-        PlainPicture c = RandomPicture(shape, 0.0f, 1.0f, 2);
+        const PlainImage x = RandomImage(shape, -3.0f, 3.0f, 1);
+        PlainImage c = RandomImage(shape, 0.0f, 1.0f, 2);
         // Few levels, zero among them: most squares hold equals.
         for (double& value : c.values) value = std::floor(value * 3) / 4;
-        PlainPicture value(pooled);
-        PlainPicture confidence(pooled);
-        PlainPicture rounding(pooled);
+        PlainImage value(pooled);
+        PlainImage confidence(pooled);
+        PlainImage rounding(pooled);
         for (int channel = 0; channel < pooled.channels; ++channel) {
           for (int v = 0; v < pooled.height; ++v) {
             for (int u = 0; u < pooled.width; ++u) {
               int best = 0;
-              const auto at = [&](const PlainPicture& p, int k) {
+              const auto at = [&](const PlainImage& p, int k) {
                 return p.at(channel, 2 * v + k / 2, 2 * u + k % 2);
               };
               for (int k = 1; k < 4; ++k) {
@@ -72,8 +72,8 @@ TEST(ConfidencePool, TakesWhatIsMostConfidentTheFirstAmongEquals) {
 
 TEST(ConfidencePool, ComparesAsFloatsDo) {
   ForEachDispatchTarget([] {
-    PlainPicture x({1, 2, 6});
-    PlainPicture c({1, 2, 6});
+    PlainImage x({1, 2, 6});
+    PlainImage c({1, 2, 6});
     for (int i = 0; i < 12; ++i) x.values[i] = i;
     // Three squares; in each the four confidences in row-major order.
     const float confidences[3][4] = {
@@ -93,7 +93,7 @@ TEST(ConfidencePool, ComparesAsFloatsDo) {
 }
 
 TEST(ConfidencePool, RefusesOddSizes) {
-  const PlainPicture odd({1, 3, 4});
+  const PlainImage odd({1, 3, 4});
   EXPECT_THROW(Pooled(odd, odd, ConfidenceRule::kQuarter, 1), ContractError);
 }
 

@@ -6,7 +6,7 @@
 
 #include "nn/base/check.h"
 #include "tests/dispatch_targets.h"
-#include "tests/nn/kernels/plain_picture.h"
+#include "tests/nn/kernels/plain_image.h"
 
 namespace orb360::nn {
 namespace {
@@ -19,25 +19,25 @@ TEST(ConvexUpsample, MixesTheNeighboursByTheSoftmaxOfTheWeights) {
          {Padding::kZero, Padding::kWrapReplicate, Padding::kWrapCrossPole}) {
       for (const auto& [rows, columns] : {std::pair{1, 1}, {3, 2}, {2, 17}, {5, 70}}) {
         if (padding == Padding::kWrapCrossPole && columns % 2 != 0) continue;
-        const PlainPicture x = RandomPicture({1, rows, columns}, -3.0f, 3.0f, 1);
+        const PlainImage x = RandomImage({1, rows, columns}, -3.0f, 3.0f, 1);
         // Large enough that e^weight alone would overflow.
-        const PlainPicture w =
-            RandomPicture({kConvexUpsampleWeights, rows, columns}, -120.0f, 120.0f, 2);
-        PlainPicture expected({1, 2 * rows, 2 * columns});
-        PlainPicture tolerance(expected.shape);
+        const PlainImage w =
+            RandomImage({kConvexUpsampleWeights, rows, columns}, -120.0f, 120.0f, 2);
+        PlainImage expected({1, 2 * rows, 2 * columns});
+        PlainImage tolerance(expected.shape);
         for (int v = 0; v < 2 * rows; ++v) {
           for (int u = 0; u < 2 * columns; ++u) {
             const int first = 9 * (2 * (v % 2) + u % 2);
             double sum = 0;
             for (int k = 0; k < 9; ++k) sum += std::exp(w.at(first + k, v / 2, u / 2));
             for (int k = 0; k < 9; ++k) {
-              const double share = std::exp(w.at(first + k, v / 2, u / 2)) / sum;
+              const double fraction = std::exp(w.at(first + k, v / 2, u / 2)) / sum;
               const double value = x.padded(padding, 0, v / 2 + k / 3 - 1, u / 2 + k % 3 - 1);
-              expected.at(0, v, u) += share * value;
+              expected.at(0, v, u) += fraction * value;
               // Exp is good to 2 units in the last place, twice, after a difference of up to 240
               // that is rounded to 2^-17 of it.
               tolerance.at(0, v, u) +=
-                  (30 * 0x1p-24 + 240 * 0x1p-24) * share * (std::abs(value) + 3);
+                  (30 * 0x1p-24 + 240 * 0x1p-24) * fraction * (std::abs(value) + 3);
             }
           }
         }
@@ -56,8 +56,8 @@ TEST(ConvexUpsample, MixesTheNeighboursByTheSoftmaxOfTheWeights) {
 
 TEST(ConvexUpsample, SpreadsWhatIsNotANumberInTheWeightsToItsOutputPixelOnly) {
   ForEachDispatchTarget([] {
-    const PlainPicture x = RandomPicture({1, 3, 20}, -3.0f, 3.0f, 1);
-    PlainPicture w({kConvexUpsampleWeights, 3, 20});
+    const PlainImage x = RandomImage({1, 3, 20}, -3.0f, 3.0f, 1);
+    PlainImage w({kConvexUpsampleWeights, 3, 20});
     w.at(9 * 2 + 4, 1, 5) = std::numeric_limits<double>::quiet_NaN();
     const FilledTensor input(x, Layout::kPlanar, kConvexUpsampleHalo);
     const FilledTensor weights(w, Layout::kPlanar, 0);

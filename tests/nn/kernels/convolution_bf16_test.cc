@@ -60,7 +60,7 @@ TEST_F(BFloat16Convolution, IsThePlainSumForEveryNumberOfChannels) {
   }
 }
 
-TEST_F(BFloat16Convolution, TakesPicturesAsFloats) {
+TEST_F(BFloat16Convolution, TakesImagesAsFloats) {
   for (const int in : {1, 3, 6, 8, 9, kMaxPlanarChannels}) {
     for (const int out : {16, 32, 80, 97}) {
       for (const int stride : {1, 2}) {

@@ -209,7 +209,7 @@ void ExpectRight(const Case& c) {
   for (const BFloat16Unit unit : {BFloat16Unit::kAvx512, BFloat16Unit::kAmx}) {
     if (unit > BestBFloat16Unit()) continue;
     SCOPED_TRACE(unit == BFloat16Unit::kAmx ? "AMX" : "AVX-512");
-    // Pictures are not rounded.
+    // Images are not rounded.
     ExpectRight(c, Data(c, !c.is_stem()), unit);
   }
 }

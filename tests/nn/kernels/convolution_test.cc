@@ -54,7 +54,7 @@ TEST(Convolution, InTilesIsThePlainSumForEverySize) {
   ExpectRight({{48, 80, 3, 1, Padding::kWrapCrossPole, 0}, 26, 54});
 }
 
-TEST(Convolution, TurnsWithThePictureByAnyColumnOrByTiles) {
+TEST(Convolution, TurnsWithTheImageByAnyColumnOrByTiles) {
   Case c{{32, 32, 3, 1, Padding::kWrapReplicate, 0.1f}, 6, 12};
   for (const bool may_tile : {false, true}) {
     c.spec.may_tile = may_tile;

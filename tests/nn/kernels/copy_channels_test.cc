@@ -4,7 +4,7 @@
 
 #include "nn/base/bfloat16.h"
 #include "nn/base/check.h"
-#include "tests/nn/kernels/plain_picture.h"
+#include "tests/nn/kernels/plain_image.h"
 
 namespace orb360::nn {
 namespace {
@@ -13,7 +13,7 @@ constexpr Layout kLayouts[] = {Layout::kPlanar, Layout::kBlocked};
 constexpr DataType kTypes[] = {DataType::kFloat, DataType::kBFloat16};
 
 TEST(CopyChannels, MovesAnyChannelsBetweenAnyLayouts) {
-  const PlainPicture source = RandomPicture({50, 3, 7}, -1, 1, 1);
+  const PlainImage source = RandomImage({50, 3, 7}, -1, 1, 1);
   struct Range {
     int from, to, count, channels;  // the last: of the target
   };
@@ -23,7 +23,7 @@ TEST(CopyChannels, MovesAnyChannelsBetweenAnyLayouts) {
                                  Range{49, 0, 1, 1}, Range{32, 16, 18, 34}, Range{32, 0, 18, 20}}) {
         for (const int threads : {1, 2}) {
           const FilledTensor from(source, from_layout, 1);
-          PlainPicture expected = RandomPicture({range.channels, 3, 7}, 2, 3, 2);
+          PlainImage expected = RandomImage({range.channels, 3, 7}, 2, 3, 2);
           const FilledTensor to(expected, to_layout, 0);
           CopyChannels(from.view, range.from, to.view, range.to, range.count, threads);
           for (int i = 0; i < range.count; ++i) {
@@ -43,7 +43,7 @@ TEST(CopyChannels, MovesAnyChannelsBetweenAnyLayouts) {
 
 TEST(CopyChannels, ClearsWhatFillsUpTheLastBlock) {
   for (const DataType type : kTypes) {
-    const FilledTensor from(RandomPicture({5, 2, 2}, 1, 2, 1), Layout::kPlanar, 0);
+    const FilledTensor from(RandomImage({5, 2, 2}, 1, 2, 1), Layout::kPlanar, 0);
     const TensorMemory to({{20, 2, 2}, Layout::kBlocked, type, 0});  // not a zero anywhere
     CopyChannels(from.view, 0, to.view, 15, 5, 1);
     const TensorMemory back({{20, 2, 2}, Layout::kBlocked, DataType::kFloat, 0});
@@ -62,7 +62,7 @@ TEST(CopyChannels, ClearsWhatFillsUpTheLastBlock) {
 }
 
 TEST(CopyChannels, RoundsToBFloat16AndBack) {
-  const PlainPicture source = RandomPicture({40, 2, 3}, -1, 1, 1);
+  const PlainImage source = RandomImage({40, 2, 3}, -1, 1, 1);
   for (const Layout layout : kLayouts) {
     for (const int first : {0, 7}) {
       const FilledTensor from(source, layout, 0);
@@ -70,7 +70,7 @@ TEST(CopyChannels, RoundsToBFloat16AndBack) {
       const TensorMemory back({{33, 2, 3}, layout, DataType::kFloat, 0});
       CopyChannels(from.view, first, half.view, 0, 33, 2);
       CopyChannels(half.view, 0, back.view, 0, 33, 2);
-      PlainPicture expected({33, 2, 3});
+      PlainImage expected({33, 2, 3});
       for (int c = 0; c < 33; ++c) {
         for (int y = 0; y < 2; ++y) {
           for (int x = 0; x < 3; ++x) {
@@ -87,13 +87,13 @@ TEST(CopyChannels, RoundsToBFloat16AndBack) {
 // Whole blocks go by another way than single channels; the numbers must be the same.
 TEST(CopyChannels, RoundsWholeBlocksLikeSingleChannels) {
   for (const int channels : {5, 16, 20, 32, 40, 64, 70}) {
-    const PlainPicture source = RandomPicture({channels, 3, 5}, -1, 1, 1);
+    const PlainImage source = RandomImage({channels, 3, 5}, -1, 1, 1);
     const FilledTensor from(source, Layout::kBlocked, 1);
     const TensorMemory half({{channels, 3, 5}, Layout::kBlocked, DataType::kBFloat16, 1});
     const TensorMemory back({{channels, 3, 5}, Layout::kBlocked, DataType::kFloat, 0});
     CopyChannels(from.view, 0, half.view, 0, channels, 2);
     CopyChannels(half.view, 0, back.view, 0, channels, 2);
-    PlainPicture expected = source;
+    PlainImage expected = source;
     for (double& value : expected.values) value = ToFloat(ToBFloat16(static_cast<float>(value)));
     SCOPED_TRACE(channels);
     ExpectEqual(back.view, expected);

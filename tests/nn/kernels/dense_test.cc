@@ -6,7 +6,7 @@
 
 #include "nn/base/check.h"
 #include "tests/dispatch_targets.h"
-#include "tests/nn/kernels/plain_picture.h"
+#include "tests/nn/kernels/plain_image.h"
 
 namespace orb360::nn {
 namespace {
@@ -17,9 +17,9 @@ TEST(Dense, IsTheProductWithTheMatrixInEveryLayout) {
       const std::vector<float> weight =
           RandomFloats(static_cast<std::size_t>(outputs) * inputs, -1.0f, 1.0f, 1);
       const std::vector<float> bias = RandomFloats(outputs, -1.0f, 1.0f, 2);
-      const PlainPicture x = RandomPicture({inputs, 1, 1}, -3.0f, 3.0f, 3);
-      PlainPicture expected({outputs, 1, 1});
-      PlainPicture tolerance(expected.shape);
+      const PlainImage x = RandomImage({inputs, 1, 1}, -3.0f, 3.0f, 3);
+      PlainImage expected({outputs, 1, 1});
+      PlainImage tolerance(expected.shape);
       for (int o = 0; o < outputs; ++o) {
         expected.at(o, 0, 0) = bias[o];
         double magnitude = std::abs(bias[o]);

@@ -9,7 +9,7 @@
 
 #include "nn/base/check.h"
 #include "tests/dispatch_targets.h"
-#include "tests/nn/kernels/plain_picture.h"
+#include "tests/nn/kernels/plain_image.h"
 
 namespace orb360::nn {
 namespace {
@@ -58,10 +58,10 @@ double UnitInTheLastPlace(double value) {
   return std::ldexp(1.0, exponent - 24);
 }
 
-void ExpectFunction(const Function& function, const PlainPicture& x, Layout layout) {
+void ExpectFunction(const Function& function, const PlainImage& x, Layout layout) {
   SCOPED_TRACE(function.name);
-  PlainPicture expected(x.shape);
-  PlainPicture tolerance(x.shape);
+  PlainImage expected(x.shape);
+  PlainImage tolerance(x.shape);
   for (std::size_t i = 0; i < x.values.size(); ++i) {
     expected.values[i] = function.expected(x.values[i]);
     tolerance.values[i] = (function.units + 0.5) * UnitInTheLastPlace(expected.values[i]);
@@ -82,7 +82,7 @@ TEST(Elementwise, FunctionsAreAccurateInEveryLayoutShapeAndInPlace) {
     for (const Function& function : Functions()) {
       for (const Layout layout : {Layout::kPlanar, Layout::kBlocked}) {
         for (const Shape& shape : kShapes) {
-          ExpectFunction(function, RandomPicture(shape, function.lowest, function.highest, 3),
+          ExpectFunction(function, RandomImage(shape, function.lowest, function.highest, 3),
                          layout);
         }
       }
@@ -109,7 +109,7 @@ TEST(Elementwise, FunctionsKeepTheirAccuracyForEveryMagnitude) {
         return y != 0 && (y < 0x1p-126 || y > std::numeric_limits<float>::max());
       };
       std::erase_if(values, is_vague);
-      PlainPicture x({1, 1, static_cast<int>(values.size())});
+      PlainImage x({1, 1, static_cast<int>(values.size())});
       x.values = values;
       ExpectFunction(function, x, Layout::kPlanar);
     }
@@ -119,11 +119,11 @@ TEST(Elementwise, FunctionsKeepTheirAccuracyForEveryMagnitude) {
 TEST(Elementwise, NotANumberStaysOneAndInfinityGoesToTheLimit) {
   ForEachDispatchTarget([] {
     for (const Function& function : Functions()) {
-      PlainPicture x({1, 1, 3});
+      PlainImage x({1, 1, 3});
       x.values = {kNan, kInfinity, function.name == "log" ? 0 : -kInfinity};
       ExpectFunction(function, x, Layout::kPlanar);
     }
-    PlainPicture x({1, 1, 2});
+    PlainImage x({1, 1, 2});
     x.values = {-1, -kInfinity};
     const FilledTensor tensor(x, Layout::kPlanar, 0);
     Log(tensor.view, tensor.view, 1);
@@ -136,15 +136,15 @@ TEST(Elementwise, ArithmeticOfTensorsAndConstantsRoundsLikeArithmetic) {
   ForEachDispatchTarget([] {
     for (const Layout layout : {Layout::kPlanar, Layout::kBlocked}) {
       for (const Shape& shape : kShapes) {
-        const PlainPicture a = RandomPicture(shape, -3.0f, 3.0f, 5);
-        PlainPicture b = RandomPicture(shape, -3.0f, 3.0f, 6);
+        const PlainImage a = RandomImage(shape, -3.0f, 3.0f, 5);
+        PlainImage b = RandomImage(shape, -3.0f, 3.0f, 6);
         b.values[0] = kNan;
         const FilledTensor first(a, layout, 0);
         const FilledTensor second(b, layout, 1);
-        PlainPicture sum(shape);
-        PlainPicture product(shape);
-        PlainPicture affine(shape);
-        PlainPicture affine_tolerance(shape);
+        PlainImage sum(shape);
+        PlainImage product(shape);
+        PlainImage affine(shape);
+        PlainImage affine_tolerance(shape);
         for (std::size_t i = 0; i < a.values.size(); ++i) {
           sum.values[i] = static_cast<float>(a.values[i] + b.values[i]);
           product.values[i] = static_cast<float>(a.values[i] * b.values[i]);

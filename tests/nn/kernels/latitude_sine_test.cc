@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/nn/kernels/plain_picture.h"
+#include "tests/nn/kernels/plain_image.h"
 
 namespace orb360::nn {
 namespace {
@@ -12,8 +12,8 @@ namespace {
 TEST(LatitudeSine, FallsFromTheNorthPoleToTheSouthPole) {
   for (const Layout layout : {Layout::kPlanar, Layout::kBlocked}) {
     for (const auto& [rows, columns] : {std::pair{1, 1}, {2, 3}, {256, 5}, {7, 40}}) {
-      PlainPicture expected({1, rows, columns});
-      PlainPicture tolerance(expected.shape);
+      PlainImage expected({1, rows, columns});
+      PlainImage tolerance(expected.shape);
       for (int v = 0; v < rows; ++v) {
         for (int u = 0; u < columns; ++u) {
           expected.at(0, v, u) =

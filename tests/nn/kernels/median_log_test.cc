@@ -8,7 +8,7 @@
 
 #include "nn/base/check.h"
 #include "tests/dispatch_targets.h"
-#include "tests/nn/kernels/plain_picture.h"
+#include "tests/nn/kernels/plain_image.h"
 
 namespace orb360::nn {
 namespace {
@@ -29,7 +29,7 @@ struct Result {
   TensorMemory median;
 };
 
-void RunMedianLog(const PlainPicture& depth, const PlainPicture& confidence, int threads,
+void RunMedianLog(const PlainImage& depth, const PlainImage& confidence, int threads,
                   Result& result) {
   const FilledTensor depths(depth, Layout::kPlanar, 0);
   const FilledTensor confidences(confidence, Layout::kPlanar, 1);
@@ -37,7 +37,7 @@ void RunMedianLog(const PlainPicture& depth, const PlainPicture& confidence, int
             threads);
 }
 
-void ExpectAsExpected(const PlainPicture& depth, const PlainPicture& confidence) {
+void ExpectAsExpected(const PlainImage& depth, const PlainImage& confidence) {
   ForEachDispatchTarget([&] {
     std::vector<double> points;
     const auto is_point = [&](std::size_t i) {
@@ -48,9 +48,9 @@ void ExpectAsExpected(const PlainPicture& depth, const PlainPicture& confidence)
     }
     std::sort(points.begin(), points.end());
     const double s = points.empty() ? 1 : points[(points.size() - 1) / 2];
-    PlainPicture x(depth.shape);
-    PlainPicture c(depth.shape);
-    PlainPicture tolerance(depth.shape);
+    PlainImage x(depth.shape);
+    PlainImage c(depth.shape);
+    PlainImage tolerance(depth.shape);
     for (std::size_t i = 0; i < depth.values.size(); ++i) {
       if (!is_point(i)) continue;
       x.values[i] = std::log(depth.values[i] / s);
@@ -73,8 +73,8 @@ void ExpectAsExpected(const PlainPicture& depth, const PlainPicture& confidence)
 TEST(MedianLog, IsTheLogarithmOfDepthOverTheLowerMedian) {
   for (const auto& [rows, columns] : {std::pair{1, 1}, {1, 2}, {7, 9}, {64, 129}}) {
     for (const float known : {0.02f, 0.5f, 1.0f}) {
-      PlainPicture depth = RandomPicture({1, rows, columns}, 0.5f, 80.0f, 1);
-      PlainPicture confidence = RandomPicture({1, rows, columns}, known - 1, known, 2);
+      PlainImage depth = RandomImage({1, rows, columns}, 0.5f, 80.0f, 1);
+      PlainImage confidence = RandomImage({1, rows, columns}, known - 1, known, 2);
       // Also confidences above 1, and depths where nothing is known.
       for (double& value : confidence.values) value = static_cast<float>(3 * value);
       ExpectAsExpected(depth, confidence);
@@ -83,8 +83,8 @@ TEST(MedianLog, IsTheLogarithmOfDepthOverTheLowerMedian) {
 }
 
 TEST(MedianLog, FindsTheMedianOfDepthsThatDifferInTheirLastBitOnly) {
-  PlainPicture depth({1, 3, 101});
-  PlainPicture confidence({1, 3, 101});
+  PlainImage depth({1, 3, 101});
+  PlainImage confidence({1, 3, 101});
   for (int i = 0; i < 303; ++i) {
     depth.values[i] = 1 + (i * 37 % 303) * 0x1p-23;
     confidence.values[i] = 1;
@@ -93,9 +93,9 @@ TEST(MedianLog, FindsTheMedianOfDepthsThatDifferInTheirLastBitOnly) {
 }
 
 TEST(MedianLog, TakesTheLowerOneOfTwo) {
-  PlainPicture depth({1, 1, 4});
+  PlainImage depth({1, 1, 4});
   depth.values = {8, 0, 2, 4};
-  PlainPicture confidence({1, 1, 4});
+  PlainImage confidence({1, 1, 4});
   confidence.values = {0, 1, 1, 1};
   Result result(depth.shape);
   RunMedianLog(depth, confidence, 1, result);
@@ -103,28 +103,28 @@ TEST(MedianLog, TakesTheLowerOneOfTwo) {
 }
 
 TEST(MedianLog, IsOneWhereThereAreNoPoints) {
-  PlainPicture depth({1, 2, 3});
+  PlainImage depth({1, 2, 3});
   depth.values = {1, 2, 0, -1, kNan, kInfinity};
-  PlainPicture confidence({1, 2, 3});
+  PlainImage confidence({1, 2, 3});
   confidence.values = {0, kNan, 1, 1, 1, 1};
   Result result(depth.shape);
   RunMedianLog(depth, confidence, 1, result);
   EXPECT_EQ(result.s(), 1);
-  ExpectEqual(result.x.view, PlainPicture(depth.shape));
-  ExpectEqual(result.c.view, PlainPicture(depth.shape));
+  ExpectEqual(result.x.view, PlainImage(depth.shape));
+  ExpectEqual(result.c.view, PlainImage(depth.shape));
 }
 
 TEST(MedianLog, EndsWhatIsNotFiniteWhateverTheScale) {
-  PlainPicture depth({1, 1, 9});
+  PlainImage depth({1, 1, 9});
   depth.values = {kLargest, kSmallest, kSmallest, kNan, kInfinity, -kInfinity, 1, 1e-30f, 2};
-  PlainPicture confidence({1, 1, 9});
+  PlainImage confidence({1, 1, 9});
   confidence.values = {1, kInfinity, kSmallest, 1, 1, 1, -1, 0.5f, kNan};
   ExpectAsExpected(depth, confidence);
 }
 
 TEST(MedianLog, IsExactlyTheSameForDepthsInUnitsOfAPowerOfTwo) {
-  PlainPicture depth = RandomPicture({1, 20, 30}, 0.5f, 80.0f, 1);
-  const PlainPicture confidence = RandomPicture({1, 20, 30}, -0.9f, 1.0f, 2);
+  PlainImage depth = RandomImage({1, 20, 30}, 0.5f, 80.0f, 1);
+  const PlainImage confidence = RandomImage({1, 20, 30}, -0.9f, 1.0f, 2);
   Result metres(depth.shape);
   RunMedianLog(depth, confidence, 1, metres);
   for (double& value : depth.values) value /= 64;

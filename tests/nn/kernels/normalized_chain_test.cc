@@ -10,7 +10,7 @@
 #include "nn/base/check.h"
 #include "nn/kernels/upsample.h"
 #include "tests/dispatch_targets.h"
-#include "tests/nn/kernels/plain_picture.h"
+#include "tests/nn/kernels/plain_image.h"
 
 namespace orb360::nn {
 namespace {
@@ -52,15 +52,15 @@ void RunSingle(const NormalizedConvolution& kernel, const TensorView& x, const T
 
 struct Expected {
   explicit Expected(const Shape& shape) : y(shape), c(shape), y_bound(shape), c_bound(shape) {}
-  PlainPicture y;
-  PlainPicture c;
-  PlainPicture y_bound;
-  PlainPicture c_bound;
+  PlainImage y;
+  PlainImage c;
+  PlainImage y_bound;
+  PlainImage c_bound;
 };
 
 // Bounds: every sum of n products is off by at most n + 1 roundings of the sum of magnitudes.
-Expected Reference(const Weights& weights, const Layer& layer, Padding padding,
-                   const PlainPicture& x, const PlainPicture& c) {
+Expected Reference(const Weights& weights, const Layer& layer, Padding padding, const PlainImage& x,
+                   const PlainImage& c) {
   Expected expected({layer.outputs, x.shape.height, x.shape.width});
   const int reach = layer.size / 2;
   const double taps = layer.inputs * layer.size * layer.size;
@@ -98,14 +98,14 @@ Expected Reference(const Weights& weights, const Layer& layer, Padding padding,
 }
 
 // A third of the pixels are known.
-PlainPicture SparseConfidence(const Shape& shape) {
-  PlainPicture c = RandomPicture(shape, -2.0f, 1.0f, 9);
+PlainImage SparseConfidence(const Shape& shape) {
+  PlainImage c = RandomImage(shape, -2.0f, 1.0f, 9);
   for (double& value : c.values) value = std::max(value, 0.0);
   return c;
 }
 
-void ExpectAsExpected(const Layer& layer, Padding padding, const PlainPicture& x,
-                      const PlainPicture& c) {
+void ExpectAsExpected(const Layer& layer, Padding padding, const PlainImage& x,
+                      const PlainImage& c) {
   const Weights weights(layer);
   const Expected expected = Reference(weights, layer, padding, x, c);
   const NormalizedConvolution kernel = weights.Kernel(layer, padding);
@@ -135,7 +135,7 @@ TEST(NormalizedConvolution, IsTheWeightedMeanForEverySizePaddingAndInstructionSe
                                           << layer.size << ", padding " << static_cast<int>(padding)
                                           << ", " << rows << " x " << columns);
           const Shape shape{layer.inputs, rows, columns};
-          ExpectAsExpected(layer, padding, RandomPicture(shape, -3.0f, 3.0f, 7),
+          ExpectAsExpected(layer, padding, RandomImage(shape, -3.0f, 3.0f, 7),
                            SparseConfidence(shape));
         }
       }
@@ -149,18 +149,18 @@ TEST(NormalizedConvolution, GivesTheBiasAndNoConfidenceWhereNothingIsKnown) {
       const Shape shape{layer.inputs, 4, 18};
       const Weights weights(layer);
       const NormalizedConvolution kernel = weights.Kernel(layer, Padding::kWrapReplicate);
-      const FilledTensor x(RandomPicture(shape, -3.0f, 3.0f, 7), Layout::kPlanar, 0);
-      const FilledTensor c(PlainPicture(shape), Layout::kPlanar, 0);
+      const FilledTensor x(RandomImage(shape, -3.0f, 3.0f, 7), Layout::kPlanar, 0);
+      const FilledTensor c(PlainImage(shape), Layout::kPlanar, 0);
       const TensorFormat format{{layer.outputs, 4, 18}, Layout::kPlanar, DataType::kFloat, 0};
       const TensorMemory y(format);
       const TensorMemory y_confidence(format);
       RunSingle(kernel, x.view, c.view, y.view, y_confidence.view, 1);
-      PlainPicture bias(format.shape);
+      PlainImage bias(format.shape);
       for (int i = 0; i < static_cast<int>(bias.values.size()); ++i) {
         bias.values[i] = weights.bias[i / (4 * 18)];
       }
       ExpectEqual(y.view, bias);
-      ExpectEqual(y_confidence.view, PlainPicture(format.shape));
+      ExpectEqual(y_confidence.view, PlainImage(format.shape));
     }
   });
 }
@@ -172,8 +172,8 @@ TEST(NormalizedConvolution, SpreadsWhatIsNotANumberAsFarAsTheWindow) {
       for (const float bad :
            {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
         const Shape shape{layer.inputs, 9, 40};
-        PlainPicture x = RandomPicture(shape, -3.0f, 3.0f, 7);
-        PlainPicture c = SparseConfidence(shape);
+        PlainImage x = RandomImage(shape, -3.0f, 3.0f, 7);
+        PlainImage c = SparseConfidence(shape);
         const int column = 20;
         const int row = 4;
         x.at(layer.inputs - 1, row, column) = bad;
@@ -205,9 +205,9 @@ TEST(NormalizedConvolution, IsEquivariantToAnOffset) {
   const Layer layer{2, 2, 5};
   const Shape shape{2, 20, 64};
   const NormalizedConvolution kernel = Weights(layer).Kernel(layer, Padding::kWrapReplicate);
-  const PlainPicture x = RandomPicture(shape, -3.0f, 3.0f, 7);
+  const PlainImage x = RandomImage(shape, -3.0f, 3.0f, 7);
   const FilledTensor c(SparseConfidence(shape), Layout::kPlanar, 0);
-  PlainPicture shifted = x;
+  PlainImage shifted = x;
   const double offset = 2.5;
   for (double& value : shifted.values) value = static_cast<float>(value + offset);
   const FilledTensor first(x, Layout::kPlanar, 0);
@@ -218,8 +218,8 @@ TEST(NormalizedConvolution, IsEquivariantToAnOffset) {
   const TensorMemory y_confidence(format);
   RunSingle(kernel, first.view, c.view, y.view, y_confidence.view, 1);
   RunSingle(kernel, second.view, c.view, shifted_y.view, y_confidence.view, 1);
-  PlainPicture expected(shape);
-  PlainPicture tolerance(shape);
+  PlainImage expected(shape);
+  PlainImage tolerance(shape);
   for (int o = 0; o < 2; ++o) {
     for (int v = 0; v < 20; ++v) {
       for (int u = 0; u < 64; ++u) {
@@ -246,9 +246,9 @@ TEST(NormalizedChain, GivesTheBitsOfItsLayersForAnyNumberOfThreads) {
 
         const Shape half{2, rows / 2, columns / 2};
         const Shape whole{2, rows, columns};
-        const FilledTensor low_x(RandomPicture(half, -3.0f, 3.0f, 1), Layout::kPlanar, 0);
+        const FilledTensor low_x(RandomImage(half, -3.0f, 3.0f, 1), Layout::kPlanar, 0);
         const FilledTensor low_c(SparseConfidence(half), Layout::kPlanar, 1);
-        const FilledTensor high_x(RandomPicture(whole, -3.0f, 3.0f, 2), Layout::kPlanar, 2);
+        const FilledTensor high_x(RandomImage(whole, -3.0f, 3.0f, 2), Layout::kPlanar, 2);
         const FilledTensor high_c(SparseConfidence(whole), Layout::kPlanar, 0);
 
         const TensorFormat concatenated{{4, rows, columns}, Layout::kPlanar, DataType::kFloat, 0};

@@ -7,7 +7,7 @@
 
 #include "nn/kernels/confidence_pool.h"
 #include "nn/kernels/normalized_chain.h"
-#include "tests/nn/kernels/plain_picture.h"
+#include "tests/nn/kernels/plain_image.h"
 
 namespace orb360::nn {
 

@@ -23,8 +23,8 @@ struct Result {
 };
 
 // Log depth over the median from a sparse depth in any unit.
-void Complete(const PlainPicture& depth, const PlainPicture& confidence, Padding padding,
-              int threads, Result& result) {
+void Complete(const PlainImage& depth, const PlainImage& confidence, Padding padding, int threads,
+              Result& result) {
   const FilledTensor depths(depth, Layout::kPlanar, 0);
   const FilledTensor confidences(confidence, Layout::kPlanar, 0);
   Result sparse;
@@ -34,29 +34,29 @@ void Complete(const PlainPicture& depth, const PlainPicture& confidence, Padding
       .Run({sparse.x.view, sparse.c.view}, {result.x.view, result.c.view});
 }
 
-PlainPicture Rolled(const PlainPicture& picture, int columns) {
-  PlainPicture rolled(picture.shape);
+PlainImage Rolled(const PlainImage& image, int columns) {
+  PlainImage rolled(image.shape);
   for (int v = 0; v < kHeight; ++v) {
     for (int u = 0; u < kWidth; ++u) {
-      rolled.at(0, v, (u + columns) % kWidth) = picture.at(0, v, u);
+      rolled.at(0, v, (u + columns) % kWidth) = image.at(0, v, u);
     }
   }
   return rolled;
 }
 
-PlainPicture Picture(const TensorView& tensor) {
-  PlainPicture picture(tensor.shape);
+PlainImage Image(const TensorView& tensor) {
+  PlainImage image(tensor.shape);
   for (int v = 0; v < tensor.shape.height; ++v) {
-    for (int u = 0; u < tensor.shape.width; ++u) picture.at(0, v, u) = At(tensor, 0, v, u);
+    for (int u = 0; u < tensor.shape.width; ++u) image.at(0, v, u) = At(tensor, 0, v, u);
   }
-  return picture;
+  return image;
 }
 
-PlainPicture SparseDepth() { return RandomPicture({1, kHeight, kWidth}, 1.0f, 80.0f, 1); }
+PlainImage SparseDepth() { return RandomImage({1, kHeight, kWidth}, 1.0f, 80.0f, 1); }
 
 // One pixel in fifty is known.
-PlainPicture SparseConfidence() {
-  PlainPicture c = RandomPicture({1, kHeight, kWidth}, -49.0f, 1.0f, 2);
+PlainImage SparseConfidence() {
+  PlainImage c = RandomImage({1, kHeight, kWidth}, -49.0f, 1.0f, 2);
   for (double& value : c.values) value = std::max(value, 0.0);
   return c;
 }
@@ -70,8 +70,8 @@ TEST(PropagationNetwork, TurnsWithTheCameraBitForBit) {
       for (const int turn : {64, 192}) {
         Result turned;
         Complete(Rolled(SparseDepth(), turn), Rolled(SparseConfidence(), turn), padding, 2, turned);
-        ExpectEqual(turned.x.view, Rolled(Picture(straight.x.view), turn));
-        ExpectEqual(turned.c.view, Rolled(Picture(straight.c.view), turn));
+        ExpectEqual(turned.x.view, Rolled(Image(straight.x.view), turn));
+        ExpectEqual(turned.c.view, Rolled(Image(straight.c.view), turn));
       }
     }
   });
@@ -84,26 +84,26 @@ TEST(PropagationNetwork, GivesTheSameInEveryUnitOfDepth) {
     Result metres;
     Complete(SparseDepth(), SparseConfidence(), Padding::kWrapReplicate, 1, metres);
     for (const float unit : {0.25f, 0.1f, 37.0f}) {
-      PlainPicture depth = SparseDepth();
+      PlainImage depth = SparseDepth();
       for (double& value : depth.values) value = static_cast<float>(value * unit);
       Result scaled;
       Complete(depth, SparseConfidence(), Padding::kWrapReplicate, 1, scaled);
       ExpectSameBits(scaled.c.view, metres.c.view);
-      PlainPicture tolerance(depth.shape);
+      PlainImage tolerance(depth.shape);
       if (unit != 0.25f) {
         // Means of logarithms that are off by two roundings of a ratio, in 14 layers that round
         // the sum of 50 terms of up to 5 each.
         for (double& value : tolerance.values) value = (4 + 14 * 2 * 54 * 5) * 0x1p-24;
       }
-      ExpectNear(scaled.x.view, Picture(metres.x.view), tolerance);
+      ExpectNear(scaled.x.view, Image(metres.x.view), tolerance);
     }
   });
 }
 
 // With points in sight every pixel has a depth, from a map as sparse as SLAM's as well.
 TEST(PropagationNetwork, ReachesEveryPixelFromOnePoint) {
-  PlainPicture depth({1, kHeight, kWidth});
-  PlainPicture confidence({1, kHeight, kWidth});
+  PlainImage depth({1, kHeight, kWidth});
+  PlainImage confidence({1, kHeight, kWidth});
   depth.at(0, 40, 7) = 3;
   confidence.at(0, 40, 7) = 0.5;
   Result result;

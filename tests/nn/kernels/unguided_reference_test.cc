@@ -34,12 +34,12 @@ class Reference {
         << name;
     return values;
   }
-  PlainPicture Picture(const std::string& name, const Shape& shape) const {
-    PlainPicture picture(shape);
+  PlainImage Image(const std::string& name, const Shape& shape) const {
+    PlainImage image(shape);
     const std::vector<float> values = Values(name);
-    EXPECT_EQ(values.size(), picture.values.size()) << name;
-    picture.values.assign(values.begin(), values.end());
-    return picture;
+    EXPECT_EQ(values.size(), image.values.size()) << name;
+    image.values.assign(values.begin(), values.end());
+    return image;
   }
   NormalizedConvolution Layer(const std::string& suffix, const std::string& bias, int outputs,
                               int inputs, int size) const {
@@ -60,16 +60,16 @@ class Reference {
 void ExpectNode(const Reference& reference, const std::string& x_name, const std::string& c_name,
                 const ConfidentTensor& actual) {
   SCOPED_TRACE(x_name);
-  const PlainPicture x = reference.Picture(x_name, actual.x.shape);
-  const PlainPicture c = reference.Picture(c_name, actual.c.shape);
-  PlainPicture metres(x.shape);
-  PlainPicture share(c.shape);
+  const PlainImage x = reference.Image(x_name, actual.x.shape);
+  const PlainImage c = reference.Image(c_name, actual.c.shape);
+  PlainImage metres(x.shape);
+  PlainImage fraction(c.shape);
   for (double& allowed : metres.values) allowed = 1e-4;
   for (std::size_t i = 0; i < c.values.size(); ++i) {
-    share.values[i] = 9 * (50 + 4) * 0x1p-24 * c.values[i];
+    fraction.values[i] = 9 * (50 + 4) * 0x1p-24 * c.values[i];
   }
   ExpectNear(actual.x, x, metres);
-  ExpectNear(actual.c, c, share);
+  ExpectNear(actual.c, c, fraction);
 }
 
 TEST(UnguidedReference, IsReproducedNodeByNode) {
@@ -84,8 +84,8 @@ TEST(UnguidedReference, IsReproducedNodeByNode) {
       reference.Layer("23", "23", 2, 4, 3), reference.Layer("12", "12", 2, 4, 3),
       reference.Layer("4", "4", 1, 2, 1)};
   const Shape whole{1, kHeight, kWidth};
-  const FilledTensor x(reference.Picture("in/x", whole), Layout::kPlanar, 0);
-  const FilledTensor c(reference.Picture("in/c", whole), Layout::kPlanar, 0);
+  const FilledTensor x(reference.Image("in/x", whole), Layout::kPlanar, 0);
+  const FilledTensor c(reference.Image("in/c", whole), Layout::kPlanar, 0);
   ForEachDispatchTarget([&] {
     for (const int threads : {1, 2}) {
       const TensorMemory y({whole, Layout::kPlanar, DataType::kFloat, 0});

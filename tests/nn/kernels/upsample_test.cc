@@ -4,7 +4,7 @@
 
 #include "nn/base/check.h"
 #include "tests/dispatch_targets.h"
-#include "tests/nn/kernels/plain_picture.h"
+#include "tests/nn/kernels/plain_image.h"
 
 namespace orb360::nn {
 namespace {
@@ -12,8 +12,8 @@ namespace {
 constexpr Shape kShapes[] = {{1, 1, 1}, {2, 3, 5}, {3, 2, 70}, {17, 5, 3}, {33, 2, 34}};
 
 template <typename Upsample>
-void ExpectUpsampled(const PlainPicture& x, Layout layout, const PlainPicture& expected,
-                     const PlainPicture& tolerance, const Upsample& upsample) {
+void ExpectUpsampled(const PlainImage& x, Layout layout, const PlainImage& expected,
+                     const PlainImage& tolerance, const Upsample& upsample) {
   const FilledTensor input(x, layout, kUpsampleBilinearHalo);
   const TensorFormat format{expected.shape, layout, DataType::kFloat, 1};
   const TensorMemory one(format);
@@ -30,8 +30,8 @@ TEST(UpsampleNearest, MakesASquareOfEveryPixel) {
   ForEachDispatchTarget([] {
     for (const Layout layout : {Layout::kPlanar, Layout::kBlocked}) {
       for (const Shape& shape : kShapes) {
-        const PlainPicture x = RandomPicture(shape, -3.0f, 3.0f, 1);
-        PlainPicture expected(Doubled(shape));
+        const PlainImage x = RandomImage(shape, -3.0f, 3.0f, 1);
+        PlainImage expected(Doubled(shape));
         for (int c = 0; c < shape.channels; ++c) {
           for (int v = 0; v < 2 * shape.height; ++v) {
             for (int u = 0; u < 2 * shape.width; ++u) {
@@ -39,7 +39,7 @@ TEST(UpsampleNearest, MakesASquareOfEveryPixel) {
             }
           }
         }
-        ExpectUpsampled(x, layout, expected, PlainPicture(expected.shape), UpsampleNearest);
+        ExpectUpsampled(x, layout, expected, PlainImage(expected.shape), UpsampleNearest);
       }
     }
   });
@@ -52,9 +52,9 @@ TEST(UpsampleBilinear, SamplesBetweenTheCentresOfPixels) {
            {Padding::kZero, Padding::kWrapReplicate, Padding::kWrapCrossPole}) {
         for (const Shape& shape : kShapes) {
           if (padding == Padding::kWrapCrossPole && shape.width % 2 != 0) continue;
-          const PlainPicture x = RandomPicture(shape, -3.0f, 3.0f, 1);
-          PlainPicture expected(Doubled(shape));
-          PlainPicture tolerance(expected.shape);
+          const PlainImage x = RandomImage(shape, -3.0f, 3.0f, 1);
+          PlainImage expected(Doubled(shape));
+          PlainImage tolerance(expected.shape);
           for (int c = 0; c < shape.channels; ++c) {
             for (int v = 0; v < 2 * shape.height; ++v) {
               for (int u = 0; u < 2 * shape.width; ++u) {

@@ -15,7 +15,7 @@ TEST(DefaultWeights, AreThoseOfTheSourcesInABuild) {
 }
 
 TEST(DefaultWeights, TellDepthConfidenceGroundAndScale) {
-  const PictureSize size{64, 128};
+  const ImageSize size{64, 128};
   const DepthCompletion model(ReadNetwork(DefaultWeights()), size);
   DepthCompletion::Workspace workspace(model);
   const std::size_t pixels = 64 * 128;
@@ -26,13 +26,13 @@ TEST(DefaultWeights, TellDepthConfidenceGroundAndScale) {
     depth[i] = 4;
     confidence[i] = 0.9f;
   }
-  const DensePicture dense = model.Complete({rgb, depth, confidence}, &workspace);
+  const CompletionOutput dense = model.Complete({rgb, depth, confidence}, &workspace);
   EXPECT_EQ(dense.scale, 4);
   EXPECT_TRUE(dense.log_metric_scale.has_value());
   EXPECT_THAT(dense.depth, testing::Each(testing::Gt(0)));
-  for (const std::vector<float>* share : {&dense.confidence, &dense.ground}) {
-    ASSERT_EQ(share->size(), pixels);
-    EXPECT_THAT(*share, testing::Each(testing::AllOf(testing::Ge(0), testing::Le(1))));
+  for (const std::vector<float>* fraction : {&dense.confidence, &dense.ground}) {
+    ASSERT_EQ(fraction->size(), pixels);
+    EXPECT_THAT(*fraction, testing::Each(testing::AllOf(testing::Ge(0), testing::Le(1))));
   }
 }
 

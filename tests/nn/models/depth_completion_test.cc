@@ -31,33 +31,33 @@ NetworkBuilder Propagation(int size_multiple) {
   return net;
 }
 
-struct Picture {
-  explicit Picture(PictureSize size)
+struct Image {
+  explicit Image(ImageSize size)
       : rgb(3 * static_cast<std::size_t>(size.height) * size.width, 128),
         depth(rgb.size() / 3),
         confidence(rgb.size() / 3) {}
-  SparsePicture view() const { return {rgb, depth, confidence}; }
+  CompletionInput view() const { return {rgb, depth, confidence}; }
   std::vector<std::uint8_t> rgb;
   std::vector<float> depth;
   std::vector<float> confidence;
 };
 
-DensePicture Complete(const Graph& graph, PictureSize size, const Picture& picture) {
+CompletionOutput Complete(const Graph& graph, ImageSize size, const Image& image) {
   const DepthCompletion model(graph, size);
   DepthCompletion::Workspace workspace(model);
-  return model.Complete(picture.view(), &workspace);
+  return model.Complete(image.view(), &workspace);
 }
 
 TEST(DepthCompletion, OnePointIsTheDepthAroundIt) {
   // A size that the network takes, one that it does not, and one below its smallest.
-  for (const PictureSize size : {PictureSize{16, 32}, PictureSize{21, 39}, PictureSize{5, 9}}) {
-    Picture picture(size);
-    const std::size_t middle = picture.depth.size() / 2;
-    picture.depth[middle] = 12.5f;
-    picture.confidence[middle] = 0.5f;
-    const DensePicture dense = Complete(Propagation(8).Build(), size, picture);
-    ASSERT_EQ(dense.depth.size(), picture.depth.size());
-    ASSERT_EQ(dense.confidence.size(), picture.depth.size());
+  for (const ImageSize size : {ImageSize{16, 32}, ImageSize{21, 39}, ImageSize{5, 9}}) {
+    Image image(size);
+    const std::size_t middle = image.depth.size() / 2;
+    image.depth[middle] = 12.5f;
+    image.confidence[middle] = 0.5f;
+    const CompletionOutput dense = Complete(Propagation(8).Build(), size, image);
+    ASSERT_EQ(dense.depth.size(), image.depth.size());
+    ASSERT_EQ(dense.confidence.size(), image.depth.size());
     EXPECT_EQ(dense.scale, 12.5f);
     EXPECT_FALSE(dense.log_metric_scale);
     EXPECT_TRUE(dense.ground.empty());
@@ -68,16 +68,16 @@ TEST(DepthCompletion, OnePointIsTheDepthAroundIt) {
 }
 
 TEST(DepthCompletion, ScalesWithTheUnitOfThePoints) {
-  const PictureSize size{16, 32};
-  Picture picture(size);
-  for (std::size_t i = 0; i < picture.depth.size(); i += 7) {
-    picture.depth[i] = 1.0f + static_cast<float>(i % 50);
-    picture.confidence[i] = 0.25f + 0.01f * static_cast<float>(i % 60);
+  const ImageSize size{16, 32};
+  Image image(size);
+  for (std::size_t i = 0; i < image.depth.size(); i += 7) {
+    image.depth[i] = 1.0f + static_cast<float>(i % 50);
+    image.confidence[i] = 0.25f + 0.01f * static_cast<float>(i % 60);
   }
   const Graph graph = Propagation(8).Build();
-  const DensePicture metres = Complete(graph, size, picture);
-  for (float& depth : picture.depth) depth *= 1024;  // exact, so that only logarithms round
-  const DensePicture others = Complete(graph, size, picture);
+  const CompletionOutput metres = Complete(graph, size, image);
+  for (float& depth : image.depth) depth *= 1024;  // exact, so that only logarithms round
+  const CompletionOutput others = Complete(graph, size, image);
   for (std::size_t i = 0; i < metres.depth.size(); ++i) {
     ASSERT_NEAR(others.depth[i] / 1024, metres.depth[i], 1e-5 * metres.depth[i]);
     ASSERT_EQ(others.confidence[i], metres.confidence[i]);
@@ -85,11 +85,11 @@ TEST(DepthCompletion, ScalesWithTheUnitOfThePoints) {
 }
 
 TEST(DepthCompletion, WhatIsNoPointDoesNotCount) {
-  const PictureSize size{16, 32};
-  Picture good(size);
+  const ImageSize size{16, 32};
+  Image good(size);
   good.depth[40] = 3;
   good.confidence[40] = 1;
-  Picture bad = good;
+  Image bad = good;
   bad.depth[100] = std::numeric_limits<float>::quiet_NaN();
   bad.depth[101] = std::numeric_limits<float>::infinity();
   bad.depth[102] = -1;
@@ -105,18 +105,18 @@ TEST(DepthCompletion, WhatIsNoPointDoesNotCount) {
   net.Output("depth", "mean");
   net.Output("confidence", "mean.1");
   const Graph graph = net.Build();
-  const DensePicture a = Complete(graph, size, good);
-  const DensePicture b = Complete(graph, size, bad);
+  const CompletionOutput a = Complete(graph, size, good);
+  const CompletionOutput b = Complete(graph, size, bad);
   EXPECT_EQ(a.depth, b.depth);
   EXPECT_EQ(a.confidence, b.confidence);
   EXPECT_THAT(a.depth, Each(testing::Ge(0)));
 }
 
 TEST(DepthCompletion, GivesTheImageAsRedGreenBlueBetween0And1) {
-  const PictureSize size{2, 4};
-  Picture picture(size);
-  for (std::size_t i = 0; i < picture.rgb.size(); ++i) {
-    picture.rgb[i] = static_cast<std::uint8_t>(51 * (i % 3));  // 0, 0.2, 0.4
+  const ImageSize size{2, 4};
+  Image image(size);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) {
+    image.rgb[i] = static_cast<std::uint8_t>(51 * (i % 3));  // 0, 0.2, 0.4
   }
   NetworkBuilder net(1);
   net.Input("image", 3);
@@ -126,24 +126,24 @@ TEST(DepthCompletion, GivesTheImageAsRedGreenBlueBetween0And1) {
   net.Node("blue", "slice", {"image"}, {{"first", 2}, {"count", 1}});
   net.Output("depth", "green");
   net.Output("confidence", "blue");
-  const DensePicture dense = Complete(net.Build(), size, picture);
+  const CompletionOutput dense = Complete(net.Build(), size, image);
   EXPECT_THAT(dense.depth, Each(testing::FloatEq(0.2f)));
   EXPECT_THAT(dense.confidence, Each(testing::FloatEq(0.4f)));
 }
 
-TEST(DepthCompletion, SeesPicturesOfTheWidthThatTheNetworkExpects) {
+TEST(DepthCompletion, SeesImagesOfTheWidthThatTheNetworkExpects) {
   NetworkBuilder net = Propagation(8);
   net.json["normalisation"] = {{"width", 32}};
   const Graph graph = net.Build();
-  for (const PictureSize size : {PictureSize{16, 32}, PictureSize{64, 128}, PictureSize{10, 20}}) {
+  for (const ImageSize size : {ImageSize{16, 32}, ImageSize{64, 128}, ImageSize{10, 20}}) {
     const DepthCompletion model(graph, size);
-    EXPECT_EQ(model.network_size(), (PictureSize{16, 32}));
+    EXPECT_EQ(model.network_size(), (ImageSize{16, 32}));
     DepthCompletion::Workspace workspace(model);
-    Picture picture(size);
-    picture.depth[picture.depth.size() / 2] = 7;
-    picture.confidence[picture.depth.size() / 2] = 1;
-    const DensePicture dense = model.Complete(picture.view(), &workspace);
-    EXPECT_THAT(dense.depth, testing::SizeIs(picture.depth.size()));
+    Image image(size);
+    image.depth[image.depth.size() / 2] = 7;
+    image.confidence[image.depth.size() / 2] = 1;
+    const CompletionOutput dense = model.Complete(image.view(), &workspace);
+    EXPECT_THAT(dense.depth, testing::SizeIs(image.depth.size()));
     EXPECT_THAT(dense.depth, Each(testing::FloatNear(7, 1e-5f)));
   }
   for (const nlohmann::json& wrong :
@@ -158,16 +158,16 @@ TEST(DepthCompletion, SeesPicturesOfTheWidthThatTheNetworkExpects) {
 }
 
 TEST(DepthCompletion, TakesAStatedErrorInThePlaceOfConfidenceThatMeansNone) {
-  constexpr PictureSize kSize{8, 16};
-  Picture picture(kSize);
-  picture.rgb.assign(picture.rgb.size(), 51);                      // 0.2
-  for (std::size_t i = 0; i < 3; ++i) picture.rgb[3 * 5 + i] = 0;  // no depth there
+  constexpr ImageSize kSize{8, 16};
+  Image image(kSize);
+  image.rgb.assign(image.rgb.size(), 51);                        // 0.2
+  for (std::size_t i = 0; i < 3; ++i) image.rgb[3 * 5 + i] = 0;  // no depth there
   NetworkBuilder net = Propagation(8);
   net.Input("image", 3);
   net.Node("red", "slice", {"image"}, {{"first", 0}, {"count", 1}});
   net.Output("depth", "red");
   net.json["normalisation"] = {{"log_error", 0.25}};
-  const DensePicture dense = Complete(net.Build(), kSize, picture);
+  const CompletionOutput dense = Complete(net.Build(), kSize, image);
   for (std::size_t i = 0; i < dense.depth.size(); ++i) {
     EXPECT_FLOAT_EQ(dense.confidence[i], i == 5 ? 0.0F : 0.8F) << i;
   }
@@ -184,15 +184,15 @@ TEST(DepthCompletion, TakesAStatedErrorInThePlaceOfConfidenceThatMeansNone) {
 
 TEST(DepthCompletion, TellsTheGroundWhereTheNetworkDoes) {
   // A size that the network takes, and one that it does not.
-  for (const PictureSize size : {PictureSize{8, 16}, PictureSize{21, 39}}) {
-    Picture picture(size);
-    for (std::size_t i = 2; i < picture.rgb.size(); i += 3) picture.rgb[i] = 204;  // blue: 0.8
+  for (const ImageSize size : {ImageSize{8, 16}, ImageSize{21, 39}}) {
+    Image image(size);
+    for (std::size_t i = 2; i < image.rgb.size(); i += 3) image.rgb[i] = 204;  // blue: 0.8
     NetworkBuilder net = Propagation(8);
     net.Input("image", 3);
     net.Node("blue", "slice", {"image"}, {{"first", 2}, {"count", 1}});
     net.Output("ground", "blue");
-    const DensePicture dense = Complete(net.Build(), size, picture);
-    ASSERT_EQ(dense.ground.size(), picture.depth.size());
+    const CompletionOutput dense = Complete(net.Build(), size, image);
+    ASSERT_EQ(dense.ground.size(), image.depth.size());
     EXPECT_THAT(dense.ground, Each(testing::FloatEq(0.8f)));
   }
 }
@@ -211,11 +211,11 @@ TEST(DepthCompletion, RefusesNetworksForSomethingElse) {
   EXPECT_THAT(refusal([](NetworkBuilder* net) { net->json["outputs"][2]["name"] = "z"; }),
               HasSubstr("no output \"scale\""));
   EXPECT_THAT(refusal([](NetworkBuilder* net) { net->json["outputs"][0]["tensor"] = "points.2"; }),
-              HasSubstr("output \"log_depth\" should have 1 channel of the picture's size"));
+              HasSubstr("output \"log_depth\" should have 1 channel of the image's size"));
   EXPECT_THAT(refusal([](NetworkBuilder* net) { net->json["outputs"][2]["tensor"] = "mean"; }),
               HasSubstr("output \"scale\" should have 1 channel of 1x1"));
   EXPECT_THAT(refusal([](NetworkBuilder* net) { net->Output("ground", "points.2"); }),
-              HasSubstr("output \"ground\" should have 1 channel of the picture's size"));
+              HasSubstr("output \"ground\" should have 1 channel of the image's size"));
   EXPECT_THAT(refusal([](NetworkBuilder* net) { net->Input("image", 4); }),
               HasSubstr("input \"image\" should have 3 channels"));
   EXPECT_THAT(refusal([](NetworkBuilder* net) { net->Input("normals", 3); }),

@@ -12,17 +12,17 @@ namespace {
 
 using ::testing::ElementsAre;
 
-std::vector<float> Resampled(const std::vector<float>& from, PictureSize from_size,
-                             PictureSize to_size) {
+std::vector<float> Resampled(const std::vector<float>& from, ImageSize from_size,
+                             ImageSize to_size) {
   std::vector<float> to(static_cast<std::size_t>(to_size.height) * to_size.width, -1);
   ResampleBilinear(from, from_size, to, to_size);
   return to;
 }
 
-TEST(Resample, TheSameSizeIsTheSamePicture) {
-  std::vector<float> picture(6 * 11);
-  for (std::size_t i = 0; i < picture.size(); ++i) picture[i] = static_cast<float>(i * i);
-  EXPECT_EQ(Resampled(picture, {6, 11}, {6, 11}), picture);
+TEST(Resample, TheSameSizeIsTheSameImage) {
+  std::vector<float> image(6 * 11);
+  for (std::size_t i = 0; i < image.size(); ++i) image[i] = static_cast<float>(i * i);
+  EXPECT_EQ(Resampled(image, {6, 11}, {6, 11}), image);
 }
 
 TEST(Resample, ColumnsContinueAtTheOtherSideAndRowsRepeat) {
@@ -31,20 +31,20 @@ TEST(Resample, ColumnsContinueAtTheOtherSideAndRowsRepeat) {
   EXPECT_THAT(Resampled({0, 4}, {2, 1}, {4, 1}), ElementsAre(0, 1, 3, 4));
 }
 
-TEST(Resample, KeepsSmoothPicturesOfTheSphere) {
-  const auto wave = [](PictureSize size) {
-    std::vector<float> picture;
+TEST(Resample, KeepsSmoothImagesOfTheSphere) {
+  const auto wave = [](ImageSize size) {
+    std::vector<float> image;
     for (int v = 0; v < size.height; ++v) {
       for (int u = 0; u < size.width; ++u) {
         const double longitude = 2 * std::numbers::pi * (u + 0.5) / size.width;
         const double latitude = std::numbers::pi * (v + 0.5) / size.height;
-        picture.push_back(static_cast<float>(std::sin(longitude) + std::cos(latitude)));
+        image.push_back(static_cast<float>(std::sin(longitude) + std::cos(latitude)));
       }
     }
-    return picture;
+    return image;
   };
-  const PictureSize from{96, 200};
-  const PictureSize to{128, 192};
+  const ImageSize from{96, 200};
+  const ImageSize to{128, 192};
   const std::vector<float> expected = wave(to);
   const std::vector<float> actual = Resampled(wave(from), from, to);
   for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -54,24 +54,24 @@ TEST(Resample, KeepsSmoothPicturesOfTheSphere) {
 }
 
 TEST(Resample, SmallerImagesAreMeansOfWhatTheyCover) {
-  std::vector<float> picture(16 * 32);
-  for (std::size_t i = 0; i < picture.size(); ++i) picture[i] = static_cast<float>(i % 7 * i);
+  std::vector<float> image(16 * 32);
+  for (std::size_t i = 0; i < image.size(); ++i) image[i] = static_cast<float>(i % 7 * i);
   std::vector<float> to(4 * 8);
-  ResampleImage(picture, {16, 32}, to, {4, 8});
+  ResampleImage(image, {16, 32}, to, {4, 8});
   for (int v = 0; v < 4; ++v) {
     for (int u = 0; u < 8; ++u) {
       float sum = 0;
       for (int i = 0; i < 16; ++i) {
-        sum += picture[static_cast<std::size_t>((4 * v + i / 4) * 32 + 4 * u + i % 4)];
+        sum += image[static_cast<std::size_t>((4 * v + i / 4) * 32 + 4 * u + i % 4)];
       }
       EXPECT_FLOAT_EQ(to[static_cast<std::size_t>(8 * v + u)], sum / 16);
     }
   }
   // Sizes that are no halves, and larger ones, as ResampleBilinear has them.
-  for (const PictureSize size : {PictureSize{10, 20}, PictureSize{20, 40}}) {
+  for (const ImageSize size : {ImageSize{10, 20}, ImageSize{20, 40}}) {
     std::vector<float> other(static_cast<std::size_t>(size.height) * size.width);
-    ResampleImage(picture, {16, 32}, other, size);
-    EXPECT_EQ(other, Resampled(picture, {16, 32}, size));
+    ResampleImage(image, {16, 32}, other, size);
+    EXPECT_EQ(other, Resampled(image, {16, 32}, size));
   }
 }
 

@@ -124,7 +124,7 @@ TEST_F(FuseCloudTest, VoxelsFollowTheRangesOfMapsWithoutMetres) {
       views_, [this](int frame) { return depths_[static_cast<size_t>(frame)]; },
       {.voxel_size = std::nullopt}, [](std::span<const Voxel>) {});
   EXPECT_NEAR(statistics_.voxel_size, 10.0 * MedianRange(depths_[4].range), 2.0);
-  EXPECT_GT(statistics_.confirmed, 10000);
+  EXPECT_GT(statistics_.consistent, 10000);
 }
 
 TEST_F(FuseCloudTest, LeavesOutWhatIsFarOrUncertain) {

@@ -65,7 +65,7 @@ TEST(CompareCloud, AccuracyIsTheDistanceFromTheSurfaceNotFromItsPixels) {
   EXPECT_LT(accuracy(0.30).accuracy[1], 0.3);
 }
 
-TEST(CompareCloud, CompletenessIsTheShareOfTheSurface) {
+TEST(CompareCloud, CompletenessIsTheFractionOfTheSurface) {
   // Only the wall x = 4 is there to be covered.
   std::vector<Surfel> wall;
   for (const Surfel& surfel : Walls({})) {

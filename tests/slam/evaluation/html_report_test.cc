@@ -21,7 +21,7 @@ TEST(HtmlReport, Base64IsThatOfRfc4648) {
   EXPECT_EQ(EncodeBase64(std::string("\xff\x00\xfe", 3)), "/wD+");
 }
 
-TEST(HtmlReport, PngGivesThePictureBack) {
+TEST(HtmlReport, PngGivesTheImageBack) {
   cv::Mat image(5, 7, CV_8UC3);
   cv::randu(image, 0, 256);
   const std::string png = EncodePng(image);
@@ -36,7 +36,7 @@ TEST(HtmlReport, HasAllPartsAndNeedsNoOtherFile) {
   report.subtitle = "made by <script>";
   report.tiles = {{"99 %", "tracked"}};
   report.warnings = {"frame 3 & 4 damaged"};
-  report.pictures = {{"Cloud", "from \"above\"", "foobar", "image/png"}};
+  report.images = {{"Cloud", "from \"above\"", "foobar", "image/png"}};
   report.bars_title = "Time";
   report.bars = {{"extract", 5.0, 10.0}, {"track", 2.5, 20.0}};
   report.table_title = "Files";

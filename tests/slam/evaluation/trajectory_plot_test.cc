@@ -57,7 +57,7 @@ TEST(PlotTrajectory, AMetreIsTheSameInBothDirections) {
   }
 }
 
-TEST(PlotTrajectory, EverythingLiesInsideThePictureWhateverTheErrors) {
+TEST(PlotTrajectory, EverythingLiesInsideTheImageWhateverTheErrors) {
   for (const double error : {0.0, 1e-9, 0.05, 5.0, 1e5}) {
     const std::string svg = Plot(100, error);
     EXPECT_THAT(svg, Not(HasSubstr("nan")));

@@ -63,7 +63,7 @@ TEST(CornerSelection, GivesAboutTheNumberAskedForInRowOrder) {
   }));
 }
 
-TEST(CornerSelection, SharesOutBySolidAngleNotByStrengthOfZones) {
+TEST(CornerSelection, DistributesBySolidAngleNotByStrengthOfZones) {
   cv::Mat image = Texture();
   image.rowRange(0, 128) = 128 + 0.3 * (image.rowRange(0, 128) - 128);  // the sky is pale
   const std::vector<Corner> corners = Select(image);
@@ -76,7 +76,7 @@ TEST(CornerSelection, SharesOutBySolidAngleNotByStrengthOfZones) {
   EXPECT_LT(static_cast<double>(polar) / static_cast<double>(corners.size()), 0.15);
 }
 
-TEST(CornerSelection, WithinAZoneTheStrongestWinUpToFourTimesTheirShare) {
+TEST(CornerSelection, WithinAZoneTheStrongestWinUpToFourTimesTheirQuota) {
   const std::vector<Corner> corners = Select(Texture());
   const auto west =
       std::count_if(corners.begin(), corners.end(), [](const Corner& c) { return c.u < 256; });

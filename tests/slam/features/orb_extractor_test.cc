@@ -20,7 +20,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 const EquirectangularCamera kCamera(1024, 512);
 
-cv::Mat Picture(const Eigen::Quaterniond& orientation) {
+cv::Mat Image(const Eigen::Quaterniond& orientation) {
   static const SphereTexture kTexture(5, 2.0 * kCamera.AngleOfPixels(1.0));
   return kTexture.Render(kCamera, orientation, 2.0);
 }
@@ -39,7 +39,7 @@ cv::Mat Roll(const cv::Mat& image, int shift) {
 }
 
 TEST(OrbExtractor, RollingByA32ndOfATurnGivesExactlyTheSameFeaturesShifted) {
-  const cv::Mat image = Picture(Eigen::Quaterniond::Identity());
+  const cv::Mat image = Image(Eigen::Quaterniond::Identity());
   OrbExtractor extractor(Thousand());
   const Features features = extractor.Extract(image);
   ASSERT_GT(features.size(), 900);
@@ -98,13 +98,13 @@ TEST(OrbExtractorSlow, AnyOtherRollFindsNineOfTenWithinATenthOfADegree) {
   EXPECT_GT(found, 0.9 * total);
 }
 
-// Share of the features of the upright picture whose mutually nearest descriptor in the other
-// picture lies within a degree of where it belongs.
-double ShareFoundAgain(const std::vector<Eigen::Vector3d>& bearings1,
-                       const std::vector<Descriptor>& descriptors1,
-                       const std::vector<Eigen::Vector3d>& bearings2,
-                       const std::vector<Descriptor>& descriptors2,
-                       const Eigen::Quaterniond& camera2_from_camera1) {
+// Fraction of the features of the upright image whose mutually nearest descriptor in the other
+// image lies within a degree of where it belongs.
+double FractionFoundAgain(const std::vector<Eigen::Vector3d>& bearings1,
+                          const std::vector<Descriptor>& descriptors1,
+                          const std::vector<Eigen::Vector3d>& bearings2,
+                          const std::vector<Descriptor>& descriptors2,
+                          const Eigen::Quaterniond& camera2_from_camera1) {
   MatchOptions any;
   any.max_distance = 256;
   any.ratio = 2.0;
@@ -133,19 +133,19 @@ class Repeatability : public testing::TestWithParam<Eigen::Vector3d> {};
 
 TEST_P(Repeatability, OutdoesFlatOrbByHalfAndFindsHalfOfTheFeaturesAgain) {
   const Eigen::Quaterniond turn = ExpSo3(GetParam());
-  const cv::Mat upright = Picture(Eigen::Quaterniond::Identity());
-  const cv::Mat turned = Picture(turn);
+  const cv::Mat upright = Image(Eigen::Quaterniond::Identity());
+  const cv::Mat turned = Image(turn);
   OrbExtractor extractor(Thousand());
   const Features a = extractor.Extract(upright);
   const Features b = extractor.Extract(turned);
   const double ours =
-      ShareFoundAgain(a.bearings, a.descriptors, b.bearings, b.descriptors, turn.conjugate());
+      FractionFoundAgain(a.bearings, a.descriptors, b.bearings, b.descriptors, turn.conjugate());
   std::vector<Eigen::Vector3d> flat_bearings[2];
   std::vector<Descriptor> flat_descriptors[2];
   ExtractFlat(upright, a.size(), &flat_bearings[0], &flat_descriptors[0]);
   ExtractFlat(turned, b.size(), &flat_bearings[1], &flat_descriptors[1]);
-  const double flat = ShareFoundAgain(flat_bearings[0], flat_descriptors[0], flat_bearings[1],
-                                      flat_descriptors[1], turn.conjugate());
+  const double flat = FractionFoundAgain(flat_bearings[0], flat_descriptors[0], flat_bearings[1],
+                                         flat_descriptors[1], turn.conjugate());
   RecordProperty("found_again_percent", static_cast<int>(100 * ours));
   RecordProperty("flat_orb_percent", static_cast<int>(100 * flat));
   std::cout << "found again: " << ours << ", flat ORB: " << flat << '\n';
@@ -159,9 +159,9 @@ INSTANTIATE_TEST_SUITE_P(Turns, Repeatability,
                                          Eigen::Vector3d(0, 90 * kDegree, 0),
                                          Eigen::Vector3d(0.9, -1.1, 0.7)));
 
-TEST(OrbExtractor, SharesFeaturesOutBySolidAngle) {
+TEST(OrbExtractor, DistributesFeaturesBySolidAngle) {
   OrbExtractor extractor(Thousand());
-  const Features features = extractor.Extract(Picture(Eigen::Quaterniond::Identity()));
+  const Features features = extractor.Extract(Image(Eigen::Quaterniond::Identity()));
   EXPECT_NEAR(features.size(), 1000, 60);
   int polar = 0;  // beyond 60 degrees of latitude: 13.4 % of the sphere
   for (const Eigen::Vector3d& bearing : features.bearings) polar += std::abs(bearing.z()) > 0.866;
@@ -172,7 +172,7 @@ TEST(OrbExtractor, LeavesOutWhatTheMaskHides) {
   OrbExtractor extractor(Thousand());
   cv::Mat mask(512, 1024, CV_8U, cv::Scalar(255));
   mask(cv::Rect(200, 250, 400, 262)).setTo(0);
-  const Features features = extractor.Extract(Picture(Eigen::Quaterniond::Identity()), mask);
+  const Features features = extractor.Extract(Image(Eigen::Quaterniond::Identity()), mask);
   EXPECT_GT(features.size(), 900);  // taken from elsewhere
   for (const Keypoint& p : features.keypoints) {
     // A corner's pixel on its level is hidden or not; its position may be half a pixel beside.
@@ -184,7 +184,7 @@ TEST(OrbExtractor, LeavesOutWhatTheMaskHides) {
 }
 
 TEST(OrbExtractor, APyramidThatWasTakenStaysAsItIs) {
-  const cv::Mat image = Picture(Eigen::Quaterniond::Identity());
+  const cv::Mat image = Image(Eigen::Quaterniond::Identity());
   OrbExtractor extractor(Thousand());
   const Features features = extractor.Extract(image);
   const SpherePyramid taken = extractor.TakePyramid();
@@ -201,7 +201,7 @@ TEST(OrbExtractor, APyramidThatWasTakenStaysAsItIs) {
 }
 
 TEST(OrbExtractor, DoesNotDependOnTheNumberOfThreads) {
-  const cv::Mat image = Picture(Eigen::Quaterniond::Identity());
+  const cv::Mat image = Image(Eigen::Quaterniond::Identity());
   OrbExtractor extractor(Thousand());
   const Features one = extractor.Extract(image);
   for (const int threads : {2, 3}) {
@@ -216,7 +216,7 @@ TEST(OrbExtractor, DoesNotDependOnTheNumberOfThreads) {
 }
 
 TEST(OrbExtractor, FindsTheSameFeaturesOnEveryInstructionSet) {
-  const cv::Mat image = Picture(Eigen::Quaterniond::Identity());
+  const cv::Mat image = Image(Eigen::Quaterniond::Identity());
   OrbExtractor extractor(Thousand());
   const Features reference = extractor.Extract(image);
   ForEachDispatchTarget([&] {

@@ -61,7 +61,7 @@ TEST(SamplePatch, BlendsTheFourPixelsAroundEachSample) {
   for (int y = 0; y < Patch::kWidth; ++y) {
     for (int x = 0; x < Patch::kWidth; ++x) {
       const Eigen::Vector2d p = center + kSteps * Eigen::Vector2d(x - 6, y - 6);
-      // Half a grey level of the picture's rounding, and of the patch's.
+      // Half a grey level of the image's rounding, and of the patch's.
       EXPECT_NEAR(patch.gray[y * Patch::kWidth + x], p.x() - 0.5 * p.y(), 1.01) << x << " " << y;
     }
   }
@@ -133,7 +133,7 @@ TEST(AlignPatch, KeepsASlopeThatIsKnown) {
   EXPECT_LT((found->slope.mean - scene.slope).norm(), 1e-4);
 }
 
-TEST(AlignPatch, GivesTheSlopeOnlyWhatThePictureTellsOfIt) {
+TEST(AlignPatch, GivesTheSlopeOnlyWhatTheImageTellsOfIt) {
   const Slanted scene;
   const auto found = scene.Align(Eigen::Vector2d::Zero(), 0.2);
   ASSERT_TRUE(found.has_value());

@@ -83,7 +83,7 @@ int DifferingBits(const Descriptor& a, const Descriptor& b) {
 struct Tally {
   int patches = 0;
   int wrong_bits = 0;
-  double Share() const { return wrong_bits / (256.0 * patches); }
+  double Fraction() const { return wrong_bits / (256.0 * patches); }
 };
 
 // Patches from pole to pole on levels of several sizes, in bands compressed like the sphere.
@@ -115,9 +115,9 @@ TEST(PatchDescriptor, ComparesThePointsOfTheTangentPlane) {
     for (const Order order : {Order::kSecond, Order::kSeries, Order::kExact}) {
       EXPECT_GT(tallies[order].patches, 30) << static_cast<int>(order);
     }
-    EXPECT_LT(tallies[Order::kExact].Share(), 0.002);
-    EXPECT_LT(tallies[Order::kSeries].Share(), 0.01);
-    EXPECT_LT(tallies[Order::kSecond].Share(), 0.04);
+    EXPECT_LT(tallies[Order::kExact].Fraction(), 0.002);
+    EXPECT_LT(tallies[Order::kSeries].Fraction(), 0.01);
+    EXPECT_LT(tallies[Order::kSecond].Fraction(), 0.04);
   });
 }
 

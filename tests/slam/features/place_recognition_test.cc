@@ -20,9 +20,9 @@ Bits RandomPlace(std::mt19937_64* random, int count = 500) {
 
 // The place as another view shows it: in another order, some descriptors new, the others with
 // `flips` of 256 bits changed at random.
-Bits SeenAgain(Bits place, int flips, double share, std::mt19937_64* random) {
+Bits SeenAgain(Bits place, int flips, double fraction, std::mt19937_64* random) {
   for (size_t i = 0; i < place.size(); ++i) {
-    if (static_cast<double>(i) >= share * static_cast<double>(place.size())) {
+    if (static_cast<double>(i) >= fraction * static_cast<double>(place.size())) {
       for (uint64_t& word : place[i]) word = (*random)();
     }
     for (int f = 0; f < flips; ++f) {
@@ -85,7 +85,7 @@ TEST(PlaceIndex, CountsTextureThatIsEverywhereForNothing) {
   EXPECT_GT(scores[13], 0.1);
 }
 
-TEST(PlaceIndex, KnowsNothingAtFirstAndBearsEmptyPictures) {
+TEST(PlaceIndex, KnowsNothingAtFirstAndBearsEmptyImages) {
   PlaceIndex index;
   EXPECT_TRUE(index.Score(Bits(3)).empty());
   index.Add({});

@@ -16,7 +16,7 @@
 
 namespace orb360 {
 
-/// A procedural picture on the sphere, to be seen in any orientation: rectangles of all sizes and
+/// A procedural image on the sphere, to be seen in any orientation: rectangles of all sizes and
 /// directions, one over the other, and noise of several octaves on top. Band-limited by
 /// construction, so that one sample a pixel is enough: edges are `smoothing` radians wide, and the
 /// finest noise has a lattice of four times that.

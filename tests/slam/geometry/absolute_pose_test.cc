@@ -25,7 +25,7 @@ struct Scene {
 struct SceneOptions {
   int count = 200;
   double sigma = 0.0;
-  double outlier_share = 0.0;
+  double outlier_ratio = 0.0;
   /// Where the points are as the camera sees it: within `half_angle` of a direction.
   Vector3d towards = Vector3d(0, 0, 1);
   double half_angle = 4.0;
@@ -37,7 +37,7 @@ Scene MakeScene(const SceneOptions& options, RandomGeometry* random) {
   while (static_cast<int>(scene.points.size()) < options.count) {
     const Vector3d in_camera = random->Point(1.0, 20.0);
     if (AngleBetween(in_camera, options.towards) > options.half_angle) continue;
-    const bool is_outlier = random->Uniform(0.0, 1.0) < options.outlier_share;
+    const bool is_outlier = random->Uniform(0.0, 1.0) < options.outlier_ratio;
     scene.points.push_back(scene.camera_from_world.Inverse() * in_camera);
     scene.bearings.push_back(is_outlier ? random->Bearing()
                                         : random->Noisy(in_camera.normalized(), options.sigma));
@@ -82,7 +82,7 @@ TEST(EstimateAbsolutePose, ErrorStaysWithinWhatTheNoisePredicts) {
   constexpr double kSigma = 2e-3;
   for (const double outliers : {0.0, 0.3, 0.5}) {
     const Scene scene =
-        MakeScene({.count = 500, .sigma = kSigma, .outlier_share = outliers}, &random);
+        MakeScene({.count = 500, .sigma = kSigma, .outlier_ratio = outliers}, &random);
     const auto found = EstimateAbsolutePose(scene.points, scene.bearings, {.sigma = kSigma});
     ASSERT_TRUE(found);
     // The information of the right bearings at the true pose, relative to the camera.
@@ -112,9 +112,9 @@ TEST(EstimateAbsolutePose, ErrorStaysWithinWhatTheNoisePredicts) {
 
 TEST(EstimateAbsolutePose, FindsFewRightMatchesAmongManyWrongOnesWhenTold) {
   RandomGeometry random(4);
-  const Scene scene = MakeScene({.count = 300, .sigma = 1e-3, .outlier_share = 0.85}, &random);
+  const Scene scene = MakeScene({.count = 300, .sigma = 1e-3, .outlier_ratio = 0.85}, &random);
   const auto found =
-      EstimateAbsolutePose(scene.points, scene.bearings, {.sigma = 1e-3, .min_inlier_share = 0.1});
+      EstimateAbsolutePose(scene.points, scene.bearings, {.sigma = 1e-3, .min_inlier_ratio = 0.1});
   ASSERT_TRUE(found);
   EXPECT_LT(RotationError(found->camera_from_world, scene.camera_from_world), 2e-3);
 }
@@ -148,7 +148,7 @@ TEST(EstimateAbsolutePose, WeighsEveryFeatureByItsOwnNoise) {
 
 TEST(EstimateAbsolutePose, GivesTheSameTwice) {
   RandomGeometry random(7);
-  const Scene scene = MakeScene({.sigma = 3e-3, .outlier_share = 0.4}, &random);
+  const Scene scene = MakeScene({.sigma = 3e-3, .outlier_ratio = 0.4}, &random);
   const auto first = EstimateAbsolutePose(scene.points, scene.bearings);
   const auto second = EstimateAbsolutePose(scene.points, scene.bearings);
   ASSERT_TRUE(first && second);
@@ -163,7 +163,7 @@ TEST(EstimateAbsolutePose, GivesNothingWhereThereIsNothing) {
   EXPECT_FALSE(EstimateAbsolutePose({}, {}));
   const Scene few = MakeScene({.count = 2}, &random);
   EXPECT_FALSE(EstimateAbsolutePose(few.points, few.bearings));
-  const Scene noise = MakeScene({.count = 100, .outlier_share = 1.0}, &random);
+  const Scene noise = MakeScene({.count = 100, .outlier_ratio = 1.0}, &random);
   EXPECT_FALSE(EstimateAbsolutePose(noise.points, noise.bearings));
   const std::vector<Vector3d> nan(50, Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
   EXPECT_FALSE(EstimateAbsolutePose(nan, nan));

@@ -45,7 +45,7 @@ TEST(Camera, ProjectOfBackProjectIsIdentityOverTheWholeSphere) {
   for (const EquirectangularCamera& camera : kCameras) {
     for (int row = 0; row <= 64; ++row) {
       for (int column = 0; column < 128; ++column) {
-        // The rows closest to the poles are 1e-6 of the picture away from them.
+        // The rows closest to the poles are 1e-6 of the image away from them.
         const double v = camera.height() * std::clamp(row / 64.0, 1e-6, 1.0 - 1e-6);
         const Vector2d pixel(camera.width() * column / 128.0, v);
         const Vector3d point = camera.BackProject(pixel, 3.5);

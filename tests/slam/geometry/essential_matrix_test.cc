@@ -110,7 +110,7 @@ TEST(EstimateRelativePose, ErrorStaysWithinWhatTheNoisePredicts) {
     for (const Vector3d& motion : kMotions) {
       const TwoViews views =
           MakeTwoViews({random.Rotation(0.5), motion.normalized()},
-                       {.count = 600, .sigma = kSigma, .outlier_share = outliers}, &random);
+                       {.count = 600, .sigma = kSigma, .outlier_ratio = outliers}, &random);
       const auto found = EstimateRelativePose(views.bearings1, views.bearings2, {.sigma = kSigma});
       ASSERT_TRUE(found) << motion.transpose();
       // n bearings all around tell a rotation to about sqrt(2) sigma sqrt(3 / n); the translation
@@ -139,7 +139,7 @@ TEST(EstimateRelativePose, WrongMatchesWithLargeParallaxDoNotHoldADistantScene) 
     // Median parallax 7 sigma.
     const TwoViews views =
         MakeTwoViews({random.Rotation(0.3), 0.1 * random.Bearing()},
-                     {.count = 1000, .sigma = kSigma, .outlier_share = 0.4}, &random);
+                     {.count = 1000, .sigma = kSigma, .outlier_ratio = 0.4}, &random);
     const auto found = EstimateRelativePose(views.bearings1, views.bearings2, {.sigma = kSigma});
     ASSERT_TRUE(found);
     EXPECT_LT(DirectionError(found->camera1_from_camera2, views.camera1_from_camera2), 0.04);
@@ -181,7 +181,7 @@ TEST(EstimateRelativePose, PureRotationShowsAsParallaxOfTheNoise) {
   RandomGeometry random(10);
   constexpr double kSigma = 1e-3;
   const TwoViews views = MakeTwoViews({random.Rotation(1.0), Vector3d::Zero()},
-                                      {.sigma = kSigma, .outlier_share = 0.2}, &random);
+                                      {.sigma = kSigma, .outlier_ratio = 0.2}, &random);
   const auto found = EstimateRelativePose(views.bearings1, views.bearings2, {.sigma = kSigma});
   ASSERT_TRUE(found);
   std::vector<double> parallax;
@@ -214,7 +214,7 @@ TEST(EstimateRelativePose, KeepsFarPointsWhoseRaysTheNoiseLetsDiverge) {
 TEST(EstimateRelativePose, GivesTheSameTwice) {
   RandomGeometry random(12);
   const TwoViews views = MakeTwoViews({random.Rotation(0.5), random.Bearing()},
-                                      {.sigma = 1e-3, .outlier_share = 0.4}, &random);
+                                      {.sigma = 1e-3, .outlier_ratio = 0.4}, &random);
   const auto first = EstimateRelativePose(views.bearings1, views.bearings2);
   const auto second = EstimateRelativePose(views.bearings1, views.bearings2);
   ASSERT_TRUE(first && second);
@@ -230,7 +230,7 @@ TEST(EstimateRelativePose, GivesNothingWhereThereIsNothing) {
   const TwoViews few = MakeTwoViews({random.Rotation(), random.Bearing()}, {.count = 4}, &random);
   EXPECT_FALSE(EstimateRelativePose(few.bearings1, few.bearings2));
   const TwoViews noise = MakeTwoViews({random.Rotation(), random.Bearing()},
-                                      {.count = 100, .outlier_share = 1.0}, &random);
+                                      {.count = 100, .outlier_ratio = 1.0}, &random);
   EXPECT_FALSE(EstimateRelativePose(noise.bearings1, noise.bearings2, {.min_inliers = 20}));
   // One bearing over and over, and NaN: no geometry, no crash.
   const std::vector<Vector3d> same(50, Vector3d(0, 0, 1));

@@ -32,9 +32,9 @@ TEST(EstimateRotation, ErrorStaysWithinWhatTheNoisePredicts) {
   constexpr double kSigma = 1e-3;
   for (const double outliers : {0.0, 0.3, 0.5, 0.7}) {
     const TwoViews views = MakeTwoViews({random.Rotation(), Vector3d::Zero()},
-                                        {.sigma = kSigma, .outlier_share = outliers}, &random);
+                                        {.sigma = kSigma, .outlier_ratio = outliers}, &random);
     const auto found = EstimateRotation(views.bearings1, views.bearings2,
-                                        {.sigma = kSigma, .min_inlier_share = 0.2});
+                                        {.sigma = kSigma, .min_inlier_ratio = 0.2});
     ASSERT_TRUE(found);
     // Each axis is told by two thirds of 2 n tangent components of noise sqrt(2) sigma; five times
     // the norm of three of them.
@@ -78,7 +78,7 @@ TEST(EstimateRotation, WeighsEveryFeatureByItsOwnNoise) {
 TEST(EstimateRotation, GivesTheSameTwice) {
   RandomGeometry random(5);
   const TwoViews views = MakeTwoViews({random.Rotation(), Vector3d::Zero()},
-                                      {.sigma = 3e-3, .outlier_share = 0.5}, &random);
+                                      {.sigma = 3e-3, .outlier_ratio = 0.5}, &random);
   EXPECT_EQ(
       EstimateRotation(views.bearings1, views.bearings2)->camera1_from_camera2.rotation.coeffs(),
       EstimateRotation(views.bearings1, views.bearings2)->camera1_from_camera2.rotation.coeffs());

@@ -22,7 +22,7 @@ struct TwoViews {
 struct TwoViewsOptions {
   int count = 300;
   double sigma = 0.0;          ///< noise of the bearings, radians
-  double outlier_share = 0.0;  ///< matched to a bearing anywhere
+  double outlier_ratio = 0.0;  ///< matched to a bearing anywhere
   double nearest = 2.0, farthest = 20.0;
 };
 
@@ -33,7 +33,7 @@ inline TwoViews MakeTwoViews(const Rigid3& camera1_from_camera2, const TwoViewsO
   const Rigid3 camera2_from_camera1 = camera1_from_camera2.Inverse();
   for (int i = 0; i < options.count; ++i) {
     const Eigen::Vector3d point = random->Point(options.nearest, options.farthest);
-    const bool is_outlier = random->Uniform(0.0, 1.0) < options.outlier_share;
+    const bool is_outlier = random->Uniform(0.0, 1.0) < options.outlier_ratio;
     const Eigen::Vector3d bearing2 = (camera2_from_camera1 * point).normalized();
     views.bearings1.push_back(random->Noisy(point.normalized(), options.sigma));
     views.bearings2.push_back(is_outlier ? random->Bearing()

@@ -31,7 +31,7 @@ class DenseCloudFileTest : public testing::Test {
   }
 
   TempFolder folder_;
-  RangeStore store_;
+  DepthMapStore store_;
   std::vector<DenseView> views_;
 };
 

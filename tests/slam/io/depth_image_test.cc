@@ -28,7 +28,7 @@ TEST(DepthImage, KeepsRangesToTwoMillimetresAndDropsWhatItCannotHold) {
   }
 }
 
-TEST(DepthImage, RefusesAPicture) {
+TEST(DepthImage, RefusesAnImage) {
   const TempFolder folder;
   cv::imwrite((folder / "rgb.png").string(), cv::Mat(4, 8, CV_8UC3, cv::Scalar(1, 2, 3)));
   for (const char* name : {"rgb.png", "absent.png"}) {

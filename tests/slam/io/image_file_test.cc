@@ -12,7 +12,7 @@ namespace {
 
 const cv::Size kSize(96, 48);
 
-cv::Mat Picture() {
+cv::Mat Image() {
   cv::Mat image(kSize, CV_8UC3);
   cv::randu(image, 0, 256);
   return image;
@@ -21,16 +21,16 @@ cv::Mat Picture() {
 TEST(ProbeImageSize, ReadsJpegAndPngHeaders) {
   const TempFolder folder;
   for (const char* name : {"a.png", "a.jpg"}) {
-    cv::imwrite((folder / name).string(), Picture());
+    cv::imwrite((folder / name).string(), Image());
     EXPECT_EQ(ProbeImageSize(folder / name), kSize) << name;
   }
-  cv::imwrite((folder / "progressive.jpg").string(), Picture(), {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
+  cv::imwrite((folder / "progressive.jpg").string(), Image(), {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
   EXPECT_EQ(ProbeImageSize(folder / "progressive.jpg"), kSize);
 }
 
 TEST(ProbeImageSize, FindsTheFrameHeaderBehindALargeApplicationSegment) {
   const TempFolder folder;
-  cv::imwrite((folder / "a.jpg").string(), Picture());
+  cv::imwrite((folder / "a.jpg").string(), Image());
   std::string data = ReadText(folder / "a.jpg");
   // 40,002 bytes of APP1, as an EXIF preview takes, filled with what looks like an end of image.
   std::string segment("\xff\xe1\x9c\x42", 4);
@@ -46,27 +46,27 @@ TEST(ProbeImageSize, FindsTheFrameHeaderBehindALargeApplicationSegment) {
 TEST(ProbeImageSize, KnowsNothingOfOtherFiles) {
   const TempFolder folder;
   WriteText(folder / "empty.png", "");
-  WriteText(folder / "text.jpg", "not a picture");
+  WriteText(folder / "text.jpg", "not an image");
   WriteText(folder / "short.png", "\x89PNG\r\n\x1a\n");
   for (const char* name : {"empty.png", "text.jpg", "short.png", "absent.png"}) {
     EXPECT_FALSE(ProbeImageSize(folder / name)) << name;
   }
 }
 
-TEST(LoadImage, NoPrefixOfAFileGivesAPicture) {
+TEST(LoadImage, NoPrefixOfAFileGivesAnImage) {
   const TempFolder folder;
   for (const char* name : {"a.png", "a.jpg"}) {
-    cv::imwrite((folder / name).string(), Picture());
-    for (double share : {0.0, 0.01, 0.1, 0.5, 0.9, 0.99}) {
-      CopyTruncated(folder / name, folder / "cut", share);
+    cv::imwrite((folder / name).string(), Image());
+    for (double fraction : {0.0, 0.01, 0.1, 0.5, 0.9, 0.99}) {
+      CopyTruncated(folder / name, folder / "cut", fraction);
       const LoadedImage loaded = LoadImage(folder / "cut");
-      EXPECT_TRUE(loaded.image.empty()) << name << ' ' << share;
-      EXPECT_FALSE(loaded.problem.empty()) << name << ' ' << share;
+      EXPECT_TRUE(loaded.image.empty()) << name << ' ' << fraction;
+      EXPECT_FALSE(loaded.problem.empty()) << name << ' ' << fraction;
     }
   }
 }
 
-// The picture as OpenCV alone decodes it.
+// The image as OpenCV alone decodes it.
 cv::Mat DecodedByOpenCv(const std::filesystem::path& path) {
   return cv::imread(path.string(), cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
 }
@@ -74,10 +74,10 @@ cv::Mat DecodedByOpenCv(const std::filesystem::path& path) {
 TEST(LoadImage, JpegGivesThePixelsOfOpenCv) {
   const TempFolder folder;
   cv::Mat grey;
-  cv::extractChannel(Picture(), grey, 0);
+  cv::extractChannel(Image(), grey, 0);
   cv::imwrite((folder / "grey.jpg").string(), grey);
-  cv::imwrite((folder / "low.jpg").string(), Picture(), {cv::IMWRITE_JPEG_QUALITY, 40});
-  cv::imwrite((folder / "progressive.jpg").string(), Picture(), {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
+  cv::imwrite((folder / "low.jpg").string(), Image(), {cv::IMWRITE_JPEG_QUALITY, 40});
+  cv::imwrite((folder / "progressive.jpg").string(), Image(), {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
   for (const char* name : {"grey.jpg", "low.jpg", "progressive.jpg"}) {
     const LoadedImage loaded = LoadImage(folder / name);
     ASSERT_EQ(loaded.image.type(), CV_8UC3) << name << loaded.problem;
@@ -85,12 +85,12 @@ TEST(LoadImage, JpegGivesThePixelsOfOpenCv) {
   }
 }
 
-TEST(LoadImage, DamagedJpegGivesThePictureOfOpenCvOrNone) {
+TEST(LoadImage, DamagedJpegGivesTheImageOfOpenCvOrNone) {
   const TempFolder folder;
-  int num_pictures = 0;
+  int num_images = 0;
   int num_problems = 0;
   for (const int progressive : {0, 1}) {
-    cv::imwrite((folder / "whole.jpg").string(), Picture(),
+    cv::imwrite((folder / "whole.jpg").string(), Image(),
                 {cv::IMWRITE_JPEG_PROGRESSIVE, progressive});
     const std::string whole = ReadText(folder / "whole.jpg");
     for (size_t at = 100; at + 2 < whole.size(); at += 37) {
@@ -102,19 +102,19 @@ TEST(LoadImage, DamagedJpegGivesThePictureOfOpenCvOrNone) {
         ++num_problems;
         continue;
       }
-      ++num_pictures;
+      ++num_images;
       const cv::Mat expected = DecodedByOpenCv(folder / "damaged.jpg");
       ASSERT_EQ(loaded.image.size(), expected.size()) << at;
       EXPECT_EQ(cv::norm(loaded.image, expected, cv::NORM_INF), 0) << at;
     }
   }
-  EXPECT_GT(num_pictures, 10);
+  EXPECT_GT(num_images, 10);
   EXPECT_GT(num_problems, 0);
 }
 
 TEST(LoadImage, JpegOfMorePixelsThanCanBeIsAProblemAndNoCrash) {
   const TempFolder folder;
-  cv::imwrite((folder / "a.jpg").string(), Picture());
+  cv::imwrite((folder / "a.jpg").string(), Image());
   std::string data = ReadText(folder / "a.jpg");
   const size_t frame = data.find("\xff\xc0");  // marker, length, bits, height, width
   ASSERT_NE(frame, std::string::npos);

@@ -25,7 +25,7 @@ using ::testing::SizeIs;
 
 const cv::Size kSize(128, 64);
 
-/// A picture whose brightness tells its index.
+/// An image whose brightness tells its index.
 cv::Mat Numbered(int index, cv::Size size = kSize) {
   cv::Mat image(size, CV_8UC3, cv::Scalar(40 + 2 * index, 60, 80));
   cv::circle(image, {size.width * index / 100, size.height / 2}, size.height / 5, {255, 255, 255},
@@ -227,7 +227,7 @@ TEST(SequenceOfFolder, DamagedImagesInTheMiddleAreNamedAndKeepTheirIndex) {
   std::filesystem::remove(folder / "img4.png");
   std::filesystem::remove(folder / "whole.jpg");
   WriteText(folder / "img1.png", "");
-  WriteText(folder / "img2.png", "not a picture");
+  WriteText(folder / "img2.png", "not an image");
   const auto sequence = OpenSequence(folder.path().string(), {});
   const std::vector<Frame> frames = ReadAll(*sequence);
   EXPECT_THAT(Indices(frames), ElementsAre(0, 3, 5));
@@ -268,7 +268,7 @@ TEST(SequenceRefuses, MixedSizesAlsoWhereTheHeaderTellsNothing) {
               AllOf(HasSubstr("2.bmp"), HasSubstr("64x32")));
 }
 
-TEST(SequenceRefuses, WhatIsNotThereOrHoldsNoPicture) {
+TEST(SequenceRefuses, WhatIsNotThereOrHoldsNoImage) {
   const TempFolder folder;
   EXPECT_THAT(RefusalOf(folder / "absent.mp4"), HasSubstr("no such file"));
   EXPECT_THAT(RefusalOf(folder.path()), HasSubstr("contains no images"));

@@ -39,12 +39,12 @@ inline std::string ReadText(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// Copies the first `share` of a file.
+/// Copies the first `fraction` of a file.
 inline void CopyTruncated(const std::filesystem::path& from, const std::filesystem::path& to,
-                          double share) {
+                          double fraction) {
   const std::string data = ReadText(from);
   WriteText(to, std::string_view(data).substr(
-                    0, static_cast<size_t>(share * static_cast<double>(data.size()))));
+                    0, static_cast<size_t>(fraction * static_cast<double>(data.size()))));
 }
 
 /// Runs `statement`, which must throw `Exception`, and gives its message.

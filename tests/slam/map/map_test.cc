@@ -175,18 +175,18 @@ TEST(Map, AnAppendedPatchStaysWithItsKeyframe) {
   EXPECT_EQ(other.landmark(8).patch->keyframe, 3);
 }
 
-TEST(Map, ForgetsThePicturesOfAllButTheNewestKeyframes) {
+TEST(Map, ForgetsTheImagesOfAllButTheNewestKeyframes) {
   Map map = SmallMap();
   for (const KeyframeId id : map.KeyframeIds()) {
-    map.keyframe(id).picture = std::make_shared<const SpherePyramid>();
+    map.keyframe(id).image = std::make_shared<const SpherePyramid>();
   }
   map.RemoveKeyframe(2, 1);
-  map.ForgetPictures(2);
-  EXPECT_EQ(map.keyframe(0).picture, nullptr);
-  EXPECT_NE(map.keyframe(1).picture, nullptr);
-  EXPECT_NE(map.keyframe(3).picture, nullptr);
-  map.ForgetPictures(0);
-  EXPECT_EQ(map.keyframe(3).picture, nullptr);
+  map.ForgetImages(2);
+  EXPECT_EQ(map.keyframe(0).image, nullptr);
+  EXPECT_NE(map.keyframe(1).image, nullptr);
+  EXPECT_NE(map.keyframe(3).image, nullptr);
+  map.ForgetImages(0);
+  EXPECT_EQ(map.keyframe(3).image, nullptr);
 }
 
 TEST(Map, WhatWasAlignedWithAPatchIsNotWithThatOfTheLandmarkItJoins) {

@@ -9,11 +9,11 @@ namespace orb360 {
 namespace {
 
 // A camera 1.5 over the plane z = 0 of a world that is tilted by `tilt` in the map.
-Map MapOverGround(const Eigen::Quaterniond& tilt, double ground_share) {
+Map MapOverGround(const Eigen::Quaterniond& tilt, double ground_fraction) {
   SyntheticScene scene(400, 2.0, 8.0);
   for (size_t i = 0; i < scene.points.size(); ++i) {
     Eigen::Vector3d& p = scene.points[i].position;
-    p.z() = i < ground_share * static_cast<double>(scene.points.size())
+    p.z() = i < ground_fraction * static_cast<double>(scene.points.size())
                 ? -1.5 + scene.random.Normal(0.02)
                 : scene.random.Uniform(-1.4, 4.0);
   }

@@ -44,7 +44,7 @@ class KeyframeCompletionTest : public testing::Test {
     }
     return points;
   }
-  cv::Mat Picture() const { return {64, 128, CV_8UC3, cv::Scalar::all(90)}; }
+  cv::Mat Image() const { return {64, 128, CV_8UC3, cv::Scalar::all(90)}; }
   KeyframeCompletion Make() {
     return {&completer_, [this](int frame, DenseDepth depth) { sunk_.emplace_back(frame, depth); },
             options_};
@@ -60,7 +60,7 @@ class KeyframeCompletionTest : public testing::Test {
 TEST_F(KeyframeCompletionTest, TellsTheRangesOfFeaturesAndTheGroundWhenDue) {
   KeyframeCompletion depth = Make();
   EXPECT_FALSE(depth.pending().has_value());
-  EXPECT_TRUE(depth.Start(keyframe_, Picture(), Points(), 100));
+  EXPECT_TRUE(depth.Start(keyframe_, Image(), Points(), 100));
   EXPECT_EQ(depth.pending(), kFrame);
   EXPECT_FALSE(depth.IsDue(104));
   EXPECT_TRUE(depth.IsDue(105));
@@ -81,7 +81,7 @@ TEST_F(KeyframeCompletionTest, TellsTheRangesOfFeaturesAndTheGroundWhenDue) {
 
 TEST_F(KeyframeCompletionTest, FollowsChangesOfTheUnit) {
   KeyframeCompletion depth = Make();
-  depth.Start(keyframe_, Picture(), Points(), 0);
+  depth.Start(keyframe_, Image(), Points(), 0);
   const CompletedKeyframe completed = depth.Take(0.5);
   EXPECT_NEAR(completed.priors[0].range, 0.5 * kHeight * std::sqrt(2.0), 0.05);
   EXPECT_NEAR(completed.ground->log_height, std::log(0.5 * kHeight), 0.02);
@@ -91,20 +91,20 @@ TEST_F(KeyframeCompletionTest, LeavesOutAKeyframeWithTooFewPoints) {
   KeyframeCompletion depth = Make();
   std::vector<SparsePoint> points = Points();
   points.resize(static_cast<size_t>(options_.min_points) - 1);
-  EXPECT_FALSE(depth.Start(keyframe_, Picture(), points, 0));
+  EXPECT_FALSE(depth.Start(keyframe_, Image(), points, 0));
   EXPECT_FALSE(depth.pending().has_value());
 }
 
 TEST_F(KeyframeCompletionTest, PassesOnWhatTheSinkThrowsWithTheNextKeyframeOrInTheEnd) {
   KeyframeCompletion depth(
       &completer_, [](int, const DenseDepth&) { throw UserError("the disk is full"); }, options_);
-  depth.Start(keyframe_, Picture(), Points(), 0);
+  depth.Start(keyframe_, Image(), Points(), 0);
   EXPECT_NO_THROW(depth.Take(1.0));
   EXPECT_FALSE(depth.pending().has_value());
-  depth.Start(keyframe_, Picture(), Points(), 0);
+  depth.Start(keyframe_, Image(), Points(), 0);
   EXPECT_THROW(depth.Take(1.0), UserError);
   EXPECT_FALSE(depth.pending().has_value());
-  depth.Start(keyframe_, Picture(), Points(), 0);
+  depth.Start(keyframe_, Image(), Points(), 0);
   EXPECT_NO_THROW(depth.Take(1.0));
   EXPECT_THROW(depth.Flush(), UserError);
 }
@@ -113,7 +113,7 @@ TEST_F(KeyframeCompletionTest, TellsWhatIsCompletedWhileTheSinkIsStillAtIt) {
   std::promise<void> may_end;
   KeyframeCompletion depth(
       &completer_, [&](int, const DenseDepth&) { may_end.get_future().wait(); }, options_);
-  depth.Start(keyframe_, Picture(), Points(), 0);
+  depth.Start(keyframe_, Image(), Points(), 0);
   EXPECT_EQ(depth.Take(1.0).frame_index, kFrame);
   EXPECT_TRUE(depth.IsRunning());
   may_end.set_value();

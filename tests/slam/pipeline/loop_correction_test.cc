@@ -22,12 +22,12 @@ struct Closed {
   std::vector<Similarity3> corrections;
 };
 
-// An even picture for the newest keyframe.
-void KeepPicture(Map* map) {
-  SpherePyramid picture;
-  BuildSpherePyramid(cv::Mat(64, 128, CV_8U, cv::Scalar(90)), 8, &picture);
-  map->keyframe(map->keyframe_end() - 1).picture =
-      std::make_shared<const SpherePyramid>(std::move(picture));
+// An even image for the newest keyframe.
+void KeepImage(Map* map) {
+  SpherePyramid image;
+  BuildSpherePyramid(cv::Mat(64, 128, CV_8U, cv::Scalar(90)), 8, &image);
+  map->keyframe(map->keyframe_end() - 1).image =
+      std::make_shared<const SpherePyramid>(std::move(image));
 }
 
 // A lap that drifts, until the loop is closed.
@@ -39,7 +39,7 @@ Closed DriveAndClose() {
   for (int k = 0; k < kLap + 15; ++k) {
     const KeyframeId id = street.DriveOn(RingStreet::PoseAt(ArcOf(k)), drift, &closed.drive);
     if (const auto loop = detector.Observe(closed.drive.map, id, {})) {
-      KeepPicture(&closed.drive.map);
+      KeepImage(&closed.drive.map);
       closed.before = closed.drive.map;
       closed.corrections = CloseLoop(*loop, &closed.drive.map);
       break;

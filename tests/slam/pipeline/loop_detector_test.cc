@@ -102,7 +102,7 @@ TEST(LoopDetector, RecognisesAStreetDrivenTheOtherWay) {
   }
 }
 
-// Both halves of the ring show exactly the same. Pictures cannot tell them apart; that the map
+// Both halves of the ring show exactly the same. Images cannot tell them apart; that the map
 // would have to be off by the size of the block can.
 TEST(LoopDetector, IsNotDeceivedByAStreetThatLooksTheSame) {
   RingStreet street(2000, 2);

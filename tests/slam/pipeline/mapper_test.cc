@@ -65,24 +65,24 @@ TEST(Mapper, RemovesKeyframesThatOthersMakeRedundantAndKeepsTheirPoses) {
   }
 }
 
-TEST(Mapper, KeepsThePicturesOfTheNewestKeyframesOnly) {
+TEST(Mapper, KeepsTheImagesOfTheNewestKeyframesOnly) {
   SyntheticScene scene(300);
   const std::vector<Rigid3> poses = Walk(8, {-0.4, 0.1, 0.0});
   Map map = scene.MakeMap({poses.begin(), poses.begin() + 3}, 250);
   cv::Mat gray(256, 512, CV_8U);
   cv::randu(gray, 0, 256);
-  auto picture = std::make_shared<SpherePyramid>();
-  BuildSpherePyramid(gray, 8, picture.get());
+  auto image = std::make_shared<SpherePyramid>();
+  BuildSpherePyramid(gray, 8, image.get());
   MapperOptions options;
-  options.redundant_share = 1.1;  // no keyframe goes
-  options.kept_pictures = 2;
+  options.redundant_fraction = 1.1;  // no keyframe goes
+  options.kept_images = 2;
   for (int k = 3; k < 8; ++k) {
     TrackedFrame frame = FrameSeeing(scene, scene.See(poses[k]), poses[k], 200);
     for (LandmarkId& id : frame.landmarks) id = map.Resolve(id);
-    IntegrateKeyframe(frame, picture, options, {}, &map);
+    IntegrateKeyframe(frame, image, options, {}, &map);
   }
-  for (KeyframeId id = 0; id < 8; ++id) EXPECT_EQ(map.keyframe(id).picture != nullptr, id >= 6);
-  EXPECT_EQ(picture.use_count(), 3);
+  for (KeyframeId id = 0; id < 8; ++id) EXPECT_EQ(map.keyframe(id).image != nullptr, id >= 6);
+  EXPECT_EQ(image.use_count(), 3);
 }
 
 TEST(LandmarkFusion, MergesTwoLandmarksOfOnePoint) {

@@ -15,10 +15,10 @@ TEST(AlignObservations, BringsCornersToAFifthOfTheirErrorFromAnyDirection) {
   AlignObservations(scene.AddKeyframe({}, true), {}, &scene.map);
   const KeyframeId second = scene.AddKeyframe(kStep, true);
   AlignObservations(second, {}, &scene.map);
-  double share = 0;
+  double fraction = 0;
   EXPECT_NEAR(scene.Error(second, false), 0.5, 1e-3);
-  EXPECT_LT(scene.Error(second, true, &share), 0.1);
-  EXPECT_GT(share, 0.8);
+  EXPECT_LT(scene.Error(second, true, &fraction), 0.1);
+  EXPECT_GT(fraction, 0.8);
   for (LandmarkId l = 0; l < scene.map.landmark_end(); ++l) {
     const Observation& o = scene.map.landmark(l).observations[1];
     const float corner = scene.map.keyframe(second).features->keypoints[o.feature].sigma;
@@ -34,10 +34,10 @@ TEST(AlignObservations, WarpsThePatchHoweverTheCameraIsHeldAndWhereverItIs) {
     // Rolled by a quarter turn, and a metre and a half nearer to one wall.
     const KeyframeId second = scene.AddKeyframe({ExpSo3({1.57, 0.2, 0.4}), {-1.5, 0.4, 0.3}}, true);
     AlignObservations(second, {}, &scene.map);
-    double share = 0;
-    const double error = scene.Error(second, true, &share);
+    double fraction = 0;
+    const double error = scene.Error(second, true, &fraction);
     EXPECT_LT(error, 0.125 * RangeAtLevelZero(1, level)) << int{level};
-    EXPECT_GT(share, 0.4) << int{level};
+    EXPECT_GT(fraction, 0.4) << int{level};
   }
 }
 
@@ -188,7 +188,7 @@ TEST(AlignObservations, AlignsWhatOlderKeyframesShowWithThePatchOfANewLandmark) 
   const KeyframeId gone = scene.AddKeyframe({ExpSo3({0, 0, 0.1}), {0.2, 0, 0}}, false);
   const KeyframeId newest = scene.AddKeyframe({}, true);
   AlignObservations(newest, {}, &scene.map);
-  double share = 0;
+  double fraction = 0;
   // The newest keyframe's corners are half a pixel off: that is where its patches are.
   for (LandmarkId l = 0; l < scene.map.landmark_end(); ++l) {
     const Landmark& landmark = scene.map.landmark(l);
@@ -197,25 +197,25 @@ TEST(AlignObservations, AlignsWhatOlderKeyframesShowWithThePatchOfANewLandmark) 
     const Eigen::Vector3d ray = scene.map.keyframe(newest).features->bearings[l];
     scene.shown[l] = scene.room.Range({0, 0, 0}, ray) * ray;
   }
-  EXPECT_LT(scene.Error(older, true, &share), 0.1);
-  EXPECT_GT(share, 0.8);
-  scene.Error(gone, true, &share);
-  EXPECT_EQ(share, 0);  // its picture was not kept
+  EXPECT_LT(scene.Error(older, true, &fraction), 0.1);
+  EXPECT_GT(fraction, 0.8);
+  scene.Error(gone, true, &fraction);
+  EXPECT_EQ(fraction, 0);  // its image was not kept
 }
 
 TEST(AlignObservations, LeavesWhatLooksDifferent) {
   PatchScene scene;
   AlignObservations(scene.AddKeyframe({}, true), {}, &scene.map);
   const KeyframeId second = scene.AddKeyframe(kStep, true);
-  // Another room's picture.
-  scene.map.keyframe(second).picture = PictureOf(BoxRoom({6.0, 5.0, 3.0}, 99), kStep);
+  // Another room's image.
+  scene.map.keyframe(second).image = ImageOf(BoxRoom({6.0, 5.0, 3.0}, 99), kStep);
   AlignObservations(second, {}, &scene.map);
-  double share = 0;
-  scene.Error(second, true, &share);
-  EXPECT_LT(share, 0.05);
+  double fraction = 0;
+  scene.Error(second, true, &fraction);
+  EXPECT_LT(fraction, 0.05);
 }
 
-TEST(AlignObservations, ANeverKeptPictureChangesNothing) {
+TEST(AlignObservations, ANeverKeptImageChangesNothing) {
   PatchScene scene;
   const KeyframeId id = scene.AddKeyframe({}, false);
   AlignObservations(id, {}, &scene.map);

@@ -17,12 +17,12 @@ namespace orb360 {
 
 inline const EquirectangularCamera kPatchCamera(1024, 512);
 
-inline std::shared_ptr<const SpherePyramid> PictureOf(const BoxRoom& room, const Rigid3& pose) {
+inline std::shared_ptr<const SpherePyramid> ImageOf(const BoxRoom& room, const Rigid3& pose) {
   cv::Mat gray;
   cv::cvtColor(room.Render(kPatchCamera, pose), gray, cv::COLOR_BGR2GRAY);
-  auto picture = std::make_shared<SpherePyramid>();
-  BuildSpherePyramid(gray, 8, picture.get());
-  return picture;
+  auto image = std::make_shared<SpherePyramid>();
+  BuildSpherePyramid(gray, 8, image.get());
+  return image;
 }
 
 /// Keyframes in a textured room, with corners found off by half a pixel.
@@ -51,7 +51,7 @@ struct PatchScene {
   }
 
   /// Sees all landmarks, landmark l at feature l; with `corners`, only that many of the first.
-  KeyframeId AddKeyframe(const Rigid3& pose, bool with_picture, size_t corners = SIZE_MAX) {
+  KeyframeId AddKeyframe(const Rigid3& pose, bool with_image, size_t corners = SIZE_MAX) {
     auto features = std::make_shared<Features>();
     for (size_t i = 0; i < std::min(shown.size(), corners); ++i) {
       const Eigen::Vector3d seen = pose.Inverse() * shown[i];
@@ -68,7 +68,7 @@ struct PatchScene {
     IndexFeatures(features.get());
     const KeyframeId id =
         map.AddKeyframe(map.num_keyframes(), 0.1 * map.num_keyframes(), pose, features);
-    if (with_picture) map.keyframe(id).picture = PictureOf(room, pose);
+    if (with_image) map.keyframe(id).image = ImageOf(room, pose);
     for (LandmarkId l = 0; l < features->size(); ++l) {
       map.AddObservation(l, id, l);
       map.UpdateAppearance(l);
@@ -76,9 +76,9 @@ struct PatchScene {
     return id;
   }
 
-  /// Median angle between what the keyframe shows and where it is taken to be, pixels; `share`: of
-  /// the observations that are aligned.
-  double Error(KeyframeId id, bool aligned, double* share = nullptr) const {
+  /// Median angle between what the keyframe shows and where it is taken to be, pixels; `fraction`:
+  /// of the observations that are aligned.
+  double Error(KeyframeId id, bool aligned, double* fraction = nullptr) const {
     std::vector<double> errors;
     const Keyframe& keyframe = map.keyframe(id);
     for (LandmarkId l = 0; l < map.landmark_end(); ++l) {
@@ -90,7 +90,7 @@ struct PatchScene {
                          kPatchCamera.AngleOfPixels(1.0));
       }
     }
-    if (share != nullptr) *share = errors.size() / static_cast<double>(map.num_landmarks());
+    if (fraction != nullptr) *fraction = errors.size() / static_cast<double>(map.num_landmarks());
     if (errors.empty()) return -1;
     std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
     return errors[errors.size() / 2];

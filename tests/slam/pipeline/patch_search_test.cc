@@ -34,9 +34,9 @@ class FindByPatchesTest : public testing::Test {
 TEST_F(FindByPatchesTest, FindsWhatIsNoCornerToATenthOfAPixel) {
   const std::shared_ptr<const Features> before = scene_.map.keyframe(second_).features;
   FindByPatches(second_, 15, &scene_.map);
-  double share = 0;
-  EXPECT_LT(scene_.Error(second_, true, &share), 0.1);
-  EXPECT_GT(share, 0.8);
+  double fraction = 0;
+  EXPECT_LT(scene_.Error(second_, true, &fraction), 0.1);
+  EXPECT_GT(fraction, 0.8);
   scene_.map.CheckConsistency();
   const Features& features = *scene_.map.keyframe(second_).features;
   ASSERT_GT(features.size(), static_cast<int>(kCorners));
@@ -96,16 +96,16 @@ TEST_F(FindByPatchesTest, WhatIsSeenFromTheOtherSideOnlyIsNotSought) {
 }
 
 TEST_F(FindByPatchesTest, WhatLooksDifferentIsNotFound) {
-  scene_.map.keyframe(second_).picture = PictureOf(BoxRoom({6.0, 5.0, 3.0}, 99), kStep);
+  scene_.map.keyframe(second_).image = ImageOf(BoxRoom({6.0, 5.0, 3.0}, 99), kStep);
   FindByPatches(second_, 15, &scene_.map);
   EXPECT_LT(NumSeen() - static_cast<int>(kCorners),
             0.1 * static_cast<double>(scene_.shown.size() - kCorners));
 }
 
-TEST_F(FindByPatchesTest, WithoutAPictureOrNeighboursNothingChanges) {
+TEST_F(FindByPatchesTest, WithoutAnImageOrNeighboursNothingChanges) {
   FindByPatches(second_, 0, &scene_.map);
   EXPECT_EQ(NumSeen(), static_cast<int>(kCorners));
-  scene_.map.ForgetPictures(0);
+  scene_.map.ForgetImages(0);
   FindByPatches(second_, 15, &scene_.map);
   EXPECT_EQ(NumSeen(), static_cast<int>(kCorners));
 }

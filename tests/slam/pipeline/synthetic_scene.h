@@ -34,7 +34,7 @@ struct SyntheticScene {
     }
   }
 
-  /// Feature i shows point i. `noise`: share of sigma that is really added.
+  /// Feature i shows point i. `noise`: fraction of sigma that is really added.
   std::shared_ptr<Features> See(const Rigid3& world_from_camera, double noise = 1.0) {
     auto features = std::make_shared<Features>();
     const Rigid3 camera_from_world = world_from_camera.Inverse();

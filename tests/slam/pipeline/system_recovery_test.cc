@@ -153,7 +153,7 @@ TEST(SystemSlow, GoesOnInAMapOfAnEarlierRun) {
     }
   }
   EXPECT_GT(aligned, 0.6 * observed);
-  for (const KeyframeId id : map.KeyframeIds()) EXPECT_EQ(map.keyframe(id).picture, nullptr);
+  for (const KeyframeId id : map.KeyframeIds()) EXPECT_EQ(map.keyframe(id).image, nullptr);
   System later(kHallCamera, SmallOptions(), {});
   later.LoadMap({.ground = earlier.grounds().front(), .map = map});
   std::vector<double> frames;

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "nn/base/check.h"
-#include "slam/io/range_store.h"
+#include "slam/io/depth_map_store.h"
 #include "slam/map/map.h"
 #include "tests/slam/io/temp_folder.h"
 #include "tests/slam/pipeline/hall_walk.h"

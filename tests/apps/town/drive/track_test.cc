@@ -13,17 +13,19 @@ constexpr Moments kMoments{0, 30};
 
 const Lap& LapOfSpeed(double speed) {
   static const StreetPlan plan = PlanStreets({.seed = 4});
-  static const Lap slow(plan, plan.tour, {.minimum_speed = 4, .maximum_speed = 4, .stop_share = 0});
-  static const Lap fast(plan, plan.tour, {.minimum_speed = 8, .maximum_speed = 8, .stop_share = 0});
+  static const Lap slow(plan, plan.tour,
+                        {.minimum_speed = 4, .maximum_speed = 4, .stop_fraction = 0});
+  static const Lap fast(plan, plan.tour,
+                        {.minimum_speed = 8, .maximum_speed = 8, .stop_fraction = 0});
   return speed < 5 ? slow : fast;
 }
 
 TEST(Track, DiscsCoverTheOutline) {
   for (const Footprint& size : {kCar, kBicycle, Footprint{5.2, 2}, Footprint{11, 2.5}}) {
     const Track track = TrackOf(Ride{.lap = &LapOfSpeed(8)}, size, {0, 0});
-    for (double share = -1; share <= 1; share += 0.05) {
-      for (const Vector2d& p : {Vector2d(share * 0.5 * size.length, 0.5 * size.width),
-                                Vector2d(0.5 * size.length, share * 0.5 * size.width)}) {
+    for (double ratio = -1; ratio <= 1; ratio += 0.05) {
+      for (const Vector2d& p : {Vector2d(ratio * 0.5 * size.length, 0.5 * size.width),
+                                Vector2d(0.5 * size.length, ratio * 0.5 * size.width)}) {
         bool is_covered = false;
         for (const double disc : track.discs)
           is_covered |= (p - Vector2d(disc, 0)).norm() < track.radius + 1e-9;

@@ -166,7 +166,7 @@ TEST(RenderGeometry, CutoutsAreThereOnlyWhereTheTextureCovers) {
   Scenery scenery = PlainScenery();
   MeshBuilder builder(kPlain);
   const Panel wall{{5, 4, -3}, {0, -1, 0}, {0, 0, 1}, {-1, 0, 0}};
-  builder.AddPicture(2, wall, 0, 8, 0, 8);  // covers the half y > 0
+  builder.AddImage(2, wall, 0, 8, 0, 8);  // covers the half y > 0
   Finish(builder, &scenery);
   const auto distance = [](const Eigen::Vector3d& origin, const Eigen::Vector3d& d) {
     if (d.x() <= 0) return 0.0;

@@ -122,7 +122,7 @@ TEST(RenderColour, AdaptiveSamplesShowWhatAllSamplesShow) {
 }
 
 TEST(RenderColour, AdaptiveSamplesFindTheWholePenumbra) {
-  // So fine a picture that the penumbra, 8 cm wide, is many pixels.
+  // So fine an image that the penumbra, 8 cm wide, is many pixels.
   const EquirectangularCamera camera(8192, 4096);
   const Light light = MakeLight("noon", 1);
   const Scenery scenery = Hall(light);

@@ -93,7 +93,7 @@ TEST(Shade, AMatteSurfaceThrowsBackSkySunAndGround) {
   });
 }
 
-TEST(Shade, PaintMirrorsTheSkyByFresnelsShare) {
+TEST(Shade, PaintMirrorsTheSkyByFresnelsReflectance) {
   const Scenery scenery = Ramp(0, Finish::kPaint, {0, 0, 0, 1});
   const RayScene rays(scenery);
   const FrameScene scene(rays, {});
@@ -104,11 +104,11 @@ TEST(Shade, PaintMirrorsTheSkyByFresnelsShare) {
       const SightLanes sight = Look(scene, shader, {0, 0, 0.5F}, {samples.data(), 1});
       for (size_t i = 0; i < kLanes; ++i) {
         const auto& [x, y, z] = samples[0].direction;
-        const double share = 0.04 + 0.96 * std::pow(1.0 + z[i], 5);
+        const double fraction = 0.04 + 0.96 * std::pow(1.0 + z[i], 5);
         const double clear = std::exp(-sight.range[i] / kLight.haze);
         const double haze = (1 - clear) * kLight.horizon.y();
         const double sky = TheSky().Radiance({x[i], y[i], -z[i]}).y();
-        EXPECT_NEAR(sight.shade.y[i], clear * share * sky + haze, 1e-5);
+        EXPECT_NEAR(sight.shade.y[i], clear * fraction * sky + haze, 1e-5);
       }
     });
   }
@@ -147,7 +147,7 @@ TEST(Shade, SamplesPlacedOnAPlaneAreThoseThatTheirOwnRaysMeet) {
         EXPECT_NEAR(together.shade.x[i], red[i], 2e-4F);
         EXPECT_NEAR(together.shade.z[i], blue[i], 2e-4F);
       }
-      // The picture changes over the square by more than that.
+      // The image changes over the square by more than that.
       EXPECT_GT(std::abs(together.shade.x[0] - together.shade.x[15]) +
                     std::abs(together.shade.z[0] - together.shade.z[15]),
                 5e-3F);

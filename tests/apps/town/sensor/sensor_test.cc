@@ -41,7 +41,7 @@ cv::Mat3f Bearings() {
 
 double Difference(const cv::Mat& a, const cv::Mat& b) { return cv::norm(a, b, cv::NORM_INF); }
 
-TEST(TakePicture, WithoutEffectsGivesTheBytesOfTheRenderer) {
+TEST(CaptureImage, WithoutEffectsGivesTheBytesOfTheRenderer) {
   const Materials materials = PlainMaterials();
   Scenery scenery;
   scenery.palette = materials;
@@ -56,12 +56,12 @@ TEST(TakePicture, WithoutEffectsGivesTheBytesOfTheRenderer) {
   const Shader shader(scenery.palette, light, sky);
   Rigid3 pose;
   pose.translation = {0.3, -0.4, 1.7};
-  const RadianceAt picture = [&](double) { return RenderRadiance(scene, shader, kCamera, pose); };
+  const RadianceAt radiance = [&](double) { return RenderRadiance(scene, shader, kCamera, pose); };
   const cv::Mat3b plain = RenderColour(scene, shader, kCamera, pose);
-  EXPECT_EQ(Difference(TakePicture({}, 3, 0.15, picture, picture), plain), 0);
+  EXPECT_EQ(Difference(CaptureImage({}, 3, 0.15, radiance, radiance), plain), 0);
   SensorOptions noisy;
   noisy.noise = SensorNoise();
-  EXPECT_GT(Difference(TakePicture(noisy, 3, 0.15, picture, picture), plain), 0);
+  EXPECT_GT(Difference(CaptureImage(noisy, 3, 0.15, radiance, radiance), plain), 0);
 }
 
 TEST(MeteredRadiance, IsTheGeometricMeanByAreaOnTheSphere) {
@@ -210,40 +210,40 @@ TEST(SensorOptions, SayWhichEffectsAreOn) {
   EXPECT_EQ(Describe(options), "sensor:\n  motion_blur: {shutter: 0.008, moments: 3}\n");
 }
 
-TEST(TakePicture, CompressesAsTheQualitySays) {
-  const RadianceAt picture = [](double) {
+TEST(CaptureImage, CompressesAsTheQualitySays) {
+  const RadianceAt radiance = [](double) {
     cv::Mat3f image = Constant(0.2F);
     AddNoise({.full_well = 300}, 1, 1, &image);
     return image;
   };
-  const cv::Mat3b plain = TakePicture({}, 0, 0, picture, picture);
+  const cv::Mat3b plain = CaptureImage({}, 0, 0, radiance, radiance);
   double last = 0;
   for (const int quality : {95, 70, 40}) {
     SensorOptions options;
     options.jpeg_quality = quality;
-    const cv::Mat3b image = TakePicture(options, 0, 0, picture, picture);
+    const cv::Mat3b image = CaptureImage(options, 0, 0, radiance, radiance);
     const double error = cv::norm(image, plain, cv::NORM_L1);
     EXPECT_GT(error, last);
     last = error;
   }
 }
 
-TEST(TakePicture, AppliesEffectsInTheOrderOfACamera) {
+TEST(CaptureImage, AppliesEffectsInTheOrderOfACamera) {
   SensorOptions options;
   options.motion_blur = MotionBlur{.shutter = 0.1, .moments = 2};
   options.auto_exposure = AutoExposure{.key = 0.4};
   options.dual_lens = DualLens();
   options.noise = SensorNoise();
   options.seed = 9;
-  const RadianceAt picture = [](double seconds) -> cv::Mat3f {
+  const RadianceAt radiance = [](double seconds) -> cv::Mat3f {
     return Bearings() * (0.1 + seconds);
   };
   const RadianceAt meter = [](double) { return Constant(0.1F); };
-  cv::Mat3f light = StitchedFromTwoLenses(DualLens(), picture(1));
+  cv::Mat3f light = StitchedFromTwoLenses(DualLens(), radiance(1));
   light *= 4;
   AddNoise(SensorNoise(), 9, 7, &light);
   const ToneCurve tone;
-  const cv::Mat3b image = TakePicture(options, 7, 1, picture, meter);
+  const cv::Mat3b image = CaptureImage(options, 7, 1, radiance, meter);
   for (int row = 0; row < kHeight; ++row) {
     for (int column = 0; column < kWidth; ++column) {
       const cv::Vec3f& pixel = light(row, column);
@@ -253,19 +253,19 @@ TEST(TakePicture, AppliesEffectsInTheOrderOfACamera) {
   }
 }
 
-TEST(TakePicture, GivesTheSameBytesForAnyNumberOfThreads) {
+TEST(CaptureImage, GivesTheSameBytesForAnyNumberOfThreads) {
   SensorOptions options;
   options.motion_blur = MotionBlur();
   options.auto_exposure = AutoExposure();
   options.dual_lens = DualLens();
   options.noise = SensorNoise();
   options.jpeg_quality = 80;
-  const RadianceAt picture = [](double) -> cv::Mat3f { return Bearings() * 0.2; };
+  const RadianceAt radiance = [](double) -> cv::Mat3f { return Bearings() * 0.2; };
   const int threads = omp_get_max_threads();
   omp_set_num_threads(1);
-  const cv::Mat3b one = TakePicture(options, 1, 0.05, picture, picture);
+  const cv::Mat3b one = CaptureImage(options, 1, 0.05, radiance, radiance);
   omp_set_num_threads(2);
-  EXPECT_EQ(Difference(one, TakePicture(options, 1, 0.05, picture, picture)), 0);
+  EXPECT_EQ(Difference(one, CaptureImage(options, 1, 0.05, radiance, radiance)), 0);
   omp_set_num_threads(threads);
 }
 

@@ -42,8 +42,8 @@ TEST(FindTown, EvaluationPathsCloseALoopAndComeBackBothWays) {
         length += (path[path.size() - 1].translation - path[path.size() - 2].translation).norm();
     }
     const Revisits revisits = FindRevisits(path);
-    EXPECT_GT(revisits.same_share * length, 15) << name << ": metres of " << length;
-    EXPECT_GT(revisits.opposite_share * length, 15) << name << ": metres of " << length;
+    EXPECT_GT(revisits.same_fraction * length, 15) << name << ": metres of " << length;
+    EXPECT_GT(revisits.opposite_fraction * length, 15) << name << ": metres of " << length;
     EXPECT_GT(length / spec.frames * 20, 5) << name << ": mean speed, stops included";
   }
 }

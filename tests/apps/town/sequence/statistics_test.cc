@@ -27,8 +27,8 @@ void DriveOn(double heading, int metres, std::vector<Rigid3>* path) {
 TEST(FindRevisits, AStraightRoadIsNeverRevisited) {
   std::vector<Rigid3> path = {Looking(0, 0, 0)};
   DriveOn(0, 300, &path);
-  EXPECT_EQ(FindRevisits(path).same_share, 0);
-  EXPECT_EQ(FindRevisits(path).opposite_share, 0);
+  EXPECT_EQ(FindRevisits(path).same_fraction, 0);
+  EXPECT_EQ(FindRevisits(path).opposite_fraction, 0);
 }
 
 TEST(FindRevisits, TheWayBackIsSeenInTheOppositeDirection) {
@@ -36,9 +36,9 @@ TEST(FindRevisits, TheWayBackIsSeenInTheOppositeDirection) {
   DriveOn(0, 200, &path);
   DriveOn(std::numbers::pi, 200, &path);
   const Revisits revisits = FindRevisits(path);
-  EXPECT_EQ(revisits.same_share, 0);
+  EXPECT_EQ(revisits.same_fraction, 0);
   // All of the way back but about the first 25 m: less than 50 m of travel since.
-  EXPECT_NEAR(revisits.opposite_share, (200 - 25) / 400.0, 0.02);
+  EXPECT_NEAR(revisits.opposite_fraction, (200 - 25) / 400.0, 0.02);
 }
 
 TEST(FindRevisits, ASecondRoundIsSeenInTheSameDirection) {
@@ -47,8 +47,8 @@ TEST(FindRevisits, ASecondRoundIsSeenInTheSameDirection) {
     for (int side = 0; side < 4; ++side) DriveOn(side * std::numbers::pi / 2, 50, &path);
   }
   const Revisits revisits = FindRevisits(path);
-  EXPECT_NEAR(revisits.same_share, 0.5, 0.02);
-  EXPECT_EQ(revisits.opposite_share, 0);
+  EXPECT_NEAR(revisits.same_fraction, 0.5, 0.02);
+  EXPECT_EQ(revisits.opposite_fraction, 0);
 }
 
 TEST(StatisticsTable, HasAColumnForEachDrive) {

@@ -23,9 +23,9 @@ std::optional<double> HeightAt(const Mesh& mesh, const Triangle& triangle, const
   Eigen::Matrix2d edges;
   edges << (p[1] - p[0]).head<2>(), (p[2] - p[0]).head<2>();
   if (std::abs(edges.determinant()) < 1e-9) return std::nullopt;
-  const Vector2d share = edges.inverse() * (place - p[0].head<2>());
-  if (share.minCoeff() < 0 || share.sum() > 1) return std::nullopt;
-  return p[0].z() + share[0] * (p[1].z() - p[0].z()) + share[1] * (p[2].z() - p[0].z());
+  const Vector2d fraction = edges.inverse() * (place - p[0].head<2>());
+  if (fraction.minCoeff() < 0 || fraction.sum() > 1) return std::nullopt;
+  return p[0].z() + fraction[0] * (p[1].z() - p[0].z()) + fraction[1] * (p[2].z() - p[0].z());
 }
 
 /// The triangles of a mesh by the cells of 2 m that they reach.
@@ -70,11 +70,11 @@ std::vector<double> GapsBetween(const Mesh& upper, const Mesh& lower) {
     Eigen::Matrix3d corners;
     for (int i = 0; i < 3; ++i)
       corners.col(i) = upper.positions[triangle.vertices[static_cast<size_t>(i)]].cast<double>();
-    for (const Eigen::Vector3d& share :
+    for (const Eigen::Vector3d& fraction :
          {Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(4, 1, 1), Eigen::Vector3d(1, 4, 1),
           Eigen::Vector3d(1, 1, 4), Eigen::Vector3d(1, 9, 9), Eigen::Vector3d(9, 1, 9),
           Eigen::Vector3d(9, 9, 1)}) {
-      const Eigen::Vector3d place = corners * (share / share.sum());
+      const Eigen::Vector3d place = corners * (fraction / fraction.sum());
       const std::optional<double> below = surface.HeightAt(place.head<2>());
       if (below) gaps.push_back(place.z() - *below);
     }

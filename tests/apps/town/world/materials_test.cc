@@ -12,7 +12,7 @@ const Materials& Painted() {
   return materials;
 }
 
-TEST(PaintMaterials, EveryTextureHasAPictureOfModerateBrightness) {
+TEST(PaintMaterials, EveryTextureHasAnImageOfModerateBrightness) {
   const Materials& materials = Painted();
   for (size_t i = 0; i < materials.textures.size(); ++i) {
     const Texture& texture = materials.textures[i];

@@ -29,7 +29,7 @@ TEST(MeshBuilder, TilesPerMetreFollowTheMaterial) {
   const Materials materials = PlainMaterials();
   MeshBuilder builder(materials);
   builder.AddRectangle(1, kPanel, 0, 3, 0, 1);  // a tile of 4 m
-  builder.AddPicture(0, kPanel, 0, 2, 0, 2);    // one tile over 2 m
+  builder.AddImage(0, kPanel, 0, 2, 0, 2);      // one tile over 2 m
   EXPECT_NEAR(builder.mesh().triangles.front().tiles_per_metre, 0.25F, 1e-5F);
   EXPECT_NEAR(builder.mesh().triangles.back().tiles_per_metre, 0.5F, 1e-5F);
 }

@@ -1,4 +1,4 @@
-#include "slam/io/range_store.h"
+#include "slam/io/depth_map_store.h"
 
 #include <algorithm>
 #include <cmath>
@@ -150,23 +150,23 @@ cv::Mat DecodeColor(std::string_view jpeg) {
 
 }  // namespace
 
-RangeStore::RangeStore(std::filesystem::path folder) : folder_(std::move(folder)) {
+DepthMapStore::DepthMapStore(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::error_code error;
   std::filesystem::remove_all(folder_, error);
   if (!error) std::filesystem::create_directories(folder_, error);
   if (error) ThrowWriteError(folder_, error.value());
 }
 
-RangeStore::~RangeStore() {
+DepthMapStore::~DepthMapStore() {
   std::error_code ignored;
   std::filesystem::remove_all(folder_, ignored);
 }
 
-std::filesystem::path RangeStore::PathOf(int frame_index) const {
+std::filesystem::path DepthMapStore::PathOf(int frame_index) const {
   return folder_ / std::to_string(frame_index);
 }
 
-void RangeStore::Put(int frame_index, const DenseDepth& depth) const {
+void DepthMapStore::Put(int frame_index, const DenseDepth& depth) const {
   const cv::Size size = depth.range.size();
   ORB360_CHECK(depth.range.type() == CV_32FC1 && depth.confidence.type() == CV_32FC1 &&
                    depth.color.type() == CV_8UC3,
@@ -186,11 +186,11 @@ void RangeStore::Put(int frame_index, const DenseDepth& depth) const {
   file.Write({reinterpret_cast<const char*>(color.data()), color.size()});
 }
 
-bool RangeStore::Contains(int frame_index) const {
+bool DepthMapStore::Contains(int frame_index) const {
   return std::filesystem::exists(PathOf(frame_index));
 }
 
-DenseDepth RangeStore::Get(int frame_index) const {
+DenseDepth DepthMapStore::Get(int frame_index) const {
   const std::filesystem::path path = PathOf(frame_index);
   std::ifstream file(path, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());

@@ -19,15 +19,15 @@ namespace orb360::nn {
 
 /// Channels x rows x columns in double precision, without layout or halo: what kernels are compared
 /// with.
-struct PlainPicture {
-  explicit PlainPicture(const Shape& size)
+struct PlainImage {
+  explicit PlainImage(const Shape& size)
       : shape(size), values(static_cast<std::size_t>(size.channels) * size.height * size.width) {}
 
   double& at(int channel, int y, int x) {
     return values[(static_cast<std::size_t>(channel) * shape.height + y) * shape.width + x];
   }
   double at(int channel, int y, int x) const {
-    return const_cast<PlainPicture&>(*this).at(channel, y, x);
+    return const_cast<PlainImage&>(*this).at(channel, y, x);
   }
 
   /// What stands at a place that may lie beyond the edge, found by walking over the sphere.
@@ -52,36 +52,35 @@ struct PlainPicture {
 };
 
 /// Floats, evenly distributed.
-inline PlainPicture RandomPicture(const Shape& shape, float lowest, float highest, unsigned seed) {
-  PlainPicture picture(shape);
+inline PlainImage RandomImage(const Shape& shape, float lowest, float highest, unsigned seed) {
+  PlainImage image(shape);
   std::mt19937 random(seed);
-  for (double& value : picture.values) {
-    const float share = static_cast<float>(random() >> 8) * 0x1p-24f;
-    value = lowest + (highest - lowest) * share;
+  for (double& value : image.values) {
+    const float fraction = static_cast<float>(random() >> 8) * 0x1p-24f;
+    value = lowest + (highest - lowest) * fraction;
     value = static_cast<float>(value);
   }
-  return picture;
+  return image;
 }
 
 inline std::vector<float> RandomFloats(std::size_t count, float lowest, float highest,
                                        unsigned seed) {
-  const PlainPicture picture =
-      RandomPicture({1, 1, static_cast<int>(count)}, lowest, highest, seed);
-  return {picture.values.begin(), picture.values.end()};
+  const PlainImage image = RandomImage({1, 1, static_cast<int>(count)}, lowest, highest, seed);
+  return {image.values.begin(), image.values.end()};
 }
 
-/// A float tensor that holds `picture`; the channels that fill up a block are zero, the halo is
+/// A float tensor that holds `image`; the channels that fill up a block are zero, the halo is
 /// what TensorMemory begins with.
 class FilledTensor : public TensorMemory {
  public:
-  FilledTensor(const PlainPicture& picture, Layout layout, int halo)
-      : TensorMemory({picture.shape, layout, DataType::kFloat, halo}) {
-    const auto [channels, rows, columns] = picture.shape;
+  FilledTensor(const PlainImage& image, Layout layout, int halo)
+      : TensorMemory({image.shape, layout, DataType::kFloat, halo}) {
+    const auto [channels, rows, columns] = image.shape;
     const int block = layout == Layout::kBlocked ? BlockOf(DataType::kFloat) : 1;
     for (int c = 0; c < view.planes() * block; ++c) {
       for (int y = 0; y < rows; ++y) {
         for (int x = 0; x < columns; ++x) {
-          At(view, c, y, x) = c < channels ? static_cast<float>(picture.at(c, y, x)) : 0.0f;
+          At(view, c, y, x) = c < channels ? static_cast<float>(image.at(c, y, x)) : 0.0f;
         }
       }
     }
@@ -101,8 +100,8 @@ struct Scratch {
 
 /// Every value is within `tolerance` of what is expected, NaN where NaN is expected; the worst
 /// element is reported. What fills up the last block must be zero.
-inline void ExpectNear(const TensorView& actual, const PlainPicture& expected,
-                       const PlainPicture& tolerance) {
+inline void ExpectNear(const TensorView& actual, const PlainImage& expected,
+                       const PlainImage& tolerance) {
   ASSERT_EQ(actual.shape, expected.shape);
   double worst = -1;
   int where[3] = {};
@@ -140,8 +139,8 @@ inline void ExpectNear(const TensorView& actual, const PlainPicture& expected,
   }
 }
 
-inline void ExpectEqual(const TensorView& actual, const PlainPicture& expected) {
-  ExpectNear(actual, expected, PlainPicture(expected.shape));
+inline void ExpectEqual(const TensorView& actual, const PlainImage& expected) {
+  ExpectNear(actual, expected, PlainImage(expected.shape));
 }
 
 /// The bytes of all pixels are the same, those of the halos left out.

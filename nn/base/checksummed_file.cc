@@ -1,4 +1,4 @@
-#include "nn/base/sealed_file.h"
+#include "nn/base/checksummed_file.h"
 
 #include <algorithm>
 #include <array>
@@ -36,11 +36,11 @@ Digest DigestOf(const void* data, std::size_t bytes) {
   return digest;
 }
 
-FileBytes ReadBytes(const std::filesystem::path& path, const SealedKind& kind) {
+FileBytes ReadBytes(const std::filesystem::path& path, const ChecksummedFormat& kind) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) throw UserError("cannot be read: " + error.message());
-  if (size > kind.most_bytes) {
+  if (size > kind.max_bytes) {
     std::string reason = "has " + std::to_string(size) + " bytes, more than any ";
     throw UserError(reason += kind.name);
   }
@@ -52,7 +52,7 @@ FileBytes ReadBytes(const std::filesystem::path& path, const SealedKind& kind) {
   return bytes;
 }
 
-void CheckHeader(const FileBytes& bytes, const SealedKind& kind) {
+void CheckHeader(const FileBytes& bytes, const ChecksummedFormat& kind) {
   const std::string name(kind.name);
   if (bytes.size() < kHeaderBytes ||
       std::memcmp(bytes.data(), kind.magic.data(), kMagicBytes) != 0) {
@@ -86,13 +86,13 @@ void CheckHeader(const FileBytes& bytes, const SealedKind& kind) {
 
 }  // namespace
 
-FileBytes ReadSealedFile(const std::filesystem::path& path, const SealedKind& kind) {
+FileBytes ReadChecksummedFile(const std::filesystem::path& path, const ChecksummedFormat& kind) {
   FileBytes bytes = ReadBytes(path, kind);
   CheckHeader(bytes, kind);
   return bytes;
 }
 
-std::string MakeSeal(const SealedKind& kind, std::string_view content) {
+std::string MakeChecksumHeader(const ChecksummedFormat& kind, std::string_view content) {
   ORB360_CHECK(kind.magic.size() == kMagicBytes, kind.magic);
   std::string header(kHeaderBytes, '\0');
   std::memcpy(header.data(), kind.magic.data(), kMagicBytes);
@@ -102,7 +102,7 @@ std::string MakeSeal(const SealedKind& kind, std::string_view content) {
   return header;
 }
 
-Hdf5Handle OpenSealed(FileBytes* bytes) {
+Hdf5Handle OpenChecksummedContent(FileBytes* bytes) {
   Hdf5Handle file(H5LTopen_file_image(bytes->data(), bytes->size(),
                                       H5LT_FILE_IMAGE_DONT_COPY | H5LT_FILE_IMAGE_DONT_RELEASE),
                   H5Fclose);
@@ -110,7 +110,7 @@ Hdf5Handle OpenSealed(FileBytes* bytes) {
   return file;
 }
 
-Hdf5Handle CreateSealedContent() {
+Hdf5Handle CreateChecksummedContent() {
   constexpr std::size_t kGrowth = 1 << 24;  // bytes
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fapl_core(access.get(), kGrowth, /*backing_store=*/0);

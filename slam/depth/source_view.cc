@@ -1,9 +1,9 @@
-#include "slam/depth/witness.h"
+#include "slam/depth/source_view.h"
 
 #include <numbers>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "slam/depth/witness.cc"
+#define HWY_TARGET_INCLUDE "slam/depth/source_view.cc"
 #include <hwy/foreach_target.h>
 // foreach_target must come first.
 #include <hwy/contrib/math/math-inl.h>
@@ -56,8 +56,8 @@ HWY_INLINE Sighting LookAlong(const DepthView& view, V x, V y, V z) {
                          Constant(0.5f * static_cast<float>(view.height() - 1)));
   const V whole_u = hn::Floor(u);
   const V whole_v = hn::Floor(v);
-  const V right_share = hn::Sub(u, whole_u);
-  const V bottom_share = hn::Sub(v, whole_v);
+  const V right_fraction = hn::Sub(u, whole_u);
+  const V bottom_fraction = hn::Sub(v, whole_v);
   // NaN becomes an arbitrary pixel inside the image.
   const VI left = hn::Max(hn::Min(hn::ConvertTo(di, whole_u), width), hn::Set(di, -1));
   const VI top = hn::Max(hn::Min(hn::ConvertTo(di, whole_v), bottom_row), hn::Set(di, -1));
@@ -77,8 +77,8 @@ HWY_INLINE Sighting LookAlong(const DepthView& view, V x, V y, V z) {
   const V lower_left = gather(lower, left_wrapped, lower_turn);
   const V lower_right = gather(lower, right_wrapped, lower_turn);
 
-  const auto is_upper = hn::Lt(bottom_share, Constant(0.5f));
-  const auto is_left = hn::Lt(right_share, Constant(0.5f));
+  const auto is_upper = hn::Lt(bottom_fraction, Constant(0.5f));
+  const auto is_left = hn::Lt(right_fraction, Constant(0.5f));
   const VI row = hn::IfThenElse(hn::RebindMask(di, is_upper), hn::Max(top, zero),
                                 hn::Min(hn::Add(top, one), bottom_row));
   const VI column = hn::IfThenElse(hn::RebindMask(di, is_left), left_wrapped, right_wrapped);
@@ -89,10 +89,10 @@ HWY_INLINE Sighting LookAlong(const DepthView& view, V x, V y, V z) {
   // Ranges that differ by this factor belong to different surfaces; 0 is unknown.
   constexpr float kEdgeRatio = 1.15f;
   const auto is_one_surface = hn::Lt(most, hn::Mul(Constant(kEdgeRatio), least));
-  const V above = hn::MulAdd(right_share, hn::Sub(upper_right, upper_left), upper_left);
-  const V below = hn::MulAdd(right_share, hn::Sub(lower_right, lower_left), lower_left);
+  const V above = hn::MulAdd(right_fraction, hn::Sub(upper_right, upper_left), upper_left);
+  const V below = hn::MulAdd(right_fraction, hn::Sub(lower_right, lower_left), lower_left);
   const V inverse_range = hn::IfThenElse(
-      is_one_surface, hn::MulAdd(bottom_share, hn::Sub(below, above), above), nearest);
+      is_one_surface, hn::MulAdd(bottom_fraction, hn::Sub(below, above), above), nearest);
 
   const VI pixel = hn::Add(hn::Mul(row, width), column);
   const auto words = hn::GatherIndex(du, view.confidence_levels().data(), hn::ShiftRight<2>(pixel));
@@ -149,13 +149,13 @@ HWY_INLINE V3 Load3(const std::array<TestedRow::Array, 3>& from, size_t i) {
           hn::LoadU(d, from[2].data() + i)};
 }
 
-void HearWitnessKernel(const Witness& witness, TestedRow* points) {
+void CompareWithSourceViewKernel(const SourceView& source, TestedRow* points) {
   const D d;
   const Eigen::Matrix3f rotation =
-      witness.witness_from_view.rotation.toRotationMatrix().cast<float>();
-  const Eigen::Vector3f translation = witness.witness_from_view.translation.cast<float>();
-  const V tolerance_errors = Constant(static_cast<float>(witness.tolerance_errors));
-  const V tolerance_share = Constant(static_cast<float>(witness.tolerance_share));
+      source.source_from_reference.rotation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f translation = source.source_from_reference.translation.cast<float>();
+  const V tolerance_errors = Constant(static_cast<float>(source.tolerance_errors));
+  const V relative_tolerance = Constant(static_cast<float>(source.relative_tolerance));
   const V zero = hn::Zero(d);
   const V one = Constant(1);
   for (size_t i = 0; i < points->size; i += hn::Lanes(d)) {
@@ -168,7 +168,7 @@ void HearWitnessKernel(const Witness& witness, TestedRow* points) {
     const V inverse_range = hn::Div(one, range);
     const V3 bearing{hn::Mul(inverse_range, seen.x), hn::Mul(inverse_range, seen.y),
                      hn::Mul(inverse_range, seen.z)};
-    const Sighting sighting = LookAlong(*witness.view, bearing.x, bearing.y, bearing.z);
+    const Sighting sighting = LookAlong(*source.view, bearing.x, bearing.y, bearing.z);
     const auto is_known = hn::Gt(sighting.inverse_range, zero);
     const V there = hn::Div(one, hn::IfThenElse(is_known, sighting.inverse_range, one));
     const V slant = Dot(bearing, Rotated(rotation, Load3(points->normal, i)));
@@ -176,7 +176,7 @@ void HearWitnessKernel(const Witness& witness, TestedRow* points) {
     const V error = hn::Mul(hn::Mul(there, sighting.error), incidence);
     const V both = hn::Sqrt(hn::MulAdd(error, error, hn::LoadU(d, points->variance.data() + i)));
     const V tolerance =
-        hn::MulAdd(tolerance_errors, both, hn::Mul(tolerance_share, hn::Mul(range, incidence)));
+        hn::MulAdd(tolerance_errors, both, hn::Mul(relative_tolerance, hn::Mul(range, incidence)));
     const V farther = hn::Sub(there, range);
     const V deviation = hn::Mul(farther, incidence);
     const auto agrees = hn::And(is_known, hn::Le(hn::Abs(deviation), tolerance));
@@ -194,7 +194,7 @@ void HearWitnessKernel(const Witness& witness, TestedRow* points) {
     const auto is_through = hn::And(is_known, hn::Gt(deviation, tolerance));
     if (hn::AllFalse(d, is_through)) continue;
     // The nearest of the pixels around decides whether the surface is still behind the point.
-    const V nearest = hn::Div(one, NearestAround(*witness.view, sighting.row, sighting.column));
+    const V nearest = hn::Div(one, NearestAround(*source.view, sighting.row, sighting.column));
     const auto conflicts =
         hn::And(is_through, hn::Gt(hn::Mul(hn::Sub(nearest, range), incidence), tolerance));
     add(&points->conflict, hn::IfThenElseZero(conflicts, one));
@@ -208,10 +208,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace orb360 {
 
-HWY_EXPORT(HearWitnessKernel);
+HWY_EXPORT(CompareWithSourceViewKernel);
 
-void HearWitness(const Witness& witness, TestedRow* points) {
-  HWY_DYNAMIC_DISPATCH(HearWitnessKernel)(witness, points);
+void CompareWithSourceView(const SourceView& source, TestedRow* points) {
+  HWY_DYNAMIC_DISPATCH(CompareWithSourceViewKernel)(source, points);
 }
 
 }  // namespace orb360

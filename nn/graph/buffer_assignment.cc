@@ -1,4 +1,4 @@
-#include "nn/graph/placement.h"
+#include "nn/graph/buffer_assignment.h"
 
 #include <algorithm>
 #include <limits>
@@ -15,9 +15,9 @@ struct Whole {
   Lifetime life{0, std::numeric_limits<int>::max(), -1};
 };
 
-class Placer {
+class BufferAssigner {
  public:
-  Placer(const Lowered& lowered, bool keeps_values)
+  BufferAssigner(const Lowered& lowered, bool keeps_values)
       : lowered_(lowered),
         keeps_values_(keeps_values),
         whole_of_(lowered.values.size()),
@@ -25,7 +25,7 @@ class Placer {
         wholes_(lowered.values.size()),
         piece_of_(lowered.values.size()) {}
 
-  Placement Run() {
+  BufferAssignment Run() {
     FindWholes();
     FindLifetimes();
     std::iota(piece_of_.begin(), piece_of_.end(), 0);
@@ -118,42 +118,42 @@ class Placer {
     return true;
   }
 
-  Placement Pack() {
-    Placement placement;
+  BufferAssignment Pack() {
+    BufferAssignment assignment;
     std::vector<std::size_t> piece_number(wholes_.size());
     for (std::size_t i = 0; i < wholes_.size(); ++i) {
       const auto index = static_cast<int>(i);
       if (whole_of_[i] != index) continue;
       TensorFormat format = value(index).format;
       format.halo = wholes_[i].halo;
-      placement.separate_bytes += format.bytes();
+      assignment.separate_bytes += format.bytes();
       if (piece_of_[i] != index) continue;
       Lifetime life = wholes_[i].life;
       life.bytes = format.bytes();
-      piece_number[i] = placement.pieces.size();
-      placement.pieces.push_back(life);
+      piece_number[i] = assignment.pieces.size();
+      assignment.pieces.push_back(life);
     }
-    const std::size_t first_scratch = placement.pieces.size();
+    const std::size_t first_scratch = assignment.pieces.size();
     int step = 0;
     for (const Instruction& instruction : lowered_.instructions) {
       ++step;
-      placement.pieces.push_back({instruction.step.scratch_bytes, step, step});
-      placement.separate_bytes += instruction.step.scratch_bytes;
+      assignment.pieces.push_back({instruction.step.scratch_bytes, step, step});
+      assignment.separate_bytes += instruction.step.scratch_bytes;
     }
-    MemoryPlan plan = PlanMemory(placement.pieces);
-    placement.scratch.assign(plan.offsets.begin() + static_cast<std::ptrdiff_t>(first_scratch),
-                             plan.offsets.end());
+    MemoryPlan plan = PlanMemory(assignment.pieces);
+    assignment.scratch.assign(plan.offsets.begin() + static_cast<std::ptrdiff_t>(first_scratch),
+                              plan.offsets.end());
     for (std::size_t i = 0; i < lowered_.values.size(); ++i) {
       const int whole = whole_of_[i];
       const int piece = Piece(whole);
       TensorFormat format = value(whole).format;
       format.halo = wholes_[Index(piece)].halo;
-      placement.places.push_back(
+      assignment.buffers.push_back(
           {format, plan.offsets[piece_number[Index(piece)]], first_channel_[i]});
     }
-    placement.offsets = std::move(plan.offsets);
-    placement.bytes = plan.bytes;
-    return placement;
+    assignment.offsets = std::move(plan.offsets);
+    assignment.bytes = plan.bytes;
+    return assignment;
   }
 
   const Lowered& lowered_;
@@ -166,12 +166,12 @@ class Placer {
 
 }  // namespace
 
-Placement PlaceValues(const Lowered& lowered, bool keeps_values) {
-  return Placer(lowered, keeps_values).Run();
+BufferAssignment AssignBuffers(const Lowered& lowered, bool keeps_values) {
+  return BufferAssigner(lowered, keeps_values).Run();
 }
 
-TensorView ViewOf(const Placement::Place& place, int channels, std::byte* memory) {
-  return ChannelSlice(place.whole.View(memory + place.offset), place.first_channel, channels);
+TensorView ViewOf(const BufferAssignment::Buffer& buffer, int channels, std::byte* memory) {
+  return ChannelSlice(buffer.whole.View(memory + buffer.offset), buffer.first_channel, channels);
 }
 
 }  // namespace orb360::nn

@@ -9,15 +9,15 @@
 namespace orb360::nn {
 
 /// Position of the values of a network in one block of memory.
-struct Placement {
+struct BufferAssignment {
   /// For each value: its format with the halo of the whole of which it is a part, the offset of the
   /// whole, and the value's first channel in it.
-  struct Place {
+  struct Buffer {
     TensorFormat whole;
     std::size_t offset = 0;  // bytes
     int first_channel = 0;
   };
-  std::vector<Place> places;
+  std::vector<Buffer> buffers;
   std::vector<std::size_t> scratch;  // by instruction: where its scratch starts, bytes
   std::vector<Lifetime> pieces;      // of memory, for whoever wants to check the plan
   std::vector<std::size_t> offsets;  // of the pieces
@@ -28,9 +28,9 @@ struct Placement {
 /// Plans the memory of a lowered graph. Parts lie in their wholes, results replace inputs that are
 /// read for the last time if the kernel allows it, and the rest is packed by lifetime
 /// (memory_plan.h). With `keeps_values` every value keeps its memory to the end.
-Placement PlaceValues(const Lowered& lowered, bool keeps_values);
+BufferAssignment AssignBuffers(const Lowered& lowered, bool keeps_values);
 
 /// Returns the value in the block that starts at `memory`.
-TensorView ViewOf(const Placement::Place& place, int channels, std::byte* memory);
+TensorView ViewOf(const BufferAssignment::Buffer& buffer, int channels, std::byte* memory);
 
 }  // namespace orb360::nn

@@ -6,19 +6,19 @@
 
 namespace orb360 {
 
-/// A source view of a comparison; `witness_from_view` transforms the points into it. Two ranges
-/// agree up to `tolerance_errors` expected errors plus `tolerance_share` of the range.
-struct Witness {
+/// A source view of a comparison; `source_from_reference` transforms the points into it. Two ranges
+/// agree up to `tolerance_errors` expected errors plus `relative_tolerance` of the range.
+struct SourceView {
   const DepthView* view;
-  Rigid3 witness_from_view;
+  Rigid3 source_from_reference;
   double tolerance_errors;
-  double tolerance_share;
+  double relative_tolerance;
 };
 
 /// Adds what a source view sees in the direction of each point. The same surface supports the
 /// point, a nearer one hides it, and a farther one, also in the eight pixels around, contradicts
 /// it. Between pixels 1 / range is interpolated linearly, which is nearly exact on planes, where
 /// the four pixels around see one surface. Otherwise the nearest pixel is used.
-void HearWitness(const Witness& witness, TestedRow* points);
+void CompareWithSourceView(const SourceView& source, TestedRow* points);
 
 }  // namespace orb360

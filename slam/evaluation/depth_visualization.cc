@@ -1,4 +1,4 @@
-#include "slam/evaluation/depth_picture.h"
+#include "slam/evaluation/depth_visualization.h"
 
 #include <cmath>
 #include <cstdint>
@@ -19,8 +19,8 @@ cv::Mat DrawDepth(const DenseDepth& depth, double near, double far, int width) {
   cv::Mat shades(size, CV_8UC1);
   for (int row = 0; row < size.height; ++row) {
     for (int column = 0; column < size.width; ++column) {
-      const double share = std::log(far / range.at<float>(row, column)) / std::log(far / near);
-      shades.at<std::uint8_t>(row, column) = cv::saturate_cast<std::uint8_t>(255.0 * share);
+      const double fraction = std::log(far / range.at<float>(row, column)) / std::log(far / near);
+      shades.at<std::uint8_t>(row, column) = cv::saturate_cast<std::uint8_t>(255.0 * fraction);
     }
   }
   cv::Mat colors;
@@ -34,9 +34,9 @@ cv::Mat DrawDepth(const DenseDepth& depth, double near, double far, int width) {
   cv::resize(depth.confidence, confidence, size, 0, 0, cv::INTER_AREA);
   confidence.convertTo(confidence, CV_8U, 2.0 * 255.0, -255.0);
   cv::cvtColor(confidence, panels[2], cv::COLOR_GRAY2BGR);
-  cv::Mat picture;
-  cv::vconcat(panels, picture);
-  return picture;
+  cv::Mat image;
+  cv::vconcat(panels, image);
+  return image;
 }
 
 }  // namespace orb360

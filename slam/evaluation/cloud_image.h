@@ -16,12 +16,12 @@ namespace orb360 {
 /// Draws a cloud from above without perspective: x to the right, y up. Points higher than the
 /// camera was nearby are left out, so that ceilings and trees do not hide the ground; the highest
 /// of the remaining points is shown. Points are added in pieces of any size, in any order.
-class CloudPicture {
+class CloudImage {
  public:
   /// `path` contains the positions of the camera, z up; the image shows them and their
   /// surroundings. `side` is the length of the image's longer side, pixels. Contract: there is at
   /// least one position.
-  CloudPicture(std::span<const Eigen::Vector3d> path, int side);
+  CloudImage(std::span<const Eigen::Vector3d> path, int side);
 
   void Add(std::span<const SurfacePoint> points);
 

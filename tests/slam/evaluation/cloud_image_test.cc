@@ -1,4 +1,4 @@
-#include "slam/evaluation/cloud_picture.h"
+#include "slam/evaluation/cloud_image.h"
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 namespace orb360 {
 namespace {
 
-/// A path of 84 m to the east at a height of 2: the picture is 104 m wide and 20 m high.
+/// A path of 84 m to the east at a height of 2: the image is 104 m wide and 20 m high.
 std::vector<Eigen::Vector3d> Path() {
   std::vector<Eigen::Vector3d> path;
   for (int i = 0; i <= 84; ++i) path.emplace_back(i, 0, 2);
@@ -18,12 +18,12 @@ SurfacePoint At(float x, float y, float z, std::uint8_t grey) {
   return {{x, y, z}, {0, 0, 1}, {grey, grey, grey}, 1.0f};
 }
 
-TEST(CloudPicture, ShowsTheHighestBelowTheCamera) {
-  CloudPicture picture(Path(), 1000);
+TEST(CloudImage, ShowsTheHighestBelowTheCamera) {
+  CloudImage cloud_image(Path(), 1000);
   const std::vector<SurfacePoint> points = {At(40, 5, 0.5f, 200), At(40, 5, 0, 90),
                                             At(40, 5, 2.5f, 30), At(500, 5, 0, 100)};
-  picture.Add(points);
-  const cv::Mat image = picture.Draw();
+  cloud_image.Add(points);
+  const cv::Mat image = cloud_image.Draw();
   EXPECT_EQ(image.cols, 1000);
   std::vector<cv::Point> found;
   for (int row = 0; row < image.rows; ++row) {
@@ -41,9 +41,9 @@ TEST(CloudPicture, ShowsTheHighestBelowTheCamera) {
   EXPECT_NEAR(found[0].y, (84 * 0.12 - 5) * pixels_per_unit, 1.0);
 }
 
-TEST(CloudPicture, SurvivesACameraThatStandsStill) {
+TEST(CloudImage, SurvivesACameraThatStandsStill) {
   const std::vector<Eigen::Vector3d> path(3, Eigen::Vector3d(1, 2, 3));
-  EXPECT_EQ(CloudPicture(path, 200).Draw().size(), cv::Size(200, 200));
+  EXPECT_EQ(CloudImage(path, 200).Draw().size(), cv::Size(200, 200));
 }
 
 }  // namespace

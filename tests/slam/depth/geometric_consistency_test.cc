@@ -1,4 +1,4 @@
-#include "slam/depth/surface_confirmation.h"
+#include "slam/depth/geometric_consistency.h"
 
 #include <random>
 #include <vector>
@@ -23,7 +23,7 @@ std::vector<Rigid3> Cameras() {
 }
 
 std::vector<DepthView> Views(const std::vector<DenseDepth>& depths,
-                             const ConfirmationOptions& options = {}) {
+                             const GeometricConsistencyOptions& options = {}) {
   std::vector<DepthView> views;
   const std::vector<Rigid3> cameras = Cameras();
   for (size_t i = 0; i < depths.size(); ++i) {
@@ -33,14 +33,15 @@ std::vector<DepthView> Views(const std::vector<DenseDepth>& depths,
 }
 
 /// The points of the view in the middle, compared with all others.
-std::vector<ConfirmedPoint> ConfirmMiddle(const std::vector<DepthView>& views,
-                                          const ConfirmationOptions& options = {},
-                                          int num_threads = 1) {
+std::vector<ConsistentPoint> ConsistentPointsOfTheMiddle(
+    const std::vector<DepthView>& views, const GeometricConsistencyOptions& options = {},
+    int num_threads = 1) {
   std::vector<const DepthView*> others;
   for (size_t i = 0; i < views.size(); ++i) {
     if (i != views.size() / 2) others.push_back(&views[i]);
   }
-  return ConfirmSurface(views[views.size() / 2], others, options, {.spacing = 0.02}, num_threads);
+  return FindConsistentPoints(views[views.size() / 2], others, options, {.spacing = 0.02},
+                              num_threads);
 }
 
 std::vector<DenseDepth> RenderAll(double confidence = 0.99) {
@@ -51,41 +52,41 @@ std::vector<DenseDepth> RenderAll(double confidence = 0.99) {
   return depths;
 }
 
-TEST(ConfirmSurface, KeepsTheWallsAndEveryDirectionEqually) {
+TEST(FindConsistentPoints, KeepsTheWallsAndEveryDirectionEqually) {
   const std::vector<DepthView> views = Views(RenderAll());
-  const std::vector<ConfirmedPoint> points = ConfirmMiddle(views);
+  const std::vector<ConsistentPoint> points = ConsistentPointsOfTheMiddle(views);
   // A pixel at the equator stands for (2 pi / 256)^2 sr.
   const double expected = 4.0 * std::numbers::pi / std::pow(kCamera.AngleOfPixels(1.0), 2);
   EXPECT_GT(points.size(), 0.9 * expected);
   EXPECT_LT(points.size(), 1.1 * expected);
   int in_caps = 0;
-  for (const ConfirmedPoint& point : points) {
+  for (const ConsistentPoint& point : points) {
     EXPECT_LT(kRoom.DistanceFromWalls(point.position), 0.04);
     in_caps += std::abs(point.row + 0.5 - 64) > 64 - 128 / 6.0;  // beyond 60 degrees
   }
   EXPECT_NEAR(in_caps / static_cast<double>(points.size()), 1.0 - std::sqrt(0.75), 0.02);
 }
 
-TEST(ConfirmSurface, TakesEveryOtherPixelWherePixelsAreDense) {
+TEST(FindConsistentPoints, TakesEveryOtherPixelWherePixelsAreDense) {
   const std::vector<DepthView> views = Views(RenderAll());
-  const size_t all = ConfirmMiddle(views).size();
+  const size_t all = ConsistentPointsOfTheMiddle(views).size();
   std::vector<const DepthView*> others{&views[0], &views[1], &views[2]};
   // Pixels are 0.037 apart at the nearest wall, 0.1 at the farthest.
-  const size_t fewer = ConfirmSurface(views[3], others, {}, {.spacing = 0.25}).size();
+  const size_t fewer = FindConsistentPoints(views[3], others, {}, {.spacing = 0.25}).size();
   EXPECT_LT(fewer, all / 3);
   EXPECT_GT(fewer, all / 18);
 }
 
-TEST(ConfirmSurface, RefusesWhatMoves) {
+TEST(FindConsistentPoints, RefusesWhatMoves) {
   std::vector<DenseDepth> depths;
   std::vector<Ball> balls;
   for (int i = 0; i < 7; ++i) {
     balls.push_back({{-2.0 + 0.6 * i, -1.2, 0.0}, 0.4});
     depths.push_back(kRoom.Render(kCamera, Cameras()[static_cast<size_t>(i)], balls.back()));
   }
-  const std::vector<ConfirmedPoint> points = ConfirmMiddle(Views(depths));
+  const std::vector<ConsistentPoint> points = ConsistentPointsOfTheMiddle(Views(depths));
   EXPECT_GT(points.size(), 6000u);
-  const auto on_ball = [&](const ConfirmedPoint& point) {
+  const auto on_ball = [&](const ConsistentPoint& point) {
     return std::abs((point.position - balls[3].centre).norm() - balls[3].radius) < 0.1 &&
            kRoom.DistanceFromWalls(point.position) > 0.3;
   };
@@ -96,26 +97,26 @@ TEST(ConfirmSurface, RefusesWhatMoves) {
     depths[static_cast<size_t>(i)] =
         kRoom.Render(kCamera, Cameras()[static_cast<size_t>(i)], balls[3]);
   }
-  EXPECT_GT(std::ranges::count_if(ConfirmMiddle(Views(depths)), on_ball), 50);
+  EXPECT_GT(std::ranges::count_if(ConsistentPointsOfTheMiddle(Views(depths)), on_ball), 50);
 }
 
-TEST(ConfirmSurface, RefusesWhatOneKeyframeInvents) {
+TEST(FindConsistentPoints, RefusesWhatOneKeyframeInvents) {
   std::vector<DenseDepth> depths = RenderAll();
   depths[3].range(cv::Rect(100, 50, 20, 20)) *= 0.7;
   depths[3].range(cv::Rect(0, 80, 20, 20)) *= 1.4;
-  for (const ConfirmedPoint& point : ConfirmMiddle(Views(depths))) {
+  for (const ConsistentPoint& point : ConsistentPointsOfTheMiddle(Views(depths))) {
     EXPECT_LT(kRoom.DistanceFromWalls(point.position), 0.15);
   }
 }
 
-TEST(ConfirmSurface, RefusesWhatTooFewSee) {
+TEST(FindConsistentPoints, RefusesWhatTooFewSee) {
   const std::vector<DenseDepth> depths = RenderAll();
-  ConfirmationOptions options;
+  GeometricConsistencyOptions options;
   options.min_support = 7;
-  EXPECT_TRUE(ConfirmMiddle(Views(depths), options).empty());
+  EXPECT_TRUE(ConsistentPointsOfTheMiddle(Views(depths), options).empty());
 }
 
-TEST(ConfirmSurface, TheMeanOfAllIsMoreAccurateThanOne) {
+TEST(FindConsistentPoints, TheMeanOfAllIsMoreAccurateThanOne) {
   // 4 % of noise that is the same over 8 x 8 pixels, and a confidence that says so.
   std::vector<DenseDepth> depths = RenderAll(1.0 / 1.032);
   std::mt19937 random(7);
@@ -130,11 +131,11 @@ TEST(ConfirmSurface, TheMeanOfAllIsMoreAccurateThanOne) {
     }
   }
   const std::vector<DepthView> views = Views(depths);
-  ConfirmationOptions options;
+  GeometricConsistencyOptions options;
   options.redundant_ratio = 1e9;
   double squared = 0;
-  const std::vector<ConfirmedPoint> points = ConfirmMiddle(views, options);
-  for (const ConfirmedPoint& point : points) {
+  const std::vector<ConsistentPoint> points = ConsistentPointsOfTheMiddle(views, options);
+  for (const ConsistentPoint& point : points) {
     squared += std::pow(kRoom.DistanceFromWalls(point.position), 2);
     const double own = views[3].range(point.row, point.column);
     squared_alone += std::pow(
@@ -147,28 +148,28 @@ TEST(ConfirmSurface, TheMeanOfAllIsMoreAccurateThanOne) {
   EXPECT_LT(std::sqrt(squared / alone), 0.7 * std::sqrt(squared_alone / alone));
 }
 
-TEST(ConfirmSurface, LeavesPointsToKeyframesThatSeeThemBetter) {
+TEST(FindConsistentPoints, LeavesPointsToKeyframesThatSeeThemBetter) {
   std::vector<DenseDepth> depths = RenderAll();
   depths[3].confidence.setTo(0.9f);  // An error of 11 % where the others have 1 %.
-  const size_t left = ConfirmMiddle(Views(depths)).size();
-  ConfirmationOptions options;
+  const size_t left = ConsistentPointsOfTheMiddle(Views(depths)).size();
+  GeometricConsistencyOptions options;
   options.redundant_ratio = 1e9;
-  const size_t all = ConfirmMiddle(Views(depths), options).size();
+  const size_t all = ConsistentPointsOfTheMiddle(Views(depths), options).size();
   EXPECT_GT(all, 1000u);
   EXPECT_LT(left, all / 50);
 }
 
-TEST(ConfirmSurface, RangesOfNextToNothingEndAsWell) {
+TEST(FindConsistentPoints, RangesOfNextToNothingEndAsWell) {
   std::vector<DenseDepth> depths = RenderAll();
   depths[3].range.at<float>(0, 0) = 1e-12f;
   depths[3].range.at<float>(64, 7) = 1e-30f;
-  EXPECT_GT(ConfirmMiddle(Views(depths)).size(), 7000u);
+  EXPECT_GT(ConsistentPointsOfTheMiddle(Views(depths)).size(), 7000u);
 }
 
-TEST(ConfirmSurface, IsTheSameForAnyNumberOfThreads) {
+TEST(FindConsistentPoints, IsTheSameForAnyNumberOfThreads) {
   const std::vector<DepthView> views = Views(RenderAll());
-  const std::vector<ConfirmedPoint> one = ConfirmMiddle(views);
-  const std::vector<ConfirmedPoint> three = ConfirmMiddle(views, {}, 3);
+  const std::vector<ConsistentPoint> one = ConsistentPointsOfTheMiddle(views);
+  const std::vector<ConsistentPoint> three = ConsistentPointsOfTheMiddle(views, {}, 3);
   ASSERT_EQ(one.size(), three.size());
   for (size_t i = 0; i < one.size(); ++i) {
     ASSERT_EQ(one[i].position, three[i].position);

@@ -1,4 +1,4 @@
-#include "slam/io/range_store.h"
+#include "slam/io/depth_map_store.h"
 
 #include <cmath>
 #include <cstdint>
@@ -21,10 +21,10 @@ DenseDepth Example(int width, int height) {
   DenseDepth depth{cv::Mat(size, CV_32F), cv::Mat(size, CV_32F), cv::Mat(size, CV_8UC3)};
   for (int row = 0; row < height; ++row) {
     for (int column = 0; column < width; ++column) {
-      const double share = (row * width + column) / static_cast<double>(width * height);
+      const double fraction = (row * width + column) / static_cast<double>(width * height);
       // All scales that maps could have.
-      depth.range.at<float>(row, column) = static_cast<float>(std::exp(60.0 * share - 30.0));
-      depth.confidence.at<float>(row, column) = static_cast<float>(1.0 - share);
+      depth.range.at<float>(row, column) = static_cast<float>(std::exp(60.0 * fraction - 30.0));
+      depth.confidence.at<float>(row, column) = static_cast<float>(1.0 - fraction);
       depth.color.at<cv::Vec3b>(row, column) =
           cv::Vec3b(static_cast<uchar>(column), static_cast<uchar>(row), 100);
     }
@@ -32,9 +32,9 @@ DenseDepth Example(int width, int height) {
   return depth;
 }
 
-TEST(RangeStore, GivesBackWithinTheErrorsItPromises) {
+TEST(DepthMapStore, GivesBackWithinTheErrorsItPromises) {
   const TempFolder folder;
-  const RangeStore store(folder / "store");
+  const DepthMapStore store(folder / "store");
   const DenseDepth depth = Example(128, 64);
   store.Put(7, depth);
   const DenseDepth read = store.Get(7);
@@ -51,9 +51,9 @@ TEST(RangeStore, GivesBackWithinTheErrorsItPromises) {
   EXPECT_LT(cv::norm(read.color, depth.color, cv::NORM_INF), 20);
 }
 
-TEST(RangeStore, WhatIsNoRangeIsNone) {
+TEST(DepthMapStore, WhatIsNoRangeIsNone) {
   const TempFolder folder;
-  const RangeStore store(folder / "store");
+  const DepthMapStore store(folder / "store");
   DenseDepth depth = Example(16, 8);
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -73,9 +73,9 @@ TEST(RangeStore, WhatIsNoRangeIsNone) {
   EXPECT_EQ(cv::countNonZero(read.range), 16 * 8 - 8);
 }
 
-TEST(RangeStore, ReplacesAndTellsWhatItHas) {
+TEST(DepthMapStore, ReplacesAndTellsWhatItHas) {
   const TempFolder folder;
-  const RangeStore store(folder / "store");
+  const DepthMapStore store(folder / "store");
   EXPECT_FALSE(store.Contains(3));
   store.Put(3, Example(16, 8));
   store.Put(3, Example(32, 16));
@@ -83,26 +83,26 @@ TEST(RangeStore, ReplacesAndTellsWhatItHas) {
   EXPECT_EQ(store.Get(3).range.cols, 32);
 }
 
-TEST(RangeStore, LeavesNothingBehindAndTakesNothingOver) {
+TEST(DepthMapStore, LeavesNothingBehindAndTakesNothingOver) {
   const TempFolder folder;
   std::filesystem::create_directories(folder / "store");
   WriteText(folder / "store/5", "of a run that was killed");
   {
-    const RangeStore store(folder / "store");
+    const DepthMapStore store(folder / "store");
     EXPECT_FALSE(store.Contains(5));
     store.Put(1, Example(16, 8));
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "store"));
 }
 
-TEST(RangeStore, SaysWhatIsDamaged) {
+TEST(DepthMapStore, SaysWhatIsDamaged) {
   const TempFolder folder;
-  const RangeStore store(folder / "store");
+  const DepthMapStore store(folder / "store");
   store.Put(1, Example(64, 32));
   const std::string whole = ReadText(folder / "store/1");
-  for (const double share : {0.0, 0.001, 0.3, 0.99}) {
+  for (const double fraction : {0.0, 0.001, 0.3, 0.99}) {
     WriteText(folder / "store/1",
-              whole.substr(0, static_cast<size_t>(share * static_cast<double>(whole.size()))));
+              whole.substr(0, static_cast<size_t>(fraction * static_cast<double>(whole.size()))));
     EXPECT_THAT(MessageOf<UserError>([&] { store.Get(1); }), testing::HasSubstr("damaged"));
   }
   std::uint32_t packed = 0;  // bytes of ranges and confidences, behind a header of 16
@@ -125,13 +125,13 @@ TEST(RangeStore, SaysWhatIsDamaged) {
   EXPECT_GT(noticed, (packed - 6) * 9 / 10);
   EXPECT_THAT(MessageOf<UserError>([&] { store.Get(2); }), testing::HasSubstr("gone"));
   WriteText(folder / "file", "");
-  EXPECT_THAT(MessageOf<UserError>([&] { RangeStore(folder / "file/store"); }),
+  EXPECT_THAT(MessageOf<UserError>([&] { DepthMapStore(folder / "file/store"); }),
               testing::HasSubstr("cannot be written"));
 }
 
-TEST(RangeStore, RefusesImagesThatDoNotBelongTogether) {
+TEST(DepthMapStore, RefusesImagesThatDoNotBelongTogether) {
   const TempFolder folder;
-  const RangeStore store(folder / "store");
+  const DepthMapStore store(folder / "store");
   DenseDepth depth = Example(16, 8);
   depth.color = depth.color.rowRange(0, 4);
   EXPECT_THROW(store.Put(0, depth), ContractError);

@@ -9,18 +9,18 @@
 
 namespace orb360 {
 
-struct ConfirmationOptions {
+struct GeometricConsistencyOptions {
   /// Number of source views that must see the point where it is.
   int min_support = 2;
   /// A point is rejected if more than this fraction of the source views with a verdict contradict
   /// it.
-  double max_conflict_share = 0.34;
-  /// Two ranges agree if they differ by at most this many expected errors plus tolerance_share of
-  /// the range.
+  double max_conflict_fraction = 0.34;
+  /// Two ranges agree if they differ by at most this many expected errors plus relative_tolerance
+  /// of the range.
   double tolerance_errors = 2.5;
   /// Additional tolerance as a fraction of the range, for the errors of poses and sampling and for
   /// errors that the confidence does not state.
-  double tolerance_share = 0.01;
+  double relative_tolerance = 0.01;
   /// Least expected error of ln(range), however confident the network is.
   double min_error = 0.01;
   /// A point is left to another keyframe that sees it and has a variance smaller by this factor.
@@ -31,7 +31,7 @@ struct ConfirmationOptions {
 };
 
 /// A point of a keyframe that is geometrically consistent with others.
-struct ConfirmedPoint {
+struct ConsistentPoint {
   Eigen::Vector3d position;  // world
   Eigen::Vector3f normal;    // world, unit, towards the camera
   float error;               // along the normal, to be expected, world units
@@ -58,9 +58,10 @@ struct SamplingOptions {
 /// agree, the point moves along its normal to the mean of all, weighted by certainty.
 ///
 /// The points are ordered by row, then column, and are the same for any number of OpenMP threads.
-std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
-                                           std::span<const DepthView* const> others,
-                                           const ConfirmationOptions& options,
-                                           const SamplingOptions& sampling, int num_threads = 1);
+std::vector<ConsistentPoint> FindConsistentPoints(const DepthView& view,
+                                                  std::span<const DepthView* const> others,
+                                                  const GeometricConsistencyOptions& options,
+                                                  const SamplingOptions& sampling,
+                                                  int num_threads = 1);
 
 }  // namespace orb360

@@ -1,4 +1,4 @@
-#include "slam/evaluation/cloud_picture.h"
+#include "slam/evaluation/cloud_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,7 +63,7 @@ double RoundLength(double length) {
 
 }  // namespace
 
-CloudPicture::CloudPicture(std::span<const Eigen::Vector3d> path, int side)
+CloudImage::CloudImage(std::span<const Eigen::Vector3d> path, int side)
     : path_(path.begin(), path.end()) {
   ORB360_CHECK(!path_.empty() && side > 0, path_.size(), side);
   for (const Eigen::Vector3d& position : path_) box_.extend(position.head<2>());
@@ -76,12 +76,12 @@ CloudPicture::CloudPicture(std::span<const Eigen::Vector3d> path, int side)
                  {-std::numeric_limits<float>::infinity(), cv::Vec3b()});
 }
 
-Eigen::Vector2d CloudPicture::ToPixel(const Eigen::Vector2d& position) const {
+Eigen::Vector2d CloudImage::ToPixel(const Eigen::Vector2d& position) const {
   return {(position.x() - box_.min().x()) * pixels_per_unit_,
           (box_.max().y() - position.y()) * pixels_per_unit_};
 }
 
-double CloudPicture::CameraHeight(const Eigen::Vector2f& position) {
+double CloudImage::CameraHeight(const Eigen::Vector2f& position) {
   const double cell_size = kHeightCell * box_.sizes().maxCoeff();
   const std::pair cell(static_cast<int>(std::floor(position.x() / cell_size)),
                        static_cast<int>(std::floor(position.y() / cell_size)));
@@ -95,7 +95,7 @@ double CloudPicture::CameraHeight(const Eigen::Vector2f& position) {
   return found->second;
 }
 
-void CloudPicture::Add(std::span<const SurfacePoint> points) {
+void CloudImage::Add(std::span<const SurfacePoint> points) {
   for (const SurfacePoint& point : points) {
     const Eigen::Vector2d at = ToPixel(point.position.head<2>().cast<double>());
     if (!(at.x() >= 0 && at.x() < size_.width && at.y() >= 0 && at.y() < size_.height)) continue;
@@ -108,7 +108,7 @@ void CloudPicture::Add(std::span<const SurfacePoint> points) {
   }
 }
 
-cv::Mat CloudPicture::Draw() const {
+cv::Mat CloudImage::Draw() const {
   cv::Mat image(size_, CV_8UC3, kGround);
   cv::Mat is_known(size_, CV_8UC1, cv::Scalar(0));
   for (int row = 0; row < size_.height; ++row) {

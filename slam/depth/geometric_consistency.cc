@@ -1,13 +1,13 @@
-#include "slam/depth/surface_confirmation.h"
+#include "slam/depth/geometric_consistency.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "nn/base/check.h"
+#include "slam/depth/source_view.h"
 #include "slam/depth/surface_normals.h"
 #include "slam/depth/tested_row.h"
-#include "slam/depth/witness.h"
 
 namespace orb360 {
 namespace {
@@ -52,16 +52,17 @@ void Weigh(const DepthView& view, float max_own_error, TestedRow* points) {
 
 }  // namespace
 
-std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
-                                           std::span<const DepthView* const> others,
-                                           const ConfirmationOptions& options,
-                                           const SamplingOptions& sampling, int num_threads) {
+std::vector<ConsistentPoint> FindConsistentPoints(const DepthView& view,
+                                                  std::span<const DepthView* const> others,
+                                                  const GeometricConsistencyOptions& options,
+                                                  const SamplingOptions& sampling,
+                                                  int num_threads) {
   ORB360_CHECK(sampling.spacing > 0, sampling.spacing);
   const Rigid3& world_from_view = view.world_from_camera();
-  std::vector<Witness> witnesses;
+  std::vector<SourceView> sources;
   for (const DepthView* other : others) {
-    witnesses.push_back({other, other->world_from_camera().Inverse() * world_from_view,
-                         options.tolerance_errors, options.tolerance_share});
+    sources.push_back({other, other->world_from_camera().Inverse() * world_from_view,
+                       options.tolerance_errors, options.relative_tolerance});
   }
   // A point keeps at least this fraction of its own error. A single source view may be more certain
   // by the first factor (in variance), and all views together may be more certain than the best one
@@ -71,13 +72,13 @@ std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
       static_cast<float>(1 / std::sqrt(redundant_ratio * std::max(options.max_independent, 1.0)));
   const float max_own_error = static_cast<float>(sampling.max_error) / least_gain;
 
-  const auto confirm = [&](const TestedRow& points, std::vector<ConfirmedPoint>* confirmed) {
+  const auto collect = [&](const TestedRow& points, std::vector<ConsistentPoint>* consistent) {
     for (size_t i = 0; i < points.size; ++i) {
       if (points.variance[i] == 0) continue;
       const float support = points.support[i];
       const float conflict = points.conflict[i];
       if (support < static_cast<float>(options.min_support)) continue;
-      if (conflict > options.max_conflict_share * (support + conflict)) continue;
+      if (conflict > options.max_conflict_fraction * (support + conflict)) continue;
       if (points.best[i] * points.variance[i] > redundant_ratio) continue;
       const float information = std::min(
           points.information[i], static_cast<float>(options.max_independent) * points.best[i]);
@@ -88,13 +89,13 @@ std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
                                     points.bearing[2][i]);
       const Eigen::Vector3f point =
           points.range[i] * bearing + points.shift[i] / points.information[i] * normal;
-      confirmed->push_back({world_from_view * point.cast<double>(),
-                            (world_from_view.rotation * normal.cast<double>()).cast<float>(), error,
-                            points.row, points.column[i]});
+      consistent->push_back({world_from_view * point.cast<double>(),
+                             (world_from_view.rotation * normal.cast<double>()).cast<float>(),
+                             error, points.row, points.column[i]});
     }
   };
 
-  std::vector<std::vector<ConfirmedPoint>> rows(static_cast<size_t>(view.height()));
+  std::vector<std::vector<ConsistentPoint>> rows(static_cast<size_t>(view.height()));
 #pragma omp parallel num_threads(num_threads)
   {
     TestedRow points;
@@ -104,12 +105,12 @@ std::vector<ConfirmedPoint> ConfirmSurface(const DepthView& view,
       if (points.size == 0) continue;
       FitNormals(view, &points);
       Weigh(view, max_own_error, &points);
-      for (const Witness& witness : witnesses) HearWitness(witness, &points);
-      confirm(points, &rows[static_cast<size_t>(row)]);
+      for (const SourceView& source : sources) CompareWithSourceView(source, &points);
+      collect(points, &rows[static_cast<size_t>(row)]);
     }
   }
-  std::vector<ConfirmedPoint> points;
-  for (const std::vector<ConfirmedPoint>& row : rows) {
+  std::vector<ConsistentPoint> points;
+  for (const std::vector<ConsistentPoint>& row : rows) {
     points.insert(points.end(), row.begin(), row.end());
   }
   return points;

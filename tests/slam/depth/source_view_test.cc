@@ -1,4 +1,4 @@
-#include "slam/depth/witness.h"
+#include "slam/depth/source_view.h"
 
 #include <algorithm>
 #include <numbers>
@@ -52,9 +52,9 @@ std::vector<Eigen::Vector3d> RandomBearings(int count) {
 DepthView ViewOf(const DenseDepth& depth) { return {depth, kPose, 1.0, 0.01}; }
 
 /// The same camera once more.
-Witness Itself(const DepthView& view) { return {&view, {}, 2.5, 0.01}; }
+SourceView Itself(const DepthView& view) { return {&view, {}, 2.5, 0.01}; }
 
-TEST(HearWitness, RangesBetweenPixelsAreThoseOfThePlaneSeamAndPolesIncluded) {
+TEST(CompareWithSourceView, RangesBetweenPixelsAreThoseOfThePlaneSeamAndPolesIncluded) {
   const DepthView view = ViewOf(kRoom.Render(kCamera, kPose));
   std::vector<Eigen::Vector3d> bearings = RandomBearings(5000);
   const size_t num_random = bearings.size();
@@ -67,7 +67,7 @@ TEST(HearWitness, RangesBetweenPixelsAreThoseOfThePlaneSeamAndPolesIncluded) {
   }
   ForEachDispatchTarget([&] {
     TestedRow points = PointsAt(bearings);
-    HearWitness(Itself(view), &points);
+    CompareWithSourceView(Itself(view), &points);
     int near_edges = 0;
     for (size_t i = 0; i < points.size; ++i) {
       ASSERT_EQ(points.conflict[i], 0) << bearings[i].transpose();
@@ -84,12 +84,12 @@ TEST(HearWitness, RangesBetweenPixelsAreThoseOfThePlaneSeamAndPolesIncluded) {
   });
 }
 
-TEST(HearWitness, KnowsHowFarTheSurfaceIsAlongTheNormalAndHowSureItIs) {
+TEST(CompareWithSourceView, KnowsHowFarTheSurfaceIsAlongTheNormalAndHowSureItIs) {
   const DepthView view = ViewOf(kRoom.Render(kCamera, kPose, std::nullopt, 1.0 / 1.04));
   const std::vector<Eigen::Vector3d> bearings = RandomBearings(1000);
   ForEachDispatchTarget([&] {
     TestedRow points = PointsAt(bearings, 1.02);
-    HearWitness(Itself(view), &points);
+    CompareWithSourceView(Itself(view), &points);
     int wrong = 0;
     for (size_t i = 0; i < points.size; ++i) {
       const Eigen::Vector3d normal(points.normal[0][i], points.normal[1][i], points.normal[2][i]);
@@ -110,14 +110,14 @@ TEST(HearWitness, KnowsHowFarTheSurfaceIsAlongTheNormalAndHowSureItIs) {
   });
 }
 
-TEST(HearWitness, LooksThroughWhatIsNearerButHidesWhatIsBehind) {
+TEST(CompareWithSourceView, LooksThroughWhatIsNearerButHidesWhatIsBehind) {
   const DepthView view = ViewOf(kRoom.Render(kCamera, kPose));
   const std::vector<Eigen::Vector3d> bearings = RandomBearings(1000);
   ForEachDispatchTarget([&] {
     TestedRow nearer = PointsAt(bearings, 0.7);
-    HearWitness(Itself(view), &nearer);
+    CompareWithSourceView(Itself(view), &nearer);
     TestedRow behind = PointsAt(bearings, 1.4);
-    HearWitness(Itself(view), &behind);
+    CompareWithSourceView(Itself(view), &behind);
     for (size_t i = 0; i < bearings.size(); ++i) {
       EXPECT_EQ(nearer.conflict[i], 1);
       EXPECT_EQ(nearer.support[i] + nearer.information[i] + nearer.shift[i], 0);
@@ -126,21 +126,21 @@ TEST(HearWitness, LooksThroughWhatIsNearerButHidesWhatIsBehind) {
   });
 }
 
-TEST(HearWitness, DoesNotTakeASurfaceTurnedAwayFromItForTheOneThatItSees) {
+TEST(CompareWithSourceView, DoesNotTakeASurfaceTurnedAwayFromItForTheOneThatItSees) {
   const DepthView view = ViewOf(kRoom.Render(kCamera, kPose));
   ForEachDispatchTarget([&] {
     TestedRow points = PointsAt(RandomBearings(100));
     for (TestedRow::Array& axis : points.normal) {
       for (float& value : axis) value = -value;
     }
-    HearWitness(Itself(view), &points);
+    CompareWithSourceView(Itself(view), &points);
     int supported = 0;
     for (size_t i = 0; i < points.size; ++i) supported += points.support[i] > 0;
     EXPECT_LT(supported, 30);  // those seen at a grazing angle
   });
 }
 
-TEST(HearWitness, SaysNothingBesideEdgesOfWhatIsNearAndWhereNothingIsKnown) {
+TEST(CompareWithSourceView, SaysNothingBesideEdgesOfWhatIsNearAndWhereNothingIsKnown) {
   DenseDepth depth = kRoom.Render(kCamera, kPose);
   depth.range.at<float>(60, 0) = 0.3f;  // one pixel of something near, at the seam
   depth.range.at<float>(30, 100) = 0;   // one that is unknown
@@ -152,20 +152,20 @@ TEST(HearWitness, SaysNothingBesideEdgesOfWhatIsNearAndWhereNothingIsKnown) {
                                               bearing(30, 100), bearing(31, 99), bearing(60, 3)};
   ForEachDispatchTarget([&] {
     TestedRow points = PointsAt(bearings, 0.7);
-    HearWitness(Itself(view), &points);
+    CompareWithSourceView(Itself(view), &points);
     for (size_t i = 0; i < 5; ++i) EXPECT_EQ(points.conflict[i], 0) << i;
     EXPECT_EQ(points.conflict[5], 1);
   });
 }
 
-TEST(HearWitness, PosesBringThePointsToTheWitness) {
+TEST(CompareWithSourceView, PosesBringThePointsToTheSourceView) {
   const Rigid3 other = TurnedCamera({-0.8, 0.7, -0.3}, -1.1);
   const DepthView view(kRoom.Render(kCamera, other), other, 1.0, 0.01);
   ForEachDispatchTarget([&] {
     TestedRow points = PointsAt(RandomBearings(1000));
-    const Witness witness{&view, other.Inverse() * kPose, 2.5, 0.01};
-    HearWitness(witness, &points);
-    HearWitness(witness, &points);  // What they say adds up.
+    const SourceView source{&view, other.Inverse() * kPose, 2.5, 0.01};
+    CompareWithSourceView(source, &points);
+    CompareWithSourceView(source, &points);  // What they say adds up.
     const auto all = static_cast<std::ptrdiff_t>(points.size);
     EXPECT_GT(std::count(points.support.begin(), points.support.begin() + all, 2.0f), 900);
     EXPECT_EQ(std::count(points.conflict.begin(), points.conflict.begin() + all, 2.0f), 0);

@@ -17,15 +17,15 @@ namespace orb360 {
 ///
 /// The store has no state besides the files, so different frames may be stored and read on
 /// different threads at once.
-class RangeStore {
+class DepthMapStore {
  public:
   /// Creates the folder and removes what a killed run left in it. Throws UserError, as Put does, if
   /// it cannot be written.
-  explicit RangeStore(std::filesystem::path folder);
+  explicit DepthMapStore(std::filesystem::path folder);
   /// Removes the folder.
-  ~RangeStore();
-  RangeStore(const RangeStore&) = delete;
-  RangeStore& operator=(const RangeStore&) = delete;
+  ~DepthMapStore();
+  DepthMapStore(const DepthMapStore&) = delete;
+  DepthMapStore& operator=(const DepthMapStore&) = delete;
 
   /// Stores or replaces a depth map. Contract: the images have the types of DenseDepth, one common
   /// size, and at least one pixel.
