@@ -8,7 +8,7 @@
 #include "slam/depth/dense_cloud.h"
 #include "slam/io/dense_cloud_file.h"
 #include "slam/io/depth_map_store.h"
-#include "slam/pipeline/dense_fusion.h"
+#include "slam/pipeline/dense_views.h"
 
 namespace orb360 {
 

@@ -7,6 +7,7 @@
 
 #include "apps/orb360/dense_output.h"
 #include "slam/io/trajectory.h"
+#include "slam/io/trajectory_journal.h"
 #include "slam/pipeline/reconstruction.h"
 
 namespace orb360 {

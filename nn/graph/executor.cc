@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cstring>
 #include <new>
+#include <utility>
 
 #include "nn/base/check.h"
+#include "nn/graph/buffer_assignment.h"
 #include "nn/graph/cpu_backend.h"
 #include "nn/graph/fusion.h"
 #include "nn/graph/limits.h"
+#include "nn/graph/lowering.h"
 #include "nn/kernels/copy_channels.h"
 
 namespace orb360::nn {
@@ -43,8 +46,13 @@ TensorView DenseView(const float* data, const Shape& shape) {
 
 }  // namespace
 
+struct Executor::Plan {
+  Lowered lowered;
+  BufferAssignment assignment;
+};
+
 Executor::Workspace::Workspace(const Executor& executor) {
-  const BufferAssignment& assignment = executor.assignment_;
+  const BufferAssignment& assignment = executor.plan_->assignment;
   try {
     memory_.resize(assignment.bytes);
   } catch (const std::bad_alloc&) {
@@ -52,7 +60,7 @@ Executor::Workspace::Workspace(const Executor& executor) {
                     " MiB of memory for an image of this size, and there is less; use a smaller "
                     "image");
   }
-  const Lowered& lowered = executor.lowered_;
+  const Lowered& lowered = executor.plan_->lowered;
   for (std::size_t i = 0; i < lowered.values.size(); ++i) {
     views_.push_back(
         ViewOf(assignment.buffers[i], lowered.values[i].format.shape.channels, memory_.data()));
@@ -76,9 +84,11 @@ Executor::Executor(const Graph& graph, int height, int width, const ExecutorOpti
   threads_ = options.threads;
   CheckImageSize(graph, height, width);
   const CpuBackend backend(options.threads, options.precision);
-  lowered_ = Lower(graph, options.keeps_tensors ? KeepNodes(graph) : FuseNodes(graph), backend,
-                   height, width);
-  assignment_ = AssignBuffers(lowered_, options.keeps_tensors);
+  Plan plan;
+  plan.lowered = Lower(graph, options.keeps_tensors ? KeepNodes(graph) : FuseNodes(graph), backend,
+                       height, width);
+  plan.assignment = AssignBuffers(plan.lowered, options.keeps_tensors);
+  plan_ = std::make_shared<const Plan>(std::move(plan));
   const auto shape = [&](int tensor) {
     return ShapeFor(graph.tensors[Index(tensor)], height, width);
   };
@@ -96,21 +106,22 @@ void Executor::Run(std::span<const std::span<const float>> inputs,
                    std::span<const std::span<float>> outputs, Workspace* workspace) const {
   ORB360_CHECK(inputs.size() == inputs_.size(), inputs.size(), inputs_.size());
   ORB360_CHECK(outputs.size() == outputs_.size(), outputs.size(), outputs_.size());
-  ORB360_CHECK(workspace->bound_.size() == lowered_.instructions.size());
+  const Lowered& lowered = plan_->lowered;
+  ORB360_CHECK(workspace->bound_.size() == lowered.instructions.size());
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const Shape& shape = inputs_[i].shape;
     ORB360_CHECK(inputs[i].size() == SizeOf(shape), inputs_[i].name, inputs[i].size());
-    CopyChannels(DenseView(inputs[i].data(), shape), 0,
-                 workspace->views_[Index(lowered_.inputs[i])], 0, shape.channels, threads_);
+    CopyChannels(DenseView(inputs[i].data(), shape), 0, workspace->views_[Index(lowered.inputs[i])],
+                 0, shape.channels, threads_);
   }
-  for (std::size_t i = 0; i < lowered_.instructions.size(); ++i) {
+  for (std::size_t i = 0; i < lowered.instructions.size(); ++i) {
     const auto& [in, out, scratch] = workspace->bound_[i];
-    lowered_.instructions[i].step.run(in, out, scratch);
+    lowered.instructions[i].step.run(in, out, scratch);
   }
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const Shape& shape = outputs_[i].shape;
     ORB360_CHECK(outputs[i].size() == SizeOf(shape), outputs_[i].name, outputs[i].size());
-    CopyChannels(workspace->views_[Index(lowered_.outputs[i])], 0,
+    CopyChannels(workspace->views_[Index(lowered.outputs[i])], 0,
                  DenseView(outputs[i].data(), shape), 0, shape.channels, threads_);
   }
 }
@@ -119,7 +130,11 @@ TensorView Executor::Find(const Workspace& workspace, std::string_view tensor) c
   const auto found = std::ranges::find(tensors_, tensor);
   ORB360_CHECK(found != tensors_.end(), tensor);
   const auto index = static_cast<std::size_t>(found - tensors_.begin());
-  return workspace.views_[Index(lowered_.value_of_tensor[index])];
+  return workspace.views_[Index(plan_->lowered.value_of_tensor[index])];
 }
+
+std::size_t Executor::planned_bytes() const { return plan_->assignment.bytes; }
+
+std::size_t Executor::naive_bytes() const { return plan_->assignment.separate_bytes; }
 
 }  // namespace orb360::nn

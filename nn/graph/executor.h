@@ -8,9 +8,7 @@
 #include <vector>
 
 #include "nn/base/aligned_vector.h"
-#include "nn/graph/buffer_assignment.h"
 #include "nn/graph/graph.h"
-#include "nn/graph/lowering.h"
 
 namespace orb360::nn {
 
@@ -68,13 +66,14 @@ class Executor {
   TensorView Find(const Workspace& workspace, std::string_view tensor) const;
 
   /// Bytes of a workspace, and the bytes it would have if every tensor had memory of its own.
-  std::size_t planned_bytes() const { return assignment_.bytes; }
-  std::size_t naive_bytes() const { return assignment_.separate_bytes; }
+  std::size_t planned_bytes() const;
+  std::size_t naive_bytes() const;
 
  private:
+  struct Plan;  // the instructions and the places of their tensors in memory
+
   int threads_;
-  Lowered lowered_;
-  BufferAssignment assignment_;
+  std::shared_ptr<const Plan> plan_;
   std::vector<Port> inputs_;
   std::vector<Port> outputs_;
   std::vector<std::string> tensors_;  // names of the graph's; only with keeps_tensors

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "nn/base/check.h"
+#include "nn/models/resample.h"
 
 namespace orb360::nn {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "nn/graph/executor.h"
 #include "nn/graph/graph.h"
-#include "nn/models/resample.h"
+#include "nn/models/image_size.h"
 
 namespace orb360::nn {
 

@@ -3,14 +3,9 @@
 #include <span>
 #include <vector>
 
-namespace orb360::nn {
+#include "nn/models/image_size.h"
 
-/// Rows and columns of an image of the whole sphere, row by row in memory.
-struct ImageSize {
-  int height = 0;
-  int width = 0;
-  friend bool operator==(const ImageSize&, const ImageSize&) = default;
-};
+namespace orb360::nn {
 
 /// Samples `from` at the pixel centres of `to`, linearly in both directions. Columns continue at
 /// the other side, rows repeat at the poles.

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "slam/depth/dense_cloud_summary.h"
 #include "slam/depth/dense_depth.h"
 #include "slam/depth/geometric_consistency.h"
 #include "slam/depth/voxel_grid.h"
@@ -42,12 +43,6 @@ struct DenseView {
   /// Indices of the views that see the same landmarks, so that their poses fit this one's. Only
   /// those are compared.
   std::vector<size_t> neighbours;
-};
-
-struct DenseCloudStatistics {
-  int views = 0;
-  std::int64_t consistent = 0;  // points, before they met in voxels
-  double voxel_size = 0;        // world units
 };
 
 /// Returns the depth of a frame, possibly several times for the same frame. The images must not

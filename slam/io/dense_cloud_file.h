@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -10,11 +9,6 @@
 #include "slam/io/depth_map_store.h"
 
 namespace orb360 {
-
-struct DenseCloudSummary {
-  DenseCloudStatistics fusion;
-  std::uint64_t points = 0;
-};
 
 /// Fuses the stored depth of `views` (FuseCloud) and writes the cloud (SurfacePlyWriter) in the
 /// world of their poses. The options bound the memory for any number of views; the remaining voxels

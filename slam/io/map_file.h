@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "slam/geometry/rigid3.h"
+#include "slam/map/ground.h"
 #include "slam/map/map.h"
-#include "slam/optimization/local_bundle_adjustment.h"
 
 namespace orb360 {
 

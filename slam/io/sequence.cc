@@ -1,12 +1,15 @@
 #include "slam/io/sequence.h"
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
+#include <thread>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
 
 #include "nn/base/check.h"
+#include "slam/io/bounded_queue.h"
 #include "slam/io/dataset.h"
 #include "slam/io/folder_source.h"
 #include "slam/io/full_sphere.h"
@@ -53,29 +56,44 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& input) {
 
 }  // namespace
 
-Sequence::Sequence(std::unique_ptr<FrameSource> source, const SequenceOptions& options)
-    : source_(std::move(source)),
-      options_(options),
-      name_(source_->info().name),
-      camera_height_(source_->info().camera_height),
-      queue_(kFramesAhead) {
-  ORB360_CHECK(
-      options.fps >= 0.0 && options.stride >= 1 && options.start >= 0 && options.max_frames >= 0,
-      options.fps, options.stride, options.start, options.max_frames, options.resize);
-  const SourceInfo& info = source_->info();
-  RequireFullSphere(name_, info.image_size);
-  image_size_ = options.resize.empty() ? info.image_size : options.resize;
-  frame_rate_ = options.fps > 0.0 ? options.fps : info.frame_rate;
-  if (info.frame_count) frame_count_ = SelectedCount(*info.frame_count, options);
-  decoder_ = std::thread([this] { DecodeAhead(); });
-}
+class Sequence::Decoder {
+ public:
+  /// One item that the decoding thread hands over.
+  struct Step {
+    std::optional<Frame> frame;
+    std::vector<std::string> warnings;
+    std::exception_ptr error;
+  };
 
-Sequence::~Sequence() {
-  queue_.Close();
-  decoder_.join();
-}
+  /// `image_size`: of the frames that it gives.
+  Decoder(std::unique_ptr<FrameSource> source, const SequenceOptions& options, cv::Size image_size)
+      : source_(std::move(source)),
+        options_(options),
+        image_size_(image_size),
+        queue_(kFramesAhead),
+        thread_([this] { DecodeAhead(); }) {}
+  ~Decoder() {
+    queue_.Close();
+    thread_.join();
+  }
+  Decoder(const Decoder&) = delete;
+  Decoder& operator=(const Decoder&) = delete;
 
-void Sequence::DecodeAhead() {
+  /// Waits for the next item; nullopt at the end.
+  std::optional<Step> Next() { return queue_.Pop(); }
+
+ private:
+  void DecodeAhead();
+  bool DecodeAll();
+
+  const std::unique_ptr<FrameSource> source_;
+  const SequenceOptions options_;
+  const cv::Size image_size_;
+  BoundedQueue<Step> queue_;
+  std::thread thread_;  // the last member, because it uses the others
+};
+
+void Sequence::Decoder::DecodeAhead() {
   Step last;
   try {
     if (!DecodeAll()) return;
@@ -88,7 +106,7 @@ void Sequence::DecodeAhead() {
 }
 
 /// Pushes every selected frame. Returns false when the queue has been closed.
-bool Sequence::DecodeAll() {
+bool Sequence::Decoder::DecodeAll() {
   for (int i = 0; i < options_.start; ++i) {
     if (!source_->Skip()) return true;
   }
@@ -108,8 +126,23 @@ bool Sequence::DecodeAll() {
   return true;
 }
 
+Sequence::Sequence(std::unique_ptr<FrameSource> source, const SequenceOptions& options)
+    : options_(options), name_(source->info().name), camera_height_(source->info().camera_height) {
+  ORB360_CHECK(
+      options.fps >= 0.0 && options.stride >= 1 && options.start >= 0 && options.max_frames >= 0,
+      options.fps, options.stride, options.start, options.max_frames, options.resize);
+  const SourceInfo& info = source->info();
+  RequireFullSphere(name_, info.image_size);
+  image_size_ = options.resize.empty() ? info.image_size : options.resize;
+  frame_rate_ = options.fps > 0.0 ? options.fps : info.frame_rate;
+  if (info.frame_count) frame_count_ = SelectedCount(*info.frame_count, options);
+  decoder_ = std::make_unique<Decoder>(std::move(source), options, image_size_);
+}
+
+Sequence::~Sequence() = default;
+
 std::optional<Frame> Sequence::Next() {
-  std::optional<Step> step = queue_.Pop();
+  std::optional<Decoder::Step> step = decoder_->Next();
   if (!step) return std::nullopt;
   warnings_.insert(warnings_.end(), step->warnings.begin(), step->warnings.end());
   if (step->error) std::rethrow_exception(step->error);

@@ -1,13 +1,11 @@
 #pragma once
 
-#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
+#include <utility>
 #include <vector>
 
-#include "slam/io/bounded_queue.h"
 #include "slam/io/frame_source.h"
 
 namespace orb360 {
@@ -58,17 +56,8 @@ class Sequence {
   std::vector<std::string> TakeWarnings() { return std::exchange(warnings_, {}); }
 
  private:
-  /// One item that the decoding thread hands over.
-  struct Step {
-    std::optional<Frame> frame;
-    std::vector<std::string> warnings;
-    std::exception_ptr error;
-  };
+  class Decoder;  // reads the source on a thread of its own
 
-  void DecodeAhead();
-  bool DecodeAll();
-
-  const std::unique_ptr<FrameSource> source_;  // Of the decoding thread once that runs.
   const SequenceOptions options_;
   const std::string name_;
   const std::optional<double> camera_height_;
@@ -77,8 +66,7 @@ class Sequence {
   std::optional<int> frame_count_;
   std::vector<std::string> warnings_;
   bool has_given_frame_ = false;
-  BoundedQueue<Step> queue_;
-  std::thread decoder_;  // Last: it uses the others.
+  std::unique_ptr<Decoder> decoder_;
 };
 
 /// Opens a video file, a folder of images, or a sequence folder (Dataset). Throws UserError if the

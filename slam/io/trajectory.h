@@ -9,7 +9,6 @@
 #include <Eigen/Core>
 
 #include "slam/geometry/rigid3.h"
-#include "slam/io/output_file.h"
 
 namespace orb360 {
 
@@ -45,18 +44,5 @@ void WriteTrajectory(const std::filesystem::path& path, std::span<const StampedP
 /// line that is not eight numbers with a quaternion of length 1 (within 1 %), and for a file that
 /// cannot be opened or has no pose.
 std::vector<StampedPose> ReadTrajectory(const std::filesystem::path& path);
-
-/// A trajectory file that grows during the run. A killed run loses at most the pose that was being
-/// written.
-class TrajectoryJournal {
- public:
-  /// Throws UserError if the file cannot be written. Append does so too.
-  explicit TrajectoryJournal(const std::filesystem::path& path) : file_(path) {}
-
-  void Append(const StampedPose& pose) { file_.Write(FormatTumLine(pose) + "\n"); }
-
- private:
-  OutputFile file_;
-};
 
 }  // namespace orb360

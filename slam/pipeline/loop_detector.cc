@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "nn/base/statistics.h"
-#include "slam/pipeline/reconstruction.h"
+#include "slam/pipeline/make_reconstruction.h"
 
 namespace orb360 {
 namespace {

@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "nn/base/check.h"
+#include "slam/pipeline/make_reconstruction.h"
 
 namespace orb360 {
 namespace {

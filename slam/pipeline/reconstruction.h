@@ -2,15 +2,12 @@
 
 #include <map>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "slam/features/features.h"
 #include "slam/geometry/rigid3.h"
-#include "slam/map/map.h"
-#include "slam/pipeline/frame_anchor.h"
 
 namespace orb360 {
 
@@ -55,14 +52,11 @@ struct ClosedLoop {
   int place;
 };
 
-/// Number of landmarks in common that links two keyframes in the covisibility graph.
-inline constexpr int kCovisible = 15;
-
 /// Everything that a run computed, in the internal frames (camera: -X forward, +Y right, +Z up).
 struct Reconstruction {
   std::vector<FramePose> frames;     ///< Ordered by index.
   std::vector<FramePose> keyframes;  ///< Ordered by index.
-  /// Pairs with at least kCovisible landmarks in common.
+  /// Pairs with at least 15 landmarks in common.
   std::vector<CovisibleFrames> covisibility;
   std::vector<CloudPoint> landmarks;
   std::vector<MapSummary> maps;
@@ -83,12 +77,5 @@ struct Reconstruction {
   /// Normal of the ground, unit, world frame, towards the sky. None where no ground was found.
   std::optional<Eigen::Vector3d> up;
 };
-
-/// Makes the reconstruction except for `initialized_at`, `depth_scales`, the counts of events, and
-/// the scale of the maps. Keyframes have their poses in the map; the poses of the other frames are
-/// refined on the landmarks that they see (frame_refinement.h). Runs on `num_threads` OpenMP
-/// threads.
-Reconstruction MakeReconstruction(std::span<const Map> maps, const FrameAnchors& anchors,
-                                  int num_threads = 1);
 
 }  // namespace orb360

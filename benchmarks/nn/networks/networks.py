@@ -27,24 +27,24 @@ RUNNER = Path("build/nn_network_runner")
 RUNS_IN_A_TURN = 3
 
 
-def cut(whole: Description, inputs: Sequence[str], outputs: Sequence[str], name: str) -> Description:
-    """The part of a network that computes `outputs` from `inputs`, both names of tensors."""
-    needed, nodes = set(outputs) - set(inputs), []
+def cut(whole: Description, known: Sequence[str], outputs: Sequence[str], name: str) -> Description:
+    """The part of a network that computes the tensors `outputs` if the tensors `known` are given, and
+    what it needs of the network's own inputs."""
+    needed, nodes = set(outputs) - set(known), []
     for node in reversed(whole.graph.nodes):
         if needed.isdisjoint(node.outputs):
             continue
         needed -= set(node.outputs)
-        needed |= set(node.inputs) - set(inputs)
+        needed |= set(node.inputs) - set(known)
         nodes.insert(0, node)
-    channels = {port["name"]: port["channels"] for port in whole.graph.inputs}
+    own = [port for port in whole.graph.inputs if port["name"] in needed]
     names = {weight.rsplit(".", 1)[0] for node in nodes for weight in node.weights.values()}
-    assert needed <= set(channels), needed
     graph = dataclasses.replace(
         whole.graph,
         name=name,
-        inputs=[{"name": port, "channels": channels.get(port, 1)} for port in inputs],
+        inputs=[{"name": tensor, "channels": 1} for tensor in known] + own,
         nodes=nodes,
-        outputs=[{"name": port, "tensor": port} for port in outputs],
+        outputs=[{"name": tensor, "tensor": tensor} for tensor in outputs],
     )
     layers = [layer for layer in whole.layers if layer.name in names]
     return Description(graph, layers, [cost for cost in whole.costs if cost.node in names])
@@ -55,8 +55,8 @@ def networks() -> dict[str, Description]:
     propagated = ["propagated", "propagated.c"]
     return {
         "unguided": NETWORKS["unguided"](),
-        "propagation": cut(completion, ["depth", "confidence"], propagated, "seven levels"),
-        "fusion": cut(completion, [*propagated, "image"], ["log_depth", "completed.c"], "fusion"),
+        "propagation": cut(completion, [], propagated, "seven levels"),
+        "fusion": cut(completion, propagated, ["log_depth", "completed.c"], "fusion"),
         "completion": completion,
         "encoder-decoder": NETWORKS["encoder_decoder"](),
     }

@@ -1,4 +1,5 @@
 #include "slam/io/trajectory.h"
+#include "slam/io/trajectory_journal.h"
 
 #include <clocale>
 #include <cmath>

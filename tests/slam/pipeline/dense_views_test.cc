@@ -1,4 +1,4 @@
-#include "slam/pipeline/dense_fusion.h"
+#include "slam/pipeline/dense_views.h"
 
 #include <vector>
 

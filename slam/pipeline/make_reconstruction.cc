@@ -1,4 +1,4 @@
-#include "slam/pipeline/reconstruction.h"
+#include "slam/pipeline/make_reconstruction.h"
 
 #include <algorithm>
 

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "slam/depth/dense_cloud.h"
+#include "slam/geometry/rigid3.h"
+#include "slam/pipeline/reconstruction.h"
+
+namespace orb360 {
+
+/// Returns the keyframes of a reconstruction that have dense depth, with poses in the world to
+/// which `target_from_world` transforms. Keyframes that see the same landmarks are neighbours.
+std::vector<DenseView> MakeDenseViews(const Reconstruction& reconstruction,
+                                      const Rigid3& target_from_world);
+
+/// Returns how the cloud of a reconstruction is fused: with voxels of a fixed size in metres where
+/// its first map is in metres, otherwise of a size that follows from the ranges.
+DenseCloudOptions CloudOptionsFor(const Reconstruction& reconstruction, int num_threads);
+
+}  // namespace orb360

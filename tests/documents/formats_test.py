@@ -1,0 +1,77 @@
+"""The tables of docs/formats name what the programs write: every key, default and range."""
+
+import json
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from shell_blocks import ROOT
+
+BUILD = Path(os.environ.get("ORB360_BINARY_DIR", ROOT / "build"))
+FORMATS = ROOT / "docs" / "formats"
+
+
+def run(*command: object) -> str:
+    return subprocess.run([str(word) for word in command], check=True, text=True,
+                          stdout=subprocess.PIPE).stdout
+
+
+def rows(document: str, heading: str = "") -> list[list[str]]:
+    """The cells of the first table after `heading`, without its header."""
+    text = (FORMATS / document).read_text()
+    text = text[text.index(heading):]
+    table = re.search(r"^\|.*\n\|[-:| ]+\|\n((?:\|.*\n)+)", text, re.M)
+    assert table is not None
+    return [[cell.strip() for cell in line.strip("|").split(" | ")]
+            for line in table.group(1).splitlines()]
+
+
+def names(cells: list[list[str]]) -> set[str]:
+    return {name for cell in cells for name in re.findall(r"`([^`]+)`", cell[0])}
+
+
+class Formats(unittest.TestCase):
+    def test_configuration_lists_every_option_with_default_and_range(self) -> None:
+        printed, section, comment = {}, "", ""
+        for line in run(BUILD / "orb360", "config").splitlines():
+            if line.strip().startswith("#"):
+                comment = line.strip(" #")
+            elif line.endswith(":"):
+                section = line[:-1] + "."
+            elif line:
+                key, value = line.strip().split(": ", 1)
+                prefix = section if line.startswith(" ") else ""
+                limits = re.search(r"\(([^()]*)\)$", comment)
+                printed[prefix + key] = (value, limits.group(1) if limits else "")
+        self.assertGreater(len(printed), 50)
+        documented = {row[0].strip("`"): row for row in rows("configuration.md")}
+        self.assertEqual(set(documented), set(printed))
+        for key, (value, limits) in printed.items():
+            with self.subTest(key):
+                self.assertEqual(documented[key][1].strip("`"), value)
+                if limits:
+                    self.assertEqual(documented[key][2], limits)
+
+    def test_summary_and_evaluation_list_every_key(self) -> None:
+        with tempfile.TemporaryDirectory(dir=BUILD) as name:
+            town, result = Path(name) / "town", Path(name) / "run"
+            run(BUILD / "town", "render", "--town", 7, "--frames", 40, "--width", 512,
+                "--depth-every", 10, "--out", town)
+            run(BUILD / "orb360", "run", town, "--mask", "none", "--quiet", "--out", result)
+            summary = json.loads((result / "summary.json").read_text())
+            errors = json.loads(run(BUILD / "orb360", "evaluate", town, result, "--json"))
+        self.assertEqual(set(summary), names(rows("summary.md")))
+        self.assertEqual(set(summary["scale"]) - names(rows("summary.md", "`scale`:")), set())
+        documented = names(rows("evaluation.md"))
+        self.assertEqual(set(errors) - documented, set())
+        self.assertEqual(documented - set(errors) - {"depth"}, set())
+        text = (FORMATS / "evaluation.md").read_text()
+        for key in errors["cloud"]:
+            self.assertIn(f"`{key}`", text)
+
+
+if __name__ == "__main__":
+    unittest.main()

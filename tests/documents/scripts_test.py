@@ -1,0 +1,67 @@
+"""The scripts do what the documents say, in a short form."""
+
+import json
+import os
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from shell_blocks import ROOT
+
+BUILD = Path(os.environ.get("ORB360_BINARY_DIR", ROOT / "build"))
+
+
+class Scripts(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory(dir=BUILD)
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def run_script(self, name: str, *arguments: object) -> str:
+        done = subprocess.run([str(ROOT / "scripts" / name), *map(str, arguments)], check=False,
+                              text=True, cwd=self.folder, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE)
+        self.assertEqual(done.returncode, 0, done.stderr[-2000:] + done.stdout[-2000:])
+        return done.stdout
+
+    def render(self, frames: int) -> Path:
+        town = self.folder / "town"
+        subprocess.run([BUILD / "town", "render", "--town", "7", "--frames", str(frames), "--width",
+                        "512", "--out", town], check=True, stdout=subprocess.DEVNULL)
+        return town
+
+    def test_evaluate_prints_json_and_nothing_else(self) -> None:
+        results = json.loads(self.run_script(
+            "evaluate", "--json", "--skip-build", "--towns", "Loop", "--frames", 60, "--width", 512,
+            "--variants", "tri", "--cache", self.folder, "--out", self.folder / "out"))
+        self.assertEqual([r["tracked"] for r in results], [60])
+        self.assertAlmostEqual(results[0]["scale_factor"], 1.0, delta=0.05)
+
+    def test_evaluate_prints_a_table_with_a_row_for_each_run(self) -> None:
+        table = self.run_script(
+            "evaluate", "--skip-build", "--towns", "Loop", "--frames", 60, "--width", 512,
+            "--cache", self.folder, "--out", self.folder / "out")
+        for variant in ("mono", "tri", "dc"):
+            self.assertRegex(table, rf"Loop \| +{variant} \| +60/60 \| +0 \|")
+
+    def test_bench_prints_json_and_nothing_else(self) -> None:
+        figures = json.loads(self.run_script("bench", "--quick", "--json", "--skip-build"))
+        for key in ("network_vs_pytorch", "fusion_vs_pytorch", "unguided_vs_pytorch"):
+            self.assertGreater(figures[key], 0.0)
+
+    def test_kidnap_counts_every_try(self) -> None:
+        printed = self.run_script("kidnap", self.render(60), "--out", self.folder / "kidnap",
+                                  "--tries", 2, "--orb360", BUILD / "orb360")
+        self.assertRegex(printed, r"2 tries, \d located, \d right")
+
+    def test_digests_of_two_runs_agree(self) -> None:
+        short = ("--build", BUILD, "--towns", "Loop", "--variants", "sparse", "--frames", 60,
+                 "--cache", self.folder)
+        digests = self.folder / "digests.json"
+        self.run_script("digests", *short, "--out", digests)
+        self.run_script("digests", *short, "--compare", digests)
+
+
+if __name__ == "__main__":
+    unittest.main()
