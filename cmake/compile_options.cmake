@@ -7,6 +7,9 @@ target_compile_options(orb360_compile_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -ffp-contract=off
   $<$<BOOL:${ORB360_WERROR}>:-Werror>)
 
+# Private headers lie beside their sources, public ones in include/orb360/.
+target_include_directories(orb360_compile_options INTERFACE ${PROJECT_SOURCE_DIR})
+
 # This is Eigen's own guess except under AddressSanitizer, where Eigen would free in another way
 # what OpenGV has allocated.
 target_compile_definitions(orb360_compile_options INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)

@@ -11,8 +11,7 @@ endforeach()
 install(TARGETS orb360_base orb360_nn orb360_slam EXPORT orb360Targets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/nn ${PROJECT_SOURCE_DIR}/slam
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/orb360 FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY include/orb360 DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT orb360Targets NAMESPACE orb360:: DESTINATION ${package_folder})
 configure_package_config_file(cmake/orb360Config.cmake.in orb360Config.cmake
   INSTALL_DESTINATION ${package_folder})

@@ -1,9 +1,8 @@
-#include "nn/tensor.h"
-
 #include <cstring>
 
 #include "nn/base/bfloat16.h"
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
 namespace {

@@ -1,6 +1,5 @@
-#include "slam/version.h"
-
 #include "version_text.h"
+#include <orb360/slam/version.h>
 
 namespace orb360 {
 

@@ -23,7 +23,7 @@
 #include "slam/features/orb_extractor.h"
 #include "slam/features/sphere_pyramid.h"
 #include "slam/features/tangent_sampling.h"
-#include "slam/geometry/so3.h"
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

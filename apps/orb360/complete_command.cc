@@ -13,15 +13,15 @@
 #include <opencv2/imgproc.hpp>
 
 #include "apps/orb360/commands.h"
-#include "nn/base/check.h"
-#include "nn/models/default_weights.h"
 #include "slam/depth/dense_ground.h"
-#include "slam/depth/depth_completer.h"
 #include "slam/io/atomic_file.h"
-#include "slam/io/depth_image.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/image_file.h"
 #include "slam/io/sparse_file.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/models/default_weights.h>
+#include <orb360/slam/depth/depth_completer.h>
+#include <orb360/slam/io/depth_image.h>
 
 namespace orb360 {
 namespace {

@@ -1,9 +1,9 @@
 #include <iostream>
 
 #include "apps/orb360/commands.h"
-#include "nn/base/option_schema.h"
-#include "slam/io/config.h"
-#include "slam/pipeline/options.h"
+#include <orb360/nn/base/option_schema.h>
+#include <orb360/slam/io/config.h>
+#include <orb360/slam/pipeline/options.h>
 
 namespace orb360 {
 

@@ -7,8 +7,8 @@
 #include "slam/evaluation/cloud_image.h"
 #include "slam/evaluation/depth_visualization.h"
 #include "slam/io/dataset.h"
-#include "slam/io/depth_image.h"
 #include "slam/io/output_file.h"
+#include <orb360/slam/io/depth_image.h>
 
 namespace orb360 {
 namespace {

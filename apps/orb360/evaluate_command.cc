@@ -11,7 +11,6 @@
 
 #include "apps/orb360/commands.h"
 #include "apps/orb360/evaluation_report.h"
-#include "nn/base/check.h"
 #include "slam/evaluation/cloud_folder.h"
 #include "slam/evaluation/depth_folder.h"
 #include "slam/evaluation/revisit.h"
@@ -20,7 +19,8 @@
 #include "slam/io/atomic_file.h"
 #include "slam/io/dataset.h"
 #include "slam/io/ply.h"
-#include "slam/io/trajectory.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
 namespace {

@@ -4,7 +4,7 @@
 #include "apps/town/sequence/named_town.h"
 #include "apps/town/sequence/town_source.h"
 #else
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 #endif
 
 namespace orb360 {
@@ -28,7 +28,8 @@ std::unique_ptr<Sequence> OpenTown(const std::string& input, const SequenceOptio
 #else
 
 std::unique_ptr<Sequence> OpenTown(const std::string& input, const SequenceOptions&) {
-  throw UserError(input + ": this orb360 was built without the renderer of towns; build it with "
+  throw UserError(input +
+                  ": this orb360 was built without the renderer of towns; build it with "
                   "-DORB360_BUILD_TOWN=ON");
 }
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "slam/io/sequence.h"
+#include <orb360/slam/io/sequence.h>
 
 namespace orb360 {
 

@@ -11,8 +11,8 @@
 #include <opencv2/core/utils/logger.hpp>
 
 #include "apps/orb360/commands.h"
-#include "nn/base/check.h"
-#include "slam/version.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/version.h>
 
 namespace {
 

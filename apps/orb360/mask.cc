@@ -7,10 +7,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "apps/orb360/input.h"
-#include "nn/base/check.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/image_file.h"
 #include "slam/pipeline/self_mask.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "slam/pipeline/system.h"
+#include <orb360/slam/pipeline/system.h>
 
 namespace orb360 {
 

@@ -22,17 +22,17 @@
 #include "apps/orb360/run_output.h"
 #include "apps/orb360/run_summary.h"
 #include "apps/orb360/sparse_output.h"
-#include "nn/base/check.h"
 #include "nn/base/number_text.h"
-#include "nn/base/option_schema.h"
-#include "nn/models/default_weights.h"
 #include "slam/io/atomic_file.h"
-#include "slam/io/config.h"
 #include "slam/io/full_sphere.h"
-#include "slam/io/map_file.h"
-#include "slam/io/sequence.h"
-#include "slam/pipeline/options.h"
-#include "slam/pipeline/system.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/base/option_schema.h>
+#include <orb360/nn/models/default_weights.h>
+#include <orb360/slam/io/config.h>
+#include <orb360/slam/io/map_file.h>
+#include <orb360/slam/io/sequence.h>
+#include <orb360/slam/pipeline/options.h>
+#include <orb360/slam/pipeline/system.h>
 
 namespace orb360 {
 namespace {

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/orb360/dense_output.h"
-#include "slam/io/trajectory.h"
 #include "slam/io/trajectory_journal.h"
-#include "slam/pipeline/reconstruction.h"
+#include <orb360/slam/io/trajectory.h>
+#include <orb360/slam/pipeline/reconstruction.h>
 
 namespace orb360 {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
-#include "slam/pipeline/reconstruction.h"
+#include <orb360/slam/pipeline/reconstruction.h>
 
 namespace orb360 {
 

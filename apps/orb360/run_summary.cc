@@ -7,7 +7,7 @@
 #include <sys/resource.h>
 
 #include "apps/orb360/interrupt.h"
-#include "slam/version.h"
+#include <orb360/slam/version.h>
 
 namespace orb360 {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "apps/orb360/dense_output.h"
 #include "apps/orb360/stage_times.h"
-#include "slam/pipeline/reconstruction.h"
-#include "slam/pipeline/scale_options.h"
+#include <orb360/slam/pipeline/reconstruction.h>
+#include <orb360/slam/pipeline/scale_options.h>
 
 namespace orb360 {
 

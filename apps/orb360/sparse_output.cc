@@ -4,9 +4,9 @@
 #include <map>
 #include <system_error>
 
-#include "slam/depth/sparse_depth.h"
 #include "slam/io/output_file.h"
 #include "slam/io/sparse_file.h"
+#include <orb360/slam/depth/sparse_depth.h>
 
 namespace orb360 {
 namespace {

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <span>
 
-#include "slam/io/sequence.h"
-#include "slam/map/map.h"
+#include <orb360/slam/io/sequence.h>
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "apps/orb360/commands.h"
-#include "nn/graph/executor.h"
-#include "nn/graph/graph.h"
-#include "nn/graph/network_file.h"
+#include <orb360/nn/graph/executor.h>
+#include <orb360/nn/graph/graph.h>
+#include <orb360/nn/graph/network_file.h>
 
 namespace orb360 {
 namespace {

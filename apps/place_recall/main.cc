@@ -19,10 +19,10 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "apps/place_recall/binary_vocabulary.h"
-#include "nn/base/check.h"
 #include "slam/features/orb_extractor.h"
 #include "slam/features/place_recognition.h"
-#include "slam/io/trajectory.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
 namespace {

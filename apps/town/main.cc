@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/town/commands.h"
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 int main(int argc, char** argv) {
   try {

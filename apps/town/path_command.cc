@@ -6,8 +6,8 @@
 #include "apps/town/commands.h"
 #include "apps/town/import/import_scenery.h"
 #include "apps/town/import/torcs_track.h"
-#include "nn/base/check.h"
 #include "slam/io/atomic_file.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

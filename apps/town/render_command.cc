@@ -16,7 +16,7 @@
 #include "apps/town/sequence/render_folder.h"
 #include "apps/town/sequence/sequence_writer.h"
 #include "apps/town/sequence/town_drive.h"
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

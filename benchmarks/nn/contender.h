@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "benchmarks/nn/layers.h"
-#include "nn/tensor.h"
+#include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
 

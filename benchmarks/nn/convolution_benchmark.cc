@@ -16,7 +16,7 @@
 #include "benchmarks/nn/contender.h"
 #include "benchmarks/nn/fma_peak.h"
 #include "benchmarks/nn/layers.h"
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstdint>
 
-#include "nn/base/aligned_vector.h"
+#include <orb360/nn/base/aligned_vector.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "benchmarks/nn/fma_peak.cc"

@@ -2,8 +2,8 @@
 
 #include "benchmarks/nn/contender.h"
 #include "benchmarks/nn/stopwatch.h"
-#include "nn/base/aligned_vector.h"
 #include "nn/kernels/convolution.h"
+#include <orb360/nn/base/aligned_vector.h>
 
 namespace orb360::nn {
 namespace {

@@ -2,10 +2,10 @@
 // 2048 x 1024, mapping beside it as in a run.
 #include <benchmark/benchmark.h>
 
-#include "slam/io/frame_source.h"
-#include "slam/pipeline/options.h"
-#include "slam/pipeline/system.h"
 #include "tests/slam/pipeline/box_room.h"
+#include <orb360/slam/io/frame_source.h>
+#include <orb360/slam/pipeline/options.h>
+#include <orb360/slam/pipeline/system.h>
 
 namespace orb360 {
 namespace {

@@ -13,7 +13,7 @@
 #include <hdf5_hl.h>
 #include <openssl/evp.h>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

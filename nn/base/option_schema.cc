@@ -1,11 +1,10 @@
-#include "nn/base/option_schema.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "nn/base/check.h"
 #include "nn/base/number_text.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/base/option_schema.h>
 
 namespace orb360 {
 namespace {

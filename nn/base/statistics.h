@@ -6,7 +6,7 @@
 #include <iterator>
 #include <ranges>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 

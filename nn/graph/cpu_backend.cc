@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "nn/base/check.h"
 #include "nn/base/cpu.h"
 #include "nn/graph/cpu_needs.h"
 #include "nn/kernels/average_pool.h"
@@ -23,6 +22,7 @@
 #include "nn/kernels/median_log.h"
 #include "nn/kernels/normalized_chain.h"
 #include "nn/kernels/upsample.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

@@ -1,17 +1,16 @@
-#include "nn/graph/executor.h"
-
 #include <algorithm>
 #include <cstring>
 #include <new>
 #include <utility>
 
-#include "nn/base/check.h"
 #include "nn/graph/buffer_assignment.h"
 #include "nn/graph/cpu_backend.h"
 #include "nn/graph/fusion.h"
 #include "nn/graph/limits.h"
 #include "nn/graph/lowering.h"
 #include "nn/kernels/copy_channels.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/graph/executor.h>
 
 namespace orb360::nn {
 namespace {

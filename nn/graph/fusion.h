@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "nn/graph/graph.h"
+#include <orb360/nn/graph/graph.h>
 
 namespace orb360::nn {
 

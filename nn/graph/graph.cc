@@ -1,6 +1,6 @@
-#include "nn/graph/graph.h"
-
 #include <array>
+
+#include <orb360/nn/graph/graph.h>
 
 namespace orb360::nn {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <utility>
 
-#include "nn/base/check.h"
 #include "nn/graph/formats.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "nn/graph/backend.h"
 #include "nn/graph/fusion.h"
-#include "nn/graph/graph.h"
-#include "nn/tensor.h"
+#include <orb360/nn/graph/graph.h>
+#include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
 

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include "nn/base/check.h"
-#include "nn/tensor.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
 namespace {

@@ -1,5 +1,3 @@
-#include "nn/graph/network_file.h"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -10,12 +8,13 @@
 
 #include <hdf5.h>
 
-#include "nn/base/check.h"
 #include "nn/base/checksummed_file.h"
 #include "nn/base/hdf5_handle.h"
 #include "nn/graph/json_object.h"
 #include "nn/graph/limits.h"
 #include "nn/graph/parse_graph.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/graph/network_file.h>
 
 namespace orb360::nn {
 namespace {

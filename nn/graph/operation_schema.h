@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <string>
 
-#include "nn/graph/graph.h"
 #include "nn/graph/json_object.h"
+#include <orb360/nn/graph/graph.h>
 
 namespace orb360::nn {
 

@@ -8,11 +8,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "nn/base/check.h"
 #include "nn/graph/json_object.h"
 #include "nn/graph/limits.h"
 #include "nn/graph/operation_schema.h"
 #include "nn/graph/shape_inference.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "nn/graph/graph.h"
+#include <orb360/nn/graph/graph.h>
 
 namespace orb360::nn {
 

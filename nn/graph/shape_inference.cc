@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "nn/base/check.h"
 #include "nn/graph/limits.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

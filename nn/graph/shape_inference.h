@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "nn/graph/graph.h"
+#include <orb360/nn/graph/graph.h>
 
 namespace orb360::nn {
 

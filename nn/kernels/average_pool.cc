@@ -1,6 +1,6 @@
 #include "nn/kernels/average_pool.h"
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "nn/kernels/average_pool.cc"

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "nn/tensor.h"
+#include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
 

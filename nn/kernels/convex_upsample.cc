@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "nn/kernels/convex_upsample.cc"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "nn/tensor.h"
+#include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
 

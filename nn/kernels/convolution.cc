@@ -6,10 +6,10 @@
 
 #include <omp.h>
 
-#include "nn/base/check.h"
 #include "nn/kernels/convolution_bf16.h"
 #include "nn/kernels/convolution_direct.h"
 #include "nn/kernels/convolution_winograd.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "nn/base/aligned_vector.h"
 #include "nn/base/cpu.h"
-#include "nn/tensor.h"
+#include <orb360/nn/base/aligned_vector.h>
+#include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
 

@@ -140,7 +140,7 @@ ORB360_AMX void RunAmx(const BFloat16Convolution& run, int first, int last) {
 
 #else
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 

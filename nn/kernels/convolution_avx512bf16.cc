@@ -95,7 +95,7 @@ void RunAvx512BFloat16(const BFloat16Convolution& run, int first, int last) {
 
 #else
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <span>
 
-#include "nn/base/aligned_vector.h"
-#include "nn/tensor.h"
+#include <orb360/nn/base/aligned_vector.h>
+#include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
 

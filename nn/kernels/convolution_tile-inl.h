@@ -15,7 +15,7 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
-#include "nn/tensor.h"
+#include <orb360/nn/tensor.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace orb360::nn {

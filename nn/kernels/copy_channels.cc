@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "nn/base/bfloat16.h"
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

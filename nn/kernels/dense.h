@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "nn/tensor.h"
+#include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "nn/kernels/elementwise.cc"

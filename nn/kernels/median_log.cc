@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "nn/kernels/median_log.cc"

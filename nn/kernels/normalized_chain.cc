@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "nn/base/check.h"
 #include "nn/kernels/normalized_rows.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "nn/kernels/confidence_pool.h"
 #include "nn/kernels/normalized_convolution.h"
-#include "nn/tensor.h"
+#include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
 

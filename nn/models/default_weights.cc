@@ -1,9 +1,8 @@
-#include "nn/models/default_weights.h"
-
 #include <string>
 #include <system_error>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/models/default_weights.h>
 
 namespace orb360::nn {
 

@@ -1,5 +1,3 @@
-#include "nn/models/depth_completion.h"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -7,8 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "nn/base/check.h"
 #include "nn/models/resample.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/models/depth_completion.h>
 
 namespace orb360::nn {
 namespace {

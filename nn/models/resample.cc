@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

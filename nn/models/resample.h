@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "nn/models/image_size.h"
+#include <orb360/nn/models/image_size.h>
 
 namespace orb360::nn {
 

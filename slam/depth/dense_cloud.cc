@@ -8,8 +8,8 @@
 #include <numbers>
 #include <utility>
 
-#include "nn/base/check.h"
 #include "nn/base/statistics.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "slam/depth/dense_cloud_summary.h"
-#include "slam/depth/dense_depth.h"
 #include "slam/depth/geometric_consistency.h"
 #include "slam/depth/voxel_grid.h"
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/depth/dense_cloud_summary.h>
+#include <orb360/slam/depth/dense_depth.h>
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "nn/base/check.h"
-#include "slam/geometry/camera.h"
 #include "slam/geometry/ground_plane.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/geometry/camera.h>
 
 namespace orb360 {
 namespace {

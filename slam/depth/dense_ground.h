@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-#include "slam/depth/dense_depth.h"
-#include "slam/depth/dense_ground_options.h"
+#include <orb360/slam/depth/dense_depth.h>
+#include <orb360/slam/depth/dense_ground_options.h>
 
 namespace orb360 {
 

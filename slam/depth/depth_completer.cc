@@ -1,13 +1,12 @@
-#include "slam/depth/depth_completer.h"
-
 #include <cmath>
 #include <span>
 
 #include <opencv2/imgproc.hpp>
 
-#include "nn/base/check.h"
-#include "nn/graph/network_file.h"
-#include "nn/models/depth_completion.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/graph/network_file.h>
+#include <orb360/nn/models/depth_completion.h>
+#include <orb360/slam/depth/depth_completer.h>
 
 namespace orb360 {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "slam/depth/dense_depth.h"
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/depth/dense_depth.h>
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "nn/base/check.h"
 #include "slam/depth/source_view.h"
 #include "slam/depth/surface_normals.h"
 #include "slam/depth/tested_row.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

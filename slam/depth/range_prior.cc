@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "nn/base/check.h"
-#include "slam/geometry/camera.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/geometry/camera.h>
 
 namespace orb360 {
 namespace {

@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "slam/depth/dense_depth.h"
-#include "slam/features/features.h"
-#include "slam/map/map.h"
+#include <orb360/slam/depth/dense_depth.h>
+#include <orb360/slam/features/features.h>
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

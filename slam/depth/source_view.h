@@ -2,7 +2,7 @@
 
 #include "slam/depth/depth_view.h"
 #include "slam/depth/tested_row.h"
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 

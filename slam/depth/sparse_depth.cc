@@ -1,11 +1,10 @@
-#include "slam/depth/sparse_depth.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "slam/features/sphere_grid.h"
 #include "slam/geometry/bearing.h"
+#include <orb360/slam/depth/sparse_depth.h>
+#include <orb360/slam/features/sphere_grid.h>
 
 namespace orb360 {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <hwy/cache_control.h>
 
-#include "nn/base/check.h"
 #include "nn/base/statistics.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

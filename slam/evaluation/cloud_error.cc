@@ -7,9 +7,9 @@
 #include <map>
 #include <numbers>
 
-#include "nn/base/check.h"
 #include "nn/base/statistics.h"
 #include "slam/depth/geometric_consistency.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -9,7 +9,7 @@
 #include <opencv2/core.hpp>
 
 #include "slam/evaluation/trajectory_error.h"
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 

@@ -6,12 +6,12 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "nn/base/check.h"
 #include "nn/base/number_text.h"
 #include "slam/io/dataset.h"
-#include "slam/io/depth_image.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/ply.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/depth_image.h>
 
 namespace orb360 {
 namespace {

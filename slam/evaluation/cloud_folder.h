@@ -5,7 +5,7 @@
 
 #include "slam/evaluation/cloud_error.h"
 #include "slam/evaluation/trajectory_error.h"
-#include "slam/io/trajectory.h"
+#include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
 

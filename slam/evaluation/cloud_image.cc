@@ -8,8 +8,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "nn/base/check.h"
 #include "slam/evaluation/chart.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

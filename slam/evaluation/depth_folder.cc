@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "nn/base/check.h"
-#include "slam/io/depth_image.h"
 #include "slam/io/full_sphere.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/depth_image.h>
 
 namespace orb360 {
 

@@ -2,7 +2,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "slam/depth/dense_depth.h"
+#include <orb360/slam/depth/dense_depth.h>
 
 namespace orb360 {
 

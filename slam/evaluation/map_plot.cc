@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "nn/base/check.h"
 #include "nn/base/statistics.h"
 #include "slam/evaluation/chart.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

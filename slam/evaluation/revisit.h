@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "slam/io/trajectory.h"
+#include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
 

@@ -5,10 +5,10 @@
 #include <numbers>
 #include <numeric>
 
-#include "nn/base/check.h"
 #include "slam/evaluation/association.h"
 #include "slam/geometry/alignment.h"
-#include "slam/geometry/so3.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "slam/geometry/rigid3.h"
-#include "slam/io/trajectory.h"
+#include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
 

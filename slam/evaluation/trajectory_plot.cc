@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "nn/base/check.h"
 #include "slam/evaluation/chart.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

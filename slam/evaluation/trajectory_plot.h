@@ -4,7 +4,7 @@
 #include <string>
 
 #include "slam/evaluation/trajectory_error.h"
-#include "slam/io/trajectory.h"
+#include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
 

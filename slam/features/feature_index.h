@@ -1,6 +1,6 @@
 #pragma once
 
-#include "slam/features/features.h"
+#include <orb360/slam/features/features.h>
 
 namespace orb360 {
 

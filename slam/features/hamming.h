@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "slam/features/features.h"
+#include <orb360/slam/features/features.h>
 
 namespace orb360 {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "slam/features/features.h"
+#include <orb360/slam/features/features.h>
 
 namespace orb360 {
 

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nn/base/check.h"
-#include "nn/base/option_schema.h"
 #include "slam/features/corner_selection.h"
 #include "slam/features/feature_index.h"
 #include "slam/features/patch_descriptor.h"
 #include "slam/features/tangent_sampling.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/base/option_schema.h>
 
 namespace orb360 {
 namespace {

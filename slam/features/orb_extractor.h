@@ -5,10 +5,10 @@
 
 #include <opencv2/core.hpp>
 
-#include "slam/features/features.h"
-#include "slam/features/orb_options.h"
 #include "slam/features/sphere_band.h"
 #include "slam/features/sphere_pyramid.h"
+#include <orb360/slam/features/features.h>
+#include <orb360/slam/features/orb_options.h>
 
 namespace orb360 {
 

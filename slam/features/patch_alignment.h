@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "slam/features/patch.h"
 #include "slam/features/sphere_pyramid.h"
+#include <orb360/slam/features/patch.h>
 
 namespace orb360 {
 

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "slam/features/features.h"
 #include "slam/features/tangent_sampling.h"
+#include <orb360/slam/features/features.h>
 
 namespace orb360 {
 

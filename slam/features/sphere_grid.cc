@@ -1,7 +1,7 @@
-#include "slam/features/sphere_grid.h"
-
 #include <algorithm>
 #include <numbers>
+
+#include <orb360/slam/features/sphere_grid.h>
 
 namespace orb360 {
 namespace {

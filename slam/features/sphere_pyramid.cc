@@ -6,8 +6,8 @@
 #include <cstring>
 #include <vector>
 
-#include "nn/base/check.h"
 #include "slam/features/row_resample.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "slam/geometry/camera.h"
+#include <orb360/slam/geometry/camera.h>
 
 namespace orb360 {
 

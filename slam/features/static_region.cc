@@ -5,8 +5,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "nn/base/check.h"
 #include "nn/base/statistics.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "slam/geometry/camera.h"
+#include <orb360/slam/geometry/camera.h>
 
 namespace orb360 {
 

@@ -8,8 +8,8 @@
 #include <Eigen/Geometry>
 #include <opengv/absolute_pose/methods.hpp>
 
-#include "nn/base/check.h"
 #include "slam/geometry/bearing.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -1,9 +1,8 @@
-#include "slam/geometry/camera.h"
-
 #include <algorithm>
 #include <cmath>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/geometry/camera.h>
 
 namespace orb360 {
 

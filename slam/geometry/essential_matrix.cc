@@ -8,9 +8,9 @@
 #include <Eigen/Cholesky>
 #include <opengv/relative_pose/methods.hpp>
 
-#include "nn/base/check.h"
 #include "nn/base/statistics.h"
 #include "slam/geometry/bearing.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

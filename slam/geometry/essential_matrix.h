@@ -10,7 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "slam/geometry/ransac.h"
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 

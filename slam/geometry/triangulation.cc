@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -1,5 +1,3 @@
-#include "slam/io/config.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,9 +10,10 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "nn/base/check.h"
 #include "nn/base/number_text.h"
 #include "slam/io/yaml_file.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/config.h>
 
 namespace orb360 {
 namespace {

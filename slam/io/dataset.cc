@@ -5,8 +5,8 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "nn/base/check.h"
 #include "slam/io/yaml_file.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -1,5 +1,3 @@
-#include "slam/io/depth_image.h"
-
 #include <cmath>
 #include <cstdint>
 #include <string_view>
@@ -7,8 +5,9 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "nn/base/check.h"
 #include "slam/io/atomic_file.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/depth_image.h>
 
 namespace orb360 {
 namespace {

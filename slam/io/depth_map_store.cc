@@ -17,8 +17,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <zstd.h>
 
-#include "nn/base/check.h"
 #include "slam/io/output_file.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "slam/depth/dense_depth.h"
+#include <orb360/slam/depth/dense_depth.h>
 
 namespace orb360 {
 

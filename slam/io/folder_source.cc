@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "nn/base/check.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/image_file.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

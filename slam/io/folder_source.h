@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "slam/io/frame_source.h"
+#include <orb360/slam/io/frame_source.h>
 
 namespace orb360 {
 

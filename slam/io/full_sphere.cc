@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 

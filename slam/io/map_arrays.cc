@@ -8,8 +8,8 @@
 #include <span>
 #include <string>
 
-#include "nn/base/check.h"
 #include "slam/features/feature_index.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "slam/map/map.h"
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

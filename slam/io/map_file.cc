@@ -1,5 +1,3 @@
-#include "slam/io/map_file.h"
-
 #include <array>
 #include <cmath>
 #include <string>
@@ -8,11 +6,12 @@
 
 #include <hdf5.h>
 
-#include "nn/base/check.h"
 #include "nn/base/checksummed_file.h"
 #include "nn/base/hdf5_handle.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/map_arrays.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/map_file.h>
 
 namespace orb360 {
 namespace {

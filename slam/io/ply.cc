@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "nn/base/check.h"
 #include "nn/base/number_text.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -10,8 +10,8 @@
 #include <Eigen/Core>
 
 #include "slam/depth/surface_point.h"
-#include "slam/geometry/rigid3.h"
 #include "slam/io/atomic_file.h"
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 

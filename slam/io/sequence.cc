@@ -1,5 +1,3 @@
-#include "slam/io/sequence.h"
-
 #include <algorithm>
 #include <exception>
 #include <filesystem>
@@ -8,13 +6,14 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "nn/base/check.h"
 #include "slam/io/bounded_queue.h"
 #include "slam/io/dataset.h"
 #include "slam/io/folder_source.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/image_file.h"
 #include "slam/io/video_source.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/sequence.h>
 
 namespace orb360 {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "nn/base/check.h"
 #include "nn/base/hdf5_handle.h"
 #include "slam/io/atomic_file.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "slam/depth/sparse_depth.h"
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/depth/sparse_depth.h>
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 

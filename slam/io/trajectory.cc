@@ -1,14 +1,13 @@
-#include "slam/io/trajectory.h"
-
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <string_view>
 
-#include "nn/base/check.h"
 #include "nn/base/number_text.h"
 #include "slam/io/atomic_file.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
 namespace {

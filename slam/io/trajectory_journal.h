@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "slam/io/output_file.h"
-#include "slam/io/trajectory.h"
+#include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
 

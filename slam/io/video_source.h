@@ -5,7 +5,7 @@
 
 #include <opencv2/videoio.hpp>
 
-#include "slam/io/frame_source.h"
+#include <orb360/slam/io/frame_source.h>
 
 namespace orb360 {
 

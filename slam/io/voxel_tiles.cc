@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "nn/base/check.h"
 #include "slam/io/output_file.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 

@@ -2,7 +2,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "slam/map/map.h"
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

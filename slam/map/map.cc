@@ -1,13 +1,12 @@
-#include "slam/map/map.h"
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
 
-#include "nn/base/check.h"
 #include "nn/base/statistics.h"
 #include "slam/features/hamming.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 namespace {

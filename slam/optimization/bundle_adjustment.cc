@@ -2,10 +2,10 @@
 
 #include <limits>
 
-#include "nn/base/check.h"
 #include "slam/optimization/bearing_residual.h"
 #include "slam/optimization/ceres/bundle_solver.h"
 #include "slam/optimization/schur/bundle_solver.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "slam/optimization/bundle_problem.h"
-#include "slam/optimization/optimizer.h"
 #include "slam/optimization/solver_report.h"
+#include <orb360/slam/optimization/optimizer.h>
 
 namespace orb360 {
 

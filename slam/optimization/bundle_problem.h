@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 

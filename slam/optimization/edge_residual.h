@@ -5,9 +5,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "slam/geometry/rigid3.h"
-#include "slam/geometry/so3.h"
 #include "slam/optimization/pose_graph.h"
+#include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 

@@ -2,11 +2,11 @@
 
 #include <optional>
 
-#include "slam/map/ground.h"
-#include "slam/map/map.h"
 #include "slam/optimization/bundle_adjustment.h"
-#include "slam/optimization/local_bundle_options.h"
-#include "slam/optimization/optimizer.h"
+#include <orb360/slam/map/ground.h>
+#include <orb360/slam/map/map.h>
+#include <orb360/slam/optimization/local_bundle_options.h>
+#include <orb360/slam/optimization/optimizer.h>
 
 namespace orb360 {
 

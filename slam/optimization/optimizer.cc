@@ -1,6 +1,5 @@
-#include "slam/optimization/optimizer.h"
-
-#include "nn/base/option_schema.h"
+#include <orb360/nn/base/option_schema.h>
+#include <orb360/slam/optimization/optimizer.h>
 
 namespace orb360 {
 

@@ -1,8 +1,8 @@
 #include "slam/optimization/pose_graph.h"
 
-#include "nn/base/check.h"
 #include "slam/optimization/ceres/pose_graph_solver.h"
 #include "slam/optimization/schur/pose_graph_solver.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 

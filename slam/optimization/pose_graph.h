@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "slam/geometry/rigid3.h"
-#include "slam/optimization/optimizer.h"
 #include "slam/optimization/solver_report.h"
+#include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/optimization/optimizer.h>
 
 namespace orb360 {
 

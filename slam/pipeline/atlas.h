@@ -4,12 +4,12 @@
 #include <span>
 #include <vector>
 
-#include "slam/map/map.h"
 #include "slam/optimization/local_bundle_adjustment.h"
 #include "slam/pipeline/frame_anchor.h"
 #include "slam/pipeline/loop_detector.h"
 #include "slam/pipeline/map_update.h"
-#include "slam/pipeline/reconstruction.h"
+#include <orb360/slam/map/map.h>
+#include <orb360/slam/pipeline/reconstruction.h>
 
 namespace orb360 {
 

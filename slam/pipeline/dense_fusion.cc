@@ -1,7 +1,6 @@
-#include "slam/pipeline/dense_fusion.h"
-
 #include "slam/io/dense_cloud_file.h"
 #include "slam/pipeline/dense_views.h"
+#include <orb360/slam/pipeline/dense_fusion.h>
 
 namespace orb360 {
 

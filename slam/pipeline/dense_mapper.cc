@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "slam/depth/dense_cloud.h"
-#include "slam/geometry/rigid3.h"
-#include "slam/pipeline/reconstruction.h"
+#include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/pipeline/reconstruction.h>
 
 namespace orb360 {
 

@@ -3,9 +3,9 @@
 #include <map>
 #include <vector>
 
-#include "slam/geometry/rigid3.h"
-#include "slam/map/map.h"
 #include "slam/pipeline/frame_refinement.h"
+#include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "slam/map/map.h"
 #include "slam/pipeline/tracker.h"
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

@@ -10,10 +10,10 @@
 #include "slam/pipeline/initial_map.h"
 #include "slam/pipeline/landmark_counts.h"
 #include "slam/pipeline/local_map.h"
-#include "slam/pipeline/options.h"
 #include "slam/pipeline/pending_frames.h"
 #include "slam/pipeline/relocalization.h"
 #include "slam/pipeline/tracker.h"
+#include <orb360/slam/pipeline/options.h>
 
 namespace orb360 {
 

@@ -2,10 +2,10 @@
 
 #include <optional>
 
-#include "slam/map/ground.h"
-#include "slam/map/map.h"
 #include "slam/pipeline/map_update.h"
-#include "slam/pipeline/options.h"
+#include <orb360/slam/map/ground.h>
+#include <orb360/slam/map/map.h>
+#include <orb360/slam/pipeline/options.h>
 
 namespace orb360 {
 

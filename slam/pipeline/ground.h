@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
-#include "slam/map/map.h"
 #include "slam/optimization/local_bundle_adjustment.h"
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "slam/map/map.h"
 #include "slam/pipeline/initializer.h"
-#include "slam/pipeline/mapper_options.h"
 #include "slam/pipeline/pending_frames.h"
+#include <orb360/slam/map/map.h>
+#include <orb360/slam/pipeline/mapper_options.h>
 
 namespace orb360 {
 

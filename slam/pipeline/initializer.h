@@ -3,10 +3,10 @@
 #include <optional>
 #include <vector>
 
-#include "slam/features/features.h"
-#include "slam/geometry/rigid3.h"
-#include "slam/optimization/optimizer.h"
-#include "slam/pipeline/initializer_options.h"
+#include <orb360/slam/features/features.h>
+#include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/optimization/optimizer.h>
+#include <orb360/slam/pipeline/initializer_options.h>
 
 namespace orb360 {
 

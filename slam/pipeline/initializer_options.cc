@@ -1,6 +1,5 @@
-#include "slam/pipeline/initializer_options.h"
-
-#include "nn/base/option_schema.h"
+#include <orb360/nn/base/option_schema.h>
+#include <orb360/slam/pipeline/initializer_options.h>
 
 namespace orb360 {
 

@@ -5,8 +5,8 @@
 #include <exception>
 #include <utility>
 
-#include "nn/base/check.h"
 #include "slam/depth/range_prior.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 

@@ -8,9 +8,9 @@
 #include <opencv2/core.hpp>
 
 #include "slam/depth/dense_ground.h"
-#include "slam/depth/depth_completer.h"
-#include "slam/map/map.h"
-#include "slam/pipeline/depth_options.h"
+#include <orb360/slam/depth/depth_completer.h>
+#include <orb360/slam/map/map.h>
+#include <orb360/slam/pipeline/depth_options.h>
 
 namespace orb360 {
 

@@ -7,11 +7,11 @@
 
 #include <opencv2/core.hpp>
 
-#include "slam/depth/sparse_depth.h"
-#include "slam/geometry/camera.h"
 #include "slam/pipeline/atlas.h"
 #include "slam/pipeline/mapper.h"
-#include "slam/pipeline/options.h"
+#include <orb360/slam/depth/sparse_depth.h>
+#include <orb360/slam/geometry/camera.h>
+#include <orb360/slam/pipeline/options.h>
 
 namespace orb360 {
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "slam/map/map.h"
 #include "slam/pipeline/tracker.h"
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

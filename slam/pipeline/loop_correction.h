@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "slam/map/map.h"
-#include "slam/optimization/optimizer.h"
 #include "slam/pipeline/atlas.h"
 #include "slam/pipeline/loop_detector.h"
+#include <orb360/slam/map/map.h>
+#include <orb360/slam/optimization/optimizer.h>
 
 namespace orb360 {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "slam/features/place_recognition.h"
-#include "slam/map/map.h"
-#include "slam/pipeline/loop_options.h"
 #include "slam/pipeline/tracker.h"
+#include <orb360/slam/map/map.h>
+#include <orb360/slam/pipeline/loop_options.h>
 
 namespace orb360 {
 

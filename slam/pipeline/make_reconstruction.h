@@ -2,9 +2,9 @@
 
 #include <span>
 
-#include "slam/map/map.h"
 #include "slam/pipeline/frame_anchor.h"
-#include "slam/pipeline/reconstruction.h"
+#include <orb360/slam/map/map.h>
+#include <orb360/slam/pipeline/reconstruction.h>
 
 namespace orb360 {
 

@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "slam/geometry/rigid3.h"
-#include "slam/map/map.h"
 #include "slam/pipeline/frame_anchor.h"
+#include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "slam/features/sphere_pyramid.h"
-#include "slam/map/ground.h"
-#include "slam/map/map.h"
-#include "slam/pipeline/mapper_options.h"
 #include "slam/pipeline/tracked_frame.h"
+#include <orb360/slam/map/ground.h>
+#include <orb360/slam/map/map.h>
+#include <orb360/slam/pipeline/mapper_options.h>
 
 namespace orb360 {
 

@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "slam/map/map.h"
 #include "slam/optimization/local_bundle_adjustment.h"
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

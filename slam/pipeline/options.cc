@@ -1,6 +1,5 @@
-#include "slam/pipeline/options.h"
-
-#include "nn/base/option_schema.h"
+#include <orb360/nn/base/option_schema.h>
+#include <orb360/slam/pipeline/options.h>
 
 namespace orb360 {
 

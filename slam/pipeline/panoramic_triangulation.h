@@ -1,7 +1,7 @@
 #pragma once
 
-#include "slam/map/map.h"
-#include "slam/pipeline/triangulation_options.h"
+#include <orb360/slam/map/map.h>
+#include <orb360/slam/pipeline/triangulation_options.h>
 
 namespace orb360 {
 

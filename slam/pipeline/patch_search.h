@@ -1,6 +1,6 @@
 #pragma once
 
-#include "slam/map/map.h"
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "slam/features/patch_alignment.h"
-#include "slam/map/map.h"
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <utility>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 

@@ -7,7 +7,7 @@
 
 #include <Eigen/Geometry>
 
-#include "slam/features/features.h"
+#include <orb360/slam/features/features.h>
 
 namespace orb360 {
 

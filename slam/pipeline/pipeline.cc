@@ -9,8 +9,8 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "nn/base/check.h"
 #include "slam/pipeline/make_reconstruction.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -3,13 +3,13 @@
 #include <filesystem>
 #include <optional>
 
-#include "slam/io/frame_source.h"
-#include "slam/io/map_file.h"
 #include "slam/pipeline/atlas.h"
 #include "slam/pipeline/back_end.h"
 #include "slam/pipeline/dense_mapper.h"
 #include "slam/pipeline/front_end.h"
-#include "slam/pipeline/system.h"
+#include <orb360/slam/io/frame_source.h>
+#include <orb360/slam/io/map_file.h>
+#include <orb360/slam/pipeline/system.h>
 
 namespace orb360 {
 

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "slam/features/features.h"
-#include "slam/geometry/rigid3.h"
 #include "slam/pipeline/local_map.h"
+#include <orb360/slam/features/features.h>
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 

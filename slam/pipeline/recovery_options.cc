@@ -1,6 +1,5 @@
-#include "slam/pipeline/recovery_options.h"
-
-#include "nn/base/option_schema.h"
+#include <orb360/nn/base/option_schema.h>
+#include <orb360/slam/pipeline/recovery_options.h>
 
 namespace orb360 {
 

@@ -2,11 +2,11 @@
 
 #include <optional>
 
-#include "slam/features/features.h"
 #include "slam/pipeline/atlas.h"
 #include "slam/pipeline/local_map.h"
-#include "slam/pipeline/options.h"
 #include "slam/pipeline/tracker.h"
+#include <orb360/slam/features/features.h>
+#include <orb360/slam/pipeline/options.h>
 
 namespace orb360 {
 

@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "slam/io/sequence.h"
+#include <orb360/slam/io/sequence.h>
 
 namespace orb360 {
 

@@ -1,9 +1,8 @@
-#include "slam/pipeline/system.h"
-
 #include <exception>
 
-#include "nn/base/option_schema.h"
 #include "slam/pipeline/pipeline.h"
+#include <orb360/nn/base/option_schema.h>
+#include <orb360/slam/pipeline/system.h>
 
 namespace orb360 {
 

@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
-#include "slam/features/features.h"
-#include "slam/geometry/rigid3.h"
-#include "slam/map/map.h"
+#include <orb360/slam/features/features.h>
+#include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

@@ -3,11 +3,11 @@
 #include <optional>
 #include <vector>
 
-#include "slam/features/features.h"
-#include "slam/geometry/rigid3.h"
 #include "slam/pipeline/local_map.h"
 #include "slam/pipeline/tracked_frame.h"
-#include "slam/pipeline/tracker_options.h"
+#include <orb360/slam/features/features.h>
+#include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/pipeline/tracker_options.h>
 
 namespace orb360 {
 

@@ -6,13 +6,13 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "nn/base/check.h"
 #include "nn/graph/buffer_assignment.h"
 #include "nn/graph/cpu_needs.h"
 #include "nn/graph/fusion.h"
 #include "nn/graph/lowering.h"
 #include "nn/graph/parse_graph.h"
 #include "tests/fuzz/graph_input.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

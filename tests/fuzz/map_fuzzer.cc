@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "nn/base/check.h"
 #include "tests/fuzz/map_input.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -6,8 +6,8 @@
 #include <hdf5.h>
 #include <nlohmann/json.hpp>
 
-#include "nn/base/check.h"
 #include "nn/base/hdf5_handle.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "nn/tensor.h"
+#include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
 

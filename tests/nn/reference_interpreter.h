@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "nn/graph/graph.h"
 #include "tests/nn/kernels/plain_image.h"
+#include <orb360/nn/graph/graph.h>
 
 namespace orb360::nn {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "nn/tensor.h"
+#include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
 

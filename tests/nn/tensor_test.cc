@@ -1,5 +1,3 @@
-#include "nn/tensor.h"
-
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -8,8 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "tests/nn/tensor_memory.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
 namespace {

@@ -89,7 +89,7 @@ def read_frames(path: Path) -> list[Frame]:
 def renderer_fingerprint() -> str:
     """A digest of the renderer's source, so that no stale drive is used."""
     digest = hashlib.sha256()
-    for folder in ("apps/town", "slam/geometry"):
+    for folder in ("apps/town", "include/orb360/slam/geometry", "slam/geometry"):
         for path in sorted((ROOT / folder).rglob("*")):
             if path.suffix in (".h", ".cc"):
                 digest.update(str(path.relative_to(ROOT)).encode() + b"\0" + path.read_bytes())

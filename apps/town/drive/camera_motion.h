@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "apps/town/drive/ride.h"
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360::town {
 

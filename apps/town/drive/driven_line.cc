@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

@@ -6,7 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "apps/town/image/cube.h"
-#include "slam/geometry/camera.h"
+#include <orb360/slam/geometry/camera.h>
 
 namespace orb360::town {
 

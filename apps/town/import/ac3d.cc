@@ -12,7 +12,7 @@
 #include <Eigen/Geometry>
 
 #include "apps/town/import/triangulate.h"
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

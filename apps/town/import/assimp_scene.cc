@@ -10,7 +10,7 @@
 #include <assimp/scene.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

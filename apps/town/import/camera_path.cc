@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/town/render/ray_scene.h"
-#include "slam/io/trajectory.h"
+#include <orb360/slam/io/trajectory.h>
 
 namespace orb360::town {
 

@@ -9,7 +9,7 @@
 #include "apps/town/import/ac3d.h"
 #include "apps/town/import/assimp_scene.h"
 #include "apps/town/import/texture_file.h"
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

@@ -11,7 +11,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "apps/town/import/sgi_image.h"
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

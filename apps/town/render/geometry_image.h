@@ -4,8 +4,8 @@
 
 #include "apps/town/image/stitch.h"
 #include "apps/town/render/ray_scene.h"
-#include "slam/geometry/camera.h"
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/geometry/camera.h>
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360::town {
 

@@ -7,8 +7,8 @@
 
 #include "apps/town/image/lanes.h"
 #include "apps/town/world/mesh.h"
-#include "slam/geometry/camera.h"
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/geometry/camera.h>
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360::town {
 

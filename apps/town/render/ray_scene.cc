@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

@@ -6,8 +6,8 @@
 #include "apps/town/render/ray_scene.h"
 #include "apps/town/render/shading.h"
 #include "apps/town/render/tile_renderer.h"
-#include "slam/geometry/camera.h"
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/geometry/camera.h>
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360::town {
 

@@ -1,7 +1,7 @@
 #include "apps/town/render/shading.h"
 
 #include "apps/town/image/texture_lanes.h"
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "apps/town/image/noise.h"
 #include "apps/town/image/random.h"
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

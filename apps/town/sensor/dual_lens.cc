@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "apps/town/image/noise.h"
-#include "slam/geometry/camera.h"
+#include <orb360/slam/geometry/camera.h>
 
 namespace orb360::town {
 namespace {

@@ -8,8 +8,8 @@
 #include "apps/town/render/renderer.h"
 #include "apps/town/render/stage.h"
 #include "apps/town/sensor/sensor_options.h"
-#include "slam/geometry/camera.h"
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/geometry/camera.h>
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360::town {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <charconv>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/town/sequence/sequence_writer.h"
-#include "slam/io/trajectory.h"
+#include <orb360/slam/io/trajectory.h>
 
 namespace orb360::town {
 namespace {

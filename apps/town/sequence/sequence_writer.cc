@@ -12,9 +12,9 @@
 #include <unistd.h>
 
 #include "apps/town/sequence/exr_image.h"
-#include "nn/base/check.h"
 #include "slam/io/atomic_file.h"
-#include "slam/io/depth_image.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/depth_image.h>
 
 namespace orb360::town {
 namespace {

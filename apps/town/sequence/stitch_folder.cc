@@ -16,13 +16,13 @@
 
 #include "apps/town/image/stitch.h"
 #include "apps/town/sequence/sequence_writer.h"
-#include "nn/base/check.h"
 #include "nn/base/number_text.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/dataset.h"
 #include "slam/io/folder_source.h"
 #include "slam/io/image_file.h"
-#include "slam/io/trajectory.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/trajectory.h>
 
 namespace orb360::town {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "apps/town/sequence/town_drive.h"
-#include "slam/io/frame_source.h"
+#include <orb360/slam/io/frame_source.h>
 
 namespace orb360::town {
 

@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

@@ -11,9 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/nn/stopwatch.h"
-#include "nn/base/check.h"
-#include "nn/graph/executor.h"
-#include "nn/graph/network_file.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/graph/executor.h>
+#include <orb360/nn/graph/network_file.h>
 
 namespace orb360::nn {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "slam/geometry/so3.h"
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 

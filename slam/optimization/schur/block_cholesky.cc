@@ -7,7 +7,7 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "slam/optimization/schur/block_cholesky.cc"

@@ -5,9 +5,9 @@
 #include <limits>
 #include <span>
 
-#include "slam/geometry/so3.h"
 #include "slam/optimization/bundle_loss.h"
 #include "slam/optimization/schur/block_structure.h"
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "nn/base/check.h"
 #include "slam/optimization/point_residual.h"
+#include <orb360/nn/base/check.h>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "slam/optimization/schur/residual_blocks.cc"

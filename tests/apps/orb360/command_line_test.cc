@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "slam/version.h"
 #include "tests/apps/orb360/program.h"
+#include <orb360/slam/version.h>
 
 namespace orb360 {
 namespace {

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "slam/io/depth_image.h"
 #include "slam/io/sparse_file.h"
 #include "tests/apps/orb360/program.h"
 #include "tests/nn/graph/network_builder.h"
+#include <orb360/slam/io/depth_image.h>
 
 namespace orb360 {
 namespace {

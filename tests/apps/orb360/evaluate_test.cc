@@ -8,12 +8,12 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "slam/geometry/rigid3.h"
-#include "slam/io/depth_image.h"
 #include "slam/io/ply.h"
-#include "slam/io/trajectory.h"
 #include "tests/apps/orb360/program.h"
 #include "tests/apps/orb360/textured_room.h"
+#include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/io/depth_image.h>
+#include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
 namespace {

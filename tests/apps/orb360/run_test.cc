@@ -15,13 +15,13 @@
 #include <opencv2/imgproc.hpp>
 
 #include "slam/io/atomic_file.h"
-#include "slam/io/map_file.h"
 #include "slam/io/ply.h"
 #include "slam/io/sparse_file.h"
-#include "slam/io/trajectory.h"
 #include "tests/apps/orb360/program.h"
 #include "tests/apps/orb360/textured_room.h"
 #include "tests/nn/graph/network_builder.h"
+#include <orb360/slam/io/map_file.h>
+#include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
 namespace {

@@ -9,8 +9,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "slam/geometry/camera.h"
-#include "slam/geometry/so3.h"
+#include <orb360/slam/geometry/camera.h>
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <opencv2/core.hpp>
 
-#include "slam/geometry/rigid3.h"
-#include "slam/io/trajectory.h"
+#include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
 

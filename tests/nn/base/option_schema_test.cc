@@ -1,5 +1,3 @@
-#include "nn/base/option_schema.h"
-
 #include <limits>
 #include <string>
 #include <vector>
@@ -7,7 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/base/option_schema.h>
 
 namespace orb360 {
 namespace {

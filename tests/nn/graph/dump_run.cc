@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-#include "nn/base/check.h"
 #include "tests/nn/tensor_memory.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

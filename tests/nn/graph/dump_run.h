@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "nn/graph/executor.h"
-#include "nn/graph/graph.h"
 #include "tests/nn/dump.h"
+#include <orb360/nn/graph/executor.h>
+#include <orb360/nn/graph/graph.h>
 
 namespace orb360::nn {
 

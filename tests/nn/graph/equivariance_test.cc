@@ -9,10 +9,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nn/graph/network_file.h"
 #include "tests/nn/dump.h"
 #include "tests/nn/graph/dump_run.h"
 #include "tests/nn/kernels/plain_image.h"
+#include <orb360/nn/graph/network_file.h>
 
 namespace orb360::nn {
 namespace {

@@ -1,16 +1,15 @@
-#include "nn/graph/executor.h"
-
 #include <cmath>
 #include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "nn/base/cpu.h"
 #include "tests/nn/graph/network_run.h"
 #include "tests/nn/graph/random_network.h"
 #include "tests/nn/reference_interpreter.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/graph/executor.h>
 
 namespace orb360::nn {
 namespace {

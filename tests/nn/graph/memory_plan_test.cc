@@ -8,8 +8,8 @@
 
 #include "nn/graph/buffer_assignment.h"
 #include "nn/graph/cpu_backend.h"
-#include "nn/tensor.h"
 #include "tests/nn/graph/random_network.h"
+#include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
 namespace {

@@ -9,9 +9,9 @@
 #include <hdf5.h>
 #include <openssl/sha.h>
 
-#include "nn/base/check.h"
 #include "nn/base/hdf5_handle.h"
 #include "nn/graph/parse_graph.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "nn/graph/graph.h"
+#include <orb360/nn/graph/graph.h>
 
 namespace orb360::nn {
 

@@ -1,14 +1,13 @@
-#include "nn/graph/network_file.h"
-
 #include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
-#include "nn/base/check.h"
 #include "tests/nn/graph/network_builder.h"
 #include "tests/slam/io/temp_folder.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/graph/network_file.h>
 
 namespace orb360::nn {
 namespace {

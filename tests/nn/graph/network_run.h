@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "nn/graph/executor.h"
 #include "tests/nn/kernels/plain_image.h"
+#include <orb360/nn/graph/executor.h>
 
 namespace orb360::nn {
 

@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "tests/nn/graph/network_builder.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

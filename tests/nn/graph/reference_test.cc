@@ -14,10 +14,10 @@
 #include <hdf5.h>
 
 #include "nn/base/hdf5_handle.h"
-#include "nn/graph/network_file.h"
 #include "tests/nn/dump.h"
 #include "tests/nn/graph/dump_run.h"
 #include "tests/slam/io/temp_folder.h"
+#include <orb360/nn/graph/network_file.h>
 
 namespace orb360::nn {
 namespace {

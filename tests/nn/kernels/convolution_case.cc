@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "nn/base/aligned_vector.h"
 #include "tests/dispatch_targets.h"
 #include "tests/nn/tensor_memory.h"
+#include <orb360/nn/base/aligned_vector.h>
 
 namespace orb360::nn {
 namespace {

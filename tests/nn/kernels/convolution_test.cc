@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "tests/nn/kernels/convolution_case.h"
 #include "tests/nn/tensor_memory.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

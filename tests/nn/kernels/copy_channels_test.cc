@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "nn/base/bfloat16.h"
-#include "nn/base/check.h"
 #include "tests/nn/kernels/plain_image.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

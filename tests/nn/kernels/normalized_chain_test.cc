@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "nn/kernels/upsample.h"
 #include "tests/dispatch_targets.h"
 #include "tests/nn/kernels/plain_image.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
 namespace {

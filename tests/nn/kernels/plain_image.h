@@ -12,8 +12,8 @@
 
 #include <gtest/gtest.h>
 
-#include "nn/tensor.h"
 #include "tests/nn/tensor_memory.h"
+#include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
 

@@ -1,10 +1,9 @@
-#include "nn/models/default_weights.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nn/graph/network_file.h"
-#include "nn/models/depth_completion.h"
+#include <orb360/nn/graph/network_file.h>
+#include <orb360/nn/models/default_weights.h>
+#include <orb360/nn/models/depth_completion.h>
 
 namespace orb360::nn {
 namespace {

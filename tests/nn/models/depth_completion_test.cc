@@ -1,14 +1,13 @@
-#include "nn/models/depth_completion.h"
-
 #include <cmath>
 #include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "tests/nn/graph/network_builder.h"
 #include "tests/slam/io/temp_folder.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/models/depth_completion.h>
 
 namespace orb360::nn {
 namespace {

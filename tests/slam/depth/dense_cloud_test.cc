@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "tests/slam/depth/range_room.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

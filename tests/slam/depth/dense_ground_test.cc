@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/geometry/camera.h"
-#include "slam/geometry/so3.h"
 #include "tests/slam/geometry/random_geometry.h"
+#include <orb360/slam/geometry/camera.h>
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
-#include "slam/geometry/camera.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/geometry/camera.h>
 
 namespace orb360 {
 namespace {

@@ -7,9 +7,9 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
-#include "slam/depth/dense_depth.h"
-#include "slam/geometry/camera.h"
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/depth/dense_depth.h>
+#include <orb360/slam/geometry/camera.h>
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 

@@ -1,11 +1,10 @@
-#include "slam/depth/sparse_depth.h"
-
 #include <algorithm>
 #include <set>
 
 #include <gtest/gtest.h>
 
 #include "tests/slam/pipeline/synthetic_scene.h"
+#include <orb360/slam/depth/sparse_depth.h>
 
 namespace orb360 {
 namespace {

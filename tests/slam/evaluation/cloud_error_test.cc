@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/geometry/so3.h"
 #include "tests/slam/depth/range_room.h"
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/geometry/so3.h"
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
-#include "slam/geometry/so3.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

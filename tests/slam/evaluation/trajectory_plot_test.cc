@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "slam/geometry/so3.h"
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

@@ -7,12 +7,12 @@
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
 
-#include "nn/base/check.h"
 #include "slam/features/matching.h"
 #include "slam/geometry/bearing.h"
-#include "slam/geometry/so3.h"
 #include "tests/dispatch_targets.h"
 #include "tests/slam/features/sphere_texture.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

@@ -1,11 +1,10 @@
-#include "slam/features/sphere_grid.h"
-
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
 #include "slam/geometry/bearing.h"
 #include "tests/slam/geometry/random_geometry.h"
+#include <orb360/slam/features/sphere_grid.h>
 
 namespace orb360 {
 namespace {

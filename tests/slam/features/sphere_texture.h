@@ -12,7 +12,7 @@
 #include <Eigen/Geometry>
 #include <opencv2/core.hpp>
 
-#include "slam/geometry/camera.h"
+#include <orb360/slam/geometry/camera.h>
 
 namespace orb360 {
 

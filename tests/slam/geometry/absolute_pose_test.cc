@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "slam/geometry/bearing.h"
 #include "tests/slam/geometry/random_geometry.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -1,5 +1,3 @@
-#include "slam/geometry/camera.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,8 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "tests/slam/geometry/random_geometry.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/geometry/camera.h>
 
 namespace orb360 {
 namespace {

@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "nn/base/statistics.h"
 #include "tests/slam/geometry/two_views.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "slam/geometry/bearing.h"
-#include "slam/geometry/so3.h"
 #include "tests/slam/geometry/random_geometry.h"
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

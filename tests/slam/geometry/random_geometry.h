@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 

@@ -1,10 +1,9 @@
-#include "slam/geometry/rigid3.h"
-
 #include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "tests/slam/geometry/random_geometry.h"
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 namespace {

@@ -1,10 +1,9 @@
-#include "slam/geometry/so3.h"
-
 #include <numbers>
 
 #include <gtest/gtest.h>
 
 #include "tests/slam/geometry/random_geometry.h"
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

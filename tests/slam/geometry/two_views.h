@@ -6,8 +6,8 @@
 #include <Eigen/Core>
 
 #include "slam/geometry/bearing.h"
-#include "slam/geometry/rigid3.h"
 #include "tests/slam/geometry/random_geometry.h"
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 

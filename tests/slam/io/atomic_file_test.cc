@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "nn/base/check.h"
 #include "tests/slam/io/temp_folder.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

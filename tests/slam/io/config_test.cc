@@ -1,12 +1,11 @@
-#include "slam/io/config.h"
-
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "tests/slam/io/temp_folder.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/config.h>
 
 namespace orb360 {
 namespace {

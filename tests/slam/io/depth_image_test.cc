@@ -1,13 +1,12 @@
-#include "slam/io/depth_image.h"
-
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "nn/base/check.h"
 #include "tests/slam/io/temp_folder.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/depth_image.h>
 
 namespace orb360 {
 namespace {

@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "nn/base/check.h"
 #include "tests/slam/io/temp_folder.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

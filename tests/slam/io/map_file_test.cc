@@ -1,5 +1,3 @@
-#include "slam/io/map_file.h"
-
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -7,10 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "slam/io/map_arrays.h"
 #include "tests/slam/io/temp_folder.h"
 #include "tests/slam/pipeline/synthetic_scene.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/map_file.h>
 
 namespace orb360 {
 namespace {

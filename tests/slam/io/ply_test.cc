@@ -8,9 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
-#include "slam/geometry/so3.h"
 #include "tests/slam/io/temp_folder.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

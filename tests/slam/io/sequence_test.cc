@@ -1,5 +1,3 @@
-#include "slam/io/sequence.h"
-
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -11,8 +9,9 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "nn/base/check.h"
 #include "tests/slam/io/temp_folder.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/sequence.h>
 
 namespace orb360 {
 namespace {

@@ -1,6 +1,3 @@
-#include "slam/io/trajectory.h"
-#include "slam/io/trajectory_journal.h"
-
 #include <clocale>
 #include <cmath>
 #include <numbers>
@@ -12,9 +9,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
-#include "slam/geometry/so3.h"
+#include "slam/io/trajectory_journal.h"
 #include "tests/slam/io/temp_folder.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/geometry/so3.h>
+#include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
 namespace {

@@ -1,12 +1,11 @@
-#include "slam/map/map.h"
-
 #include <memory>
 
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "slam/features/sphere_pyramid.h"
 #include "tests/slam/pipeline/synthetic_scene.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 namespace {

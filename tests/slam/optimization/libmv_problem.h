@@ -15,8 +15,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "nn/base/check.h"
 #include "slam/optimization/bundle_problem.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 

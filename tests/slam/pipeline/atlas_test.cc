@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "tests/slam/pipeline/synthetic_scene.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

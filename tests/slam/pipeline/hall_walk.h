@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "slam/geometry/alignment.h"
-#include "slam/geometry/so3.h"
-#include "slam/io/frame_source.h"
-#include "slam/pipeline/options.h"
-#include "slam/pipeline/system.h"
 #include "tests/slam/pipeline/box_room.h"
+#include <orb360/slam/geometry/so3.h>
+#include <orb360/slam/io/frame_source.h>
+#include <orb360/slam/pipeline/options.h>
+#include <orb360/slam/pipeline/system.h>
 
 namespace orb360 {
 

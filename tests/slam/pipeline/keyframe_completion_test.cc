@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "tests/slam/pipeline/propagation_network.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

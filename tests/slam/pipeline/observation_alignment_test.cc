@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "nn/base/statistics.h"
-#include "slam/geometry/so3.h"
 #include "tests/slam/pipeline/patch_scene.h"
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

@@ -1,5 +1,3 @@
-#include "slam/pipeline/options.h"
-
 #include <cmath>
 #include <fstream>
 #include <iomanip>
@@ -13,12 +11,13 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
-#include "nn/base/check.h"
 #include "nn/base/number_text.h"
-#include "nn/base/option_schema.h"
-#include "slam/io/config.h"
-#include "slam/pipeline/system.h"
 #include "tests/slam/io/temp_folder.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/base/option_schema.h>
+#include <orb360/slam/io/config.h>
+#include <orb360/slam/pipeline/options.h>
+#include <orb360/slam/pipeline/system.h>
 
 namespace orb360 {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/geometry/so3.h"
 #include "slam/pipeline/observation_alignment.h"
 #include "tests/slam/pipeline/patch_scene.h"
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

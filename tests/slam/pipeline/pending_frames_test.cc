@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "slam/features/feature_index.h"
-#include "slam/features/features.h"
-#include "slam/map/map.h"
 #include "tests/slam/geometry/random_geometry.h"
+#include <orb360/slam/features/features.h>
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

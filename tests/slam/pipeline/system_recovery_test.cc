@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "slam/features/sphere_pyramid.h"  // printed by an assertion
-#include "slam/io/map_file.h"
-#include "slam/pipeline/system.h"
 #include "tests/slam/pipeline/hall_walk.h"
+#include <orb360/slam/io/map_file.h>
+#include <orb360/slam/pipeline/system.h>
 
 namespace orb360 {
 namespace {

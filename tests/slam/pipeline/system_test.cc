@@ -1,5 +1,3 @@
-#include "slam/pipeline/system.h"
-
 #include <cstring>
 #include <filesystem>
 #include <utility>
@@ -7,13 +5,14 @@
 
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
 #include "nn/base/statistics.h"
 #include "slam/io/depth_map_store.h"
-#include "slam/map/map.h"
 #include "tests/slam/io/temp_folder.h"
 #include "tests/slam/pipeline/hall_walk.h"
 #include "tests/slam/pipeline/propagation_network.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/map/map.h>
+#include <orb360/slam/pipeline/system.h>
 
 namespace orb360 {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

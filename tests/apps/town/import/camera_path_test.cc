@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "nn/base/check.h"
 #include "tests/apps/town/plain_materials.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "apps/town/render/geometry_image.h"
 #include "apps/town/render/stage.h"
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

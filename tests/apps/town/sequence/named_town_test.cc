@@ -7,7 +7,7 @@
 
 #include "apps/town/sequence/statistics.h"
 #include "apps/town/sequence/town_drive.h"
-#include "nn/base/check.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

@@ -9,10 +9,10 @@
 #include <unistd.h>
 
 #include "apps/town/image/cube.h"
-#include "nn/base/check.h"
-#include "slam/geometry/camera.h"
 #include "slam/io/dataset.h"
-#include "slam/io/depth_image.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/geometry/camera.h>
+#include <orb360/slam/io/depth_image.h>
 
 namespace orb360::town {
 namespace {

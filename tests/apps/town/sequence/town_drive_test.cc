@@ -12,8 +12,8 @@
 #include <unistd.h>
 
 #include "apps/town/sequence/render_folder.h"
-#include "nn/base/check.h"
 #include "slam/io/dataset.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {

@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/geometry/so3.h"
 #include "slam/optimization/point_residual.h"
 #include "tests/dispatch_targets.h"
 #include "tests/slam/optimization/noisy_walk.h"
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {

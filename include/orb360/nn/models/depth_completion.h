@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "nn/graph/executor.h"
-#include "nn/graph/graph.h"
-#include "nn/models/image_size.h"
+#include <orb360/nn/graph/executor.h>
+#include <orb360/nn/graph/graph.h>
+#include <orb360/nn/models/image_size.h>
 
 namespace orb360::nn {
 

@@ -1,14 +1,14 @@
 #pragma once
 
-#include "slam/features/orb_options.h"
-#include "slam/pipeline/depth_options.h"
-#include "slam/pipeline/initializer_options.h"
-#include "slam/pipeline/keyframe_options.h"
-#include "slam/pipeline/loop_options.h"
-#include "slam/pipeline/mapper_options.h"
-#include "slam/pipeline/recovery_options.h"
-#include "slam/pipeline/scale_options.h"
-#include "slam/pipeline/tracker_options.h"
+#include <orb360/slam/features/orb_options.h>
+#include <orb360/slam/pipeline/depth_options.h>
+#include <orb360/slam/pipeline/initializer_options.h>
+#include <orb360/slam/pipeline/keyframe_options.h>
+#include <orb360/slam/pipeline/loop_options.h>
+#include <orb360/slam/pipeline/mapper_options.h>
+#include <orb360/slam/pipeline/recovery_options.h>
+#include <orb360/slam/pipeline/scale_options.h>
+#include <orb360/slam/pipeline/tracker_options.h>
 
 namespace orb360 {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "slam/optimization/local_bundle_options.h"
-#include "slam/pipeline/triangulation_options.h"
+#include <orb360/slam/optimization/local_bundle_options.h>
+#include <orb360/slam/pipeline/triangulation_options.h>
 
 namespace orb360 {
 

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "nn/base/aligned_vector.h"
-#include "nn/graph/graph.h"
+#include <orb360/nn/base/aligned_vector.h>
+#include <orb360/nn/graph/graph.h>
 
 namespace orb360::nn {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "slam/optimization/optimizer.h"
+#include <orb360/slam/optimization/optimizer.h>
 
 namespace orb360 {
 

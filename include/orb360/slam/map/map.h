@@ -8,9 +8,9 @@
 
 #include <Eigen/Core>
 
-#include "slam/features/features.h"
-#include "slam/features/patch.h"
-#include "slam/geometry/rigid3.h"
+#include <orb360/slam/features/features.h>
+#include <orb360/slam/features/patch.h>
+#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 

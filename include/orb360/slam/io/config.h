@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "nn/base/option_schema.h"
+#include <orb360/nn/base/option_schema.h>
 
 namespace orb360 {
 

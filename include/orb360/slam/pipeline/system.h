@@ -5,9 +5,9 @@
 #include <optional>
 #include <span>
 
-#include "slam/geometry/camera.h"
-#include "slam/pipeline/frame_report.h"
-#include "slam/pipeline/reconstruction.h"
+#include <orb360/slam/geometry/camera.h>
+#include <orb360/slam/pipeline/frame_report.h>
+#include <orb360/slam/pipeline/reconstruction.h>
 
 namespace cv {
 class Mat;

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "nn/graph/graph.h"
+#include <orb360/nn/graph/graph.h>
 
 namespace orb360::nn {
 

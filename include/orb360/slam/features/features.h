@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "slam/features/sphere_grid.h"
+#include <orb360/slam/features/sphere_grid.h>
 
 namespace orb360 {
 

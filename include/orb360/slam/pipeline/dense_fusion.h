@@ -2,9 +2,9 @@
 
 #include <filesystem>
 
-#include "slam/depth/dense_cloud_summary.h"
-#include "slam/geometry/rigid3.h"
-#include "slam/pipeline/reconstruction.h"
+#include <orb360/slam/depth/dense_cloud_summary.h>
+#include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/pipeline/reconstruction.h>
 
 namespace orb360 {
 

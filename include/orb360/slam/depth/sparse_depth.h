@@ -4,9 +4,9 @@
 
 #include <opencv2/core.hpp>
 
-#include "slam/depth/sparse_depth_options.h"
-#include "slam/geometry/camera.h"
-#include "slam/map/map.h"
+#include <orb360/slam/depth/sparse_depth_options.h>
+#include <orb360/slam/geometry/camera.h>
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

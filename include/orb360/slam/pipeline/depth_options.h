@@ -1,7 +1,7 @@
 #pragma once
 
-#include "slam/depth/dense_ground_options.h"
-#include "slam/depth/sparse_depth_options.h"
+#include <orb360/slam/depth/dense_ground_options.h>
+#include <orb360/slam/depth/sparse_depth_options.h>
 
 namespace orb360 {
 

@@ -5,9 +5,9 @@
 
 #include <opencv2/core.hpp>
 
-#include "slam/depth/dense_depth.h"
-#include "slam/depth/sparse_depth.h"
-#include "slam/geometry/camera.h"
+#include <orb360/slam/depth/dense_depth.h>
+#include <orb360/slam/depth/sparse_depth.h>
+#include <orb360/slam/geometry/camera.h>
 
 namespace orb360 {
 

@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <optional>
 
-#include "slam/geometry/rigid3.h"
-#include "slam/map/ground.h"
-#include "slam/map/map.h"
+#include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/map/ground.h>
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "slam/geometry/so3.h"
+#include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 
