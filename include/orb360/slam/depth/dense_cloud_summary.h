@@ -7,7 +7,7 @@ namespace orb360 {
 /// What the fusion of a cloud did.
 struct DenseCloudStatistics {
   int views = 0;
-  std::int64_t confirmed = 0;  // points, before they met in voxels
+  std::int64_t consistent = 0;  // points, before they met in voxels
   double voxel_size = 0;       // world units
 };
 
