@@ -3,14 +3,17 @@
 #include <cstddef>
 #include <cstdint>
 
+/// Inference of convolutional networks on the CPU: tensors, graphs, network files and models. It
+/// knows nothing of SLAM.
 namespace orb360::nn {
 
 /// Channels, rows and columns of the activations of one image. There is no batch dimension: a SLAM
 /// system completes one image at a time, and several threads run one image each.
 struct Shape {
-  int channels = 0;
-  int height = 0;
-  int width = 0;
+  int channels = 0;  ///< Number of channels.
+  int height = 0;    ///< Number of rows, pixels.
+  int width = 0;     ///< Number of columns, pixels.
+  /// Compares all members.
   friend bool operator==(const Shape&, const Shape&) = default;
 };
 
@@ -25,8 +28,13 @@ enum class Layout : std::uint8_t {
   kBlocked,
 };
 
-enum class DataType : std::uint8_t { kFloat, kBFloat16 };
+/// Type of the elements of a tensor.
+enum class DataType : std::uint8_t {
+  kFloat,     ///< IEEE 754 binary32.
+  kBFloat16,  ///< The upper 16 bits of binary32: its exponent and 8 bits of precision.
+};
 
+/// Returns the size of an element in bytes.
 constexpr std::size_t SizeOf(DataType type) { return type == DataType::kFloat ? 4 : 2; }
 
 /// Bytes of a block of channels. Every row of every tensor is aligned to it.
@@ -37,7 +45,7 @@ constexpr int BlockOf(DataType type) { return static_cast<int>(kAlignment / Size
 
 /// Values around an image where a kernel reaches over its edge.
 enum class Padding : std::uint8_t {
-  kZero,
+  kZero,  ///< Zeros on all sides.
   /// Columns continue at the other side (longitude); the first and last rows are repeated
   /// (latitude).
   kWrapReplicate,
@@ -51,19 +59,22 @@ enum class Padding : std::uint8_t {
 /// in elements; a plane is a channel (kPlanar) or a block of channels (kBlocked). A slice of the
 /// channels of a tensor is a view too: concatenation writes tensors next to each other.
 struct TensorView {
-  void* data = nullptr;  // of row 0, column 0 of the first channel: behind the halo
-  Shape shape;
-  Layout layout = Layout::kPlanar;
-  DataType type = DataType::kFloat;
-  int halo = 0;
-  std::ptrdiff_t row_stride = 0;
-  std::ptrdiff_t plane_stride = 0;
+  /// Address of row 0, column 0 of the first channel, which lies behind the halo.
+  void* data = nullptr;
+  Shape shape;                       ///< Size without the halo.
+  Layout layout = Layout::kPlanar;   ///< Order of the channels in memory.
+  DataType type = DataType::kFloat;  ///< Type of the elements at `data`.
+  int halo = 0;                      ///< Pixels around the tensor on each side that exist.
+  std::ptrdiff_t row_stride = 0;     ///< Elements from a row to the next one of its plane.
+  std::ptrdiff_t plane_stride = 0;   ///< Elements from a plane to the next one.
 
-  /// Returns the start of a row of a plane. Rows -halo to height + halo - 1 exist.
+  /// Returns the address of column 0 of a row of a plane. Rows -halo to height + halo - 1 exist.
+  /// `T` is the type of the elements.
   template <typename T>
   T* row(int plane, int y) const {
     return static_cast<T*>(data) + plane * plane_stride + y * row_stride;
   }
+  /// Returns the number of planes: channels, or blocks of channels in kBlocked.
   int planes() const {
     return layout == Layout::kPlanar ? shape.channels
                                      : (shape.channels + BlockOf(type) - 1) / BlockOf(type);
@@ -72,21 +83,24 @@ struct TensorView {
 
 /// Layout, type, size and halo of a tensor, which the memory plan needs before there is memory.
 struct TensorFormat {
-  Shape shape;
-  Layout layout = Layout::kPlanar;
-  DataType type = DataType::kFloat;
-  int halo = 0;
+  Shape shape;                       ///< Size without the halo.
+  Layout layout = Layout::kPlanar;   ///< Order of the channels in memory.
+  DataType type = DataType::kFloat;  ///< Type of the elements.
+  int halo = 0;                      ///< Pixels around the tensor on each side.
 
-  std::ptrdiff_t row_stride() const;    // elements
-  std::ptrdiff_t plane_stride() const;  // elements
-  /// Bytes of the whole tensor with its halo, a multiple of kAlignment.
+  /// Returns the number of elements from a row to the next one, halo and alignment included.
+  std::ptrdiff_t row_stride() const;
+  /// Returns the number of elements from a plane to the next one, halo included.
+  std::ptrdiff_t plane_stride() const;
+  /// Returns the bytes of the whole tensor with its halo, a multiple of kAlignment.
   std::size_t bytes() const;
-  /// Views the tensor in `memory`, which has bytes() bytes and is aligned to kAlignment.
+  /// Returns a view of the tensor in `memory`, which has bytes() bytes and is aligned to
+  /// kAlignment.
   TensorView View(void* memory) const;
 };
 
-/// Views channels `first` to `first + count - 1` of a tensor. In kBlocked `first` must be a
-/// multiple of the block.
+/// Returns a view of channels `first` to `first + count - 1` of a tensor. In kBlocked `first` must
+/// be a multiple of the block.
 TensorView ChannelSlice(const TensorView& tensor, int first, int count);
 
 /// Fills `width` pixels of the halo on each side according to `padding`.

@@ -19,8 +19,10 @@ class ContractError : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
+/// Used by macros of public headers only.
 namespace internal {
 
+/// Throws ContractError with file, line, expression and values; called by ORB360_CHECK.
 template <typename... Values>
 [[noreturn]] void FailContract(const char* file, int line, const char* expression,
                                const Values&... values) {

@@ -12,7 +12,9 @@
 
 namespace orb360::nn {
 
+/// How an Executor computes.
 struct ExecutorOptions {
+  /// Number of OpenMP threads of one run, at least 1. No result depends on it.
   int threads = 1;
   /// The type in which convolutions multiply. kBFloat16 is faster and rounds to 8 bits; it needs a
   /// processor that supports it (UserError otherwise). Everything else is computed in floats.
@@ -30,6 +32,7 @@ class Executor {
   /// Memory of one run. A workspace serves one run at a time.
   class Workspace {
    public:
+    /// Allocates the memory. Throws UserError where there is too little.
     explicit Workspace(const Executor& executor);
 
    private:
@@ -46,27 +49,32 @@ class Executor {
 
   /// An input or output: channels x height x width floats, row by row.
   struct Port {
-    std::string name;
-    Shape shape;
+    std::string name;  ///< Name of the input or output in the graph.
+    Shape shape;       ///< Size for the images of this executor.
   };
 
-  /// Throws UserError for an image size that the graph does not accept.
+  /// Prepares the graph for images of `height` x `width` pixels. Throws UserError for an image size
+  /// that the graph does not accept.
   Executor(const Graph& graph, int height, int width, const ExecutorOptions& options = {});
 
+  /// Returns the inputs in the order in which Run takes them.
   const std::vector<Port>& inputs() const { return inputs_; }
+  /// Returns the outputs in the order in which Run writes them.
   const std::vector<Port>& outputs() const { return outputs_; }
 
   /// Computes `outputs` from `inputs`, which have the order and sizes of inputs() and outputs().
-  /// Nothing is allocated. The bits are the same for any number of threads.
+  /// Nothing is allocated. Throws ContractError for another number of arrays or another size of
+  /// one. The bits are the same for any number of threads.
   void Run(std::span<const std::span<const float>> inputs,
            std::span<const std::span<float>> outputs, Workspace* workspace) const;
 
   /// Returns what the last run in `workspace` wrote to the tensor of that name in the graph.
-  /// Requires keeps_tensors.
+  /// Contract: keeps_tensors was set and the graph has such a tensor.
   TensorView Find(const Workspace& workspace, std::string_view tensor) const;
 
-  /// Bytes of a workspace, and the bytes it would have if every tensor had memory of its own.
+  /// Returns the bytes of a workspace, in which tensors share memory.
   std::size_t planned_bytes() const;
+  /// Returns the bytes that a workspace would have if every tensor had memory of its own.
   std::size_t naive_bytes() const;
 
  private:

@@ -13,16 +13,20 @@ namespace orb360::nn {
 
 /// A panorama with sparse depth. All arrays have the size of the DepthCompletion, row by row.
 struct CompletionInput {
-  std::span<const std::uint8_t> rgb;  // three bytes a pixel
-  /// Range along each pixel's ray in any unit, and its confidence in (0, 1]. Pixels whose range is
-  /// not finite and positive, or whose confidence is not positive, are not points.
+  /// Red, green and blue of each pixel, 0 to 255.
+  std::span<const std::uint8_t> rgb;
+  /// Range along each pixel's ray, in any unit. Pixels whose range is not finite and positive, or
+  /// whose confidence is not positive, are not points.
   std::span<const float> depth;
+  /// Confidence of each point, in (0, 1]; larger values count as 1.
   std::span<const float> confidence;
 };
 
+/// The completed panorama. All images have the size of the DepthCompletion, row by row.
 struct CompletionOutput {
-  std::vector<float> depth;  // in the unit of the points; 0 where the network gives none
-  /// 1 / confidence - 1 is the expected relative error of the depth.
+  /// Range along each pixel's ray, in the unit of the points; 0 where the network gives none.
+  std::vector<float> depth;
+  /// Confidence c of each pixel in 0..1: 1 / c - 1 is the expected relative error of the depth.
   std::vector<float> confidence;
   /// Probability of each pixel that it shows the plane of the road under the camera; empty if the
   /// network does not give it.
@@ -41,6 +45,7 @@ class DepthCompletion {
   /// Memory of one completion. A workspace serves one completion at a time.
   class Workspace {
    public:
+    /// Allocates the memory. Throws UserError where there is too little.
     explicit Workspace(const DepthCompletion& model);
 
    private:
@@ -54,10 +59,13 @@ class DepthCompletion {
   /// width that the network's normalisation states, if any, and to the nearest size that it takes.
   DepthCompletion(const Graph& graph, ImageSize size, const ExecutorOptions& options = {});
 
+  /// Returns the size of the images that are completed.
   ImageSize size() const { return size_; }
-  /// Size of the images at which the network runs.
+  /// Returns the size of the images at which the network runs.
   ImageSize network_size() const { return network_size_; }
 
+  /// Completes the depth of one panorama. Throws ContractError where an array of `image` has not
+  /// the size of this model. `workspace` is one of this model.
   CompletionOutput Complete(const CompletionInput& image, Workspace* workspace) const;
 
  private:
