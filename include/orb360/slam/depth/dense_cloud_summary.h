@@ -4,17 +4,18 @@
 
 namespace orb360 {
 
-/// What the fusion of a cloud did.
+/// Statistics of the fusion of depth maps into a cloud.
 struct DenseCloudStatistics {
-  int views = 0;
-  std::int64_t consistent = 0;  // points, before they met in voxels
-  double voxel_size = 0;       // world units
+  int views = 0;  ///< Number of keyframes whose depth was fused.
+  /// Number of pixels whose points were geometrically consistent, before fusion in voxels.
+  std::int64_t consistent = 0;
+  double voxel_size = 0;  ///< Side of the voxels, world units.
 };
 
-/// The same with the number of points in the file.
+/// Summary of a cloud that was written to a file.
 struct DenseCloudSummary {
-  DenseCloudStatistics fusion;
-  std::uint64_t points = 0;
+  DenseCloudStatistics fusion;  ///< Statistics of the fusion.
+  std::uint64_t points = 0;     ///< Number of points in the file.
 };
 
 }  // namespace orb360

@@ -2,8 +2,9 @@
 
 namespace orb360 {
 
+/// How the ground is found in completed depth (docs/concepts/scale.md).
 struct DenseGroundOptions {
-  /// Pixels are ground if the network gives them at least this probability.
+  /// Least probability by the network of a pixel that is ground.
   double min_probability = 0.5;
   /// Standard deviation of the logarithm of the height from one keyframe whose ground appears
   /// perfectly flat, because roads are not flat and cameras sway.

@@ -11,9 +11,11 @@
 
 namespace orb360 {
 
+/// How a DepthCompleter computes.
 struct DepthCompleterOptions {
-  /// Size of the images that are completed; each shows a full sphere.
+  /// Size of the images that are completed, pixels; each shows a full sphere.
   cv::Size size{1024, 512};
+  /// Number of OpenMP threads, at least 1. No result depends on it.
   int threads = 1;
   /// Computes convolutions in bfloat16, which is faster and less exact. Throws UserError if the
   /// processor does not support it.
@@ -28,7 +30,7 @@ class DepthCompleter {
   DepthCompleter(const std::filesystem::path& weights, const DepthCompleterOptions& options);
   ~DepthCompleter();
 
-  /// The camera of the images that are completed; ProjectLandmarks and Complete use it.
+  /// Returns the camera of the images that are completed; ProjectLandmarks and Complete use it.
   const EquirectangularCamera& camera() const { return camera_; }
 
   /// Completes a keyframe. `color` is CV_8UC3, BGR, of the camera's size, as are the images of

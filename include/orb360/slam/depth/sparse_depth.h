@@ -12,10 +12,12 @@ namespace orb360 {
 
 /// A landmark projected into a keyframe.
 struct SparsePoint {
-  LandmarkId landmark;
-  Eigen::Vector2d pixel;  // of the camera asked for
-  double range;           // along the ray, in the map's units
-  double confidence;      // from min_confidence to 1, see RangeError
+  LandmarkId landmark;    ///< The landmark that is projected.
+  Eigen::Vector2d pixel;  ///< Continuous pixel of the camera that was asked for.
+  double range;           ///< Range along the pixel's ray, in the map's unit.
+  /// 1 / (1 + (e / half_confidence_error)^2), where e is the landmark's RangeError; at least
+  /// min_confidence.
+  double confidence;
 };
 
 /// Returns the standard deviation of a landmark's range from a keyframe as a fraction of the range:
@@ -25,18 +27,19 @@ struct SparsePoint {
 double RangeError(const Map& map, const Landmark& landmark);
 
 /// Generates sparse depth (paper III-B): projects the landmarks of a keyframe and of its neighbours
-/// into it. The nearest landmark of a pixel is kept; hidden and moving landmarks are left out.
-/// Ordered by landmark.
+/// into it. The nearest landmark of a pixel is kept; hidden and moving landmarks are left out. The
+/// points are ordered by landmark. Contract: the keyframe exists.
 std::vector<SparsePoint> ProjectLandmarks(const Map& map, KeyframeId keyframe,
                                           const EquirectangularCamera& camera,
                                           const SparseDepthOptions& options);
 
-/// Sparse depth as images of the camera's size, CV_32F: range and confidence, 0 where there is no
-/// point.
+/// Sparse depth as images of one camera.
 struct SparseDepth {
-  cv::Mat range;
-  cv::Mat confidence;
+  cv::Mat range;       ///< CV_32FC1: range along each pixel's ray; 0 where there is no point.
+  cv::Mat confidence;  ///< CV_32FC1: confidence in (0, 1]; 0 where there is no point.
 };
+/// Returns images of the camera's size with the range and the confidence of each point at its
+/// pixel.
 SparseDepth RenderSparseDepth(const std::vector<SparsePoint>& points,
                               const EquirectangularCamera& camera);
 

@@ -14,7 +14,9 @@ namespace orb360 {
 /// circumference.
 class SphereGrid {
  public:
+  /// An empty grid, in which no bearing is found.
   SphereGrid() = default;
+  /// Sorts unit vectors, whose indices Query returns.
   explicit SphereGrid(std::span<const Eigen::Vector3d> bearings);
 
   /// Appends the indices of all bearings within `radius` (radians) of the unit vector `center`, and

@@ -18,18 +18,25 @@ class EquirectangularCamera {
   /// Throws ContractError unless both sizes are positive.
   EquirectangularCamera(int width, int height);
 
+  /// Returns the image's width, pixels.
   int width() const { return width_; }
+  /// Returns the image's height, pixels.
   int height() const { return height_; }
+  /// Returns f_x = W / 2 pi, pixels per radian of longitude (paper Eq. 1-4).
   double fx() const { return width_ / (2.0 * std::numbers::pi); }
+  /// Returns f_y = -H / pi, pixels per radian of latitude; v decreases upward.
   double fy() const { return -height_ / std::numbers::pi; }
+  /// Returns c_x = W / 2, the column of the forward direction, pixels.
   double cx() const { return 0.5 * width_; }
+  /// Returns c_y = H / 2, the row of the horizon, pixels.
   double cy() const { return 0.5 * height_; }
 
   /// Returns the pixel of a point in the camera frame of any non-zero length (Eq. 1-2), with u in
   /// [0, width) and v in [0, height].
   Eigen::Vector2d Project(const Eigen::Vector3d& point) const;
 
-  /// As above, with the derivative d(u,v)/d(point). Returns false and leaves the outputs unchanged
+  /// Projects a point as above, with the Jacobian d(u,v)/d(point). Returns false and leaves the
+  /// outputs unchanged
   /// where the derivative does not exist: at the centre and on the polar axis (within 1e-9 rad).
   bool Project(const Eigen::Vector3d& point, Eigen::Vector2d* pixel,
                Eigen::Matrix<double, 2, 3>* jacobian) const;

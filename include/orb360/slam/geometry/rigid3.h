@@ -10,14 +10,19 @@ namespace orb360 {
 /// Rigid transform. Named `target_from_source`: p_target = target_from_source * p_source, and
 /// a_from_c = a_from_b * b_from_c.
 struct Rigid3 {
+  /// Unit quaternion of target_from_source.
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  /// Origin of the source frame in the target frame.
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 
+  /// Transforms a point.
   Eigen::Vector3d operator*(const Eigen::Vector3d& p) const { return rotation * p + translation; }
-  /// The quaternion of the product is normalized, so that chains of any length remain rotations.
+  /// Composes two transforms. The quaternion of the product is normalized, so that chains of any
+  /// length remain rotations.
   Rigid3 operator*(const Rigid3& other) const {
     return {(rotation * other.rotation).normalized(), *this * other.translation};
   }
+  /// Returns source_from_target.
   Rigid3 Inverse() const {
     const Eigen::Quaterniond inverse = rotation.conjugate();
     return {inverse, -(inverse * translation)};
@@ -26,17 +31,23 @@ struct Rigid3 {
 
 /// Similarity transform p_target = scale * (rotation * p_source) + translation, scale > 0.
 struct Similarity3 {
+  /// Number of the target's units of length in one unit of the source.
   double scale = 1.0;
+  /// Unit quaternion of target_from_source.
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  /// Origin of the source frame in the target frame, in the target's unit of length.
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 
+  /// Transforms a point.
   Eigen::Vector3d operator*(const Eigen::Vector3d& p) const {
     return scale * (rotation * p) + translation;
   }
+  /// Composes two transforms. The quaternion of the product is normalized.
   Similarity3 operator*(const Similarity3& other) const {
     return {scale * other.scale, (rotation * other.rotation).normalized(),
             *this * other.translation};
   }
+  /// Returns source_from_target.
   Similarity3 Inverse() const {
     const Eigen::Quaterniond inverse = rotation.conjugate();
     return {1.0 / scale, inverse, -(inverse * translation) / scale};

@@ -26,7 +26,8 @@ inline Eigen::Quaterniond ExpSo3(const Eigen::Vector3d& omega) {
   return Eigen::Quaterniond(std::cos(0.5 * angle), s * omega.x(), s * omega.y(), s * omega.z());
 }
 
-/// Inverse of ExpSo3; the angle is in [0, pi].
+/// Returns the rotation vector of a unit quaternion, radians: the inverse of ExpSo3. Its length,
+/// the angle, is in [0, pi].
 inline Eigen::Vector3d LogSo3(const Eigen::Quaterniond& q) {
   const double sign = q.w() < 0 ? -1.0 : 1.0;
   const double sine = q.vec().norm();

@@ -11,8 +11,8 @@ namespace orb360 {
 /// Throws UserError if the file cannot be written.
 void WriteDepthImage(const std::filesystem::path& path, const cv::Mat& range);
 
-/// Reads such a file. Returns CV_32FC1, metres, 0 for none. Throws UserError for a file that is not
-/// a 16-bit image of one channel.
+/// Reads a file that WriteDepthImage can write. Returns ranges (CV_32FC1, metres along each pixel's
+/// ray, 0 for none). Throws UserError for a file that is not a 16-bit image of one channel.
 cv::Mat ReadDepthImage(const std::filesystem::path& path);
 
 }  // namespace orb360

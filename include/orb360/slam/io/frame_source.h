@@ -22,11 +22,12 @@ struct Frame {
 struct SourceInfo {
   /// The path as the user gave it; messages use it.
   std::string name;
+  /// Width and height of the images, pixels.
   cv::Size image_size;
-  /// Frames per second.
+  /// Frame rate, frames per second.
   double frame_rate = 0.0;
-  /// An estimate that is good enough for progress displays only, because containers may state a
-  /// wrong number.
+  /// Estimate of the number of frames. It is good enough for progress displays only, because
+  /// containers may state a wrong number.
   std::optional<int> frame_count;
   /// Height of the camera above the ground, metres, if the input states it.
   std::optional<double> camera_height;
@@ -38,6 +39,7 @@ class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
+  /// Returns what is known of the input.
   virtual const SourceInfo& info() const = 0;
 
   /// Returns the next frame, or nullopt at the end. The image of a damaged frame is empty.

@@ -11,11 +11,14 @@ namespace orb360 {
 
 /// A map as it is stored for later runs.
 struct StoredMap {
-  int width = 0;  // of the images that it was made from, pixels
+  /// Width of the images from which it was made, pixels.
+  int width = 0;
   /// Pose of the map in the world of the trajectories and clouds that were written with it. Later
   /// runs write in the same world.
   Rigid3 file_world_from_map = {};
-  std::optional<KnownGround> ground = {};  // none: the map is not in metres
+  /// Ground under the map, map frame. Without it, the map's unit of length is not the metre.
+  std::optional<KnownGround> ground = {};
+  /// Keyframes and landmarks. Images and patches of images are not stored.
   Map map = {};
 };
 
