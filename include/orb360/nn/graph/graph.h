@@ -9,8 +9,8 @@
 
 namespace orb360::nn {
 
-/// Normalized convolution (Eldesokey, Felsberg, Khan): inputs x and its confidence c, outputs
-/// y = sum(w x c) / (sum(w c) + 1e-20) + bias and c' = sum(w c) / sum(w). Weights are >= 0.
+/// Normalized convolution (Eldesokey, Felsberg, Khan): inputs x and its confidence c, outputs y =
+/// sum(w x c) / (sum(w c) + 1e-20) + bias and c' = sum(w c) / sum(w). Weights are >= 0.
 struct NormalizedConvolutionOp {
   Padding padding = Padding::kZero;  ///< Values around x and c.
 };
@@ -18,10 +18,9 @@ struct NormalizedConvolutionOp {
 struct ConfidencePoolOp {
   /// What the pooled confidence becomes.
   enum class Rule : std::uint8_t {
-    kQuarter,  ///< c / 4
-    kSqrt,     ///< The square root of c.
-  };
-  Rule rule = Rule::kQuarter;  ///< How the confidence is reduced.
+    kQuarter,               ///< A quarter of c.
+    kSqrt,                  ///< The square root of c.
+  } rule = Rule::kQuarter;  ///< How the confidence is reduced.
 };
 /// Convolution with a kernel of size 1, 3 or 5, plus bias.
 struct ConvolutionOp {
@@ -102,8 +101,8 @@ const char* NameOf(const Operation& operation);
 /// Size of a tensor in relation to the image.
 struct Extent {
   bool is_single = false;  ///< Whether the tensor has 1x1 pixels, however large the image is.
-  /// Number n of halvings: the size is that of the image divided by 2^n, rounded up. It is
-  /// negative where the tensor is larger than the image.
+  /// Number n of halvings: the size is that of the image divided by 2^n, rounded up. It is negative
+  /// where the tensor is larger than the image.
   int halvings = 0;
   /// Compares all members.
   friend bool operator==(const Extent&, const Extent&) = default;
