@@ -4,8 +4,8 @@
 
 /// Visual SLAM for 360-degree video on the CPU. System (slam/pipeline/system.h) is the whole of it;
 /// the other headers are its inputs, options and results, and parts that are of use alone. Unless a
-/// comment says otherwise, the camera frame is -X forward, +Y right, +Z up, and the units are those
-/// of the map, seconds and radians.
+/// comment says otherwise, the camera frame is -X forward, +Y right, +Z up, lengths are in the unit
+/// of the map (the metre once its scale is known), times in seconds and angles in radians.
 namespace orb360 {
 
 /// The version of the library by `git describe`: that of a release, such as "0.1.0", or with the

@@ -4,7 +4,7 @@ namespace orb360 {
 
 /// How the ground is found in completed depth (docs/concepts/scale.md).
 struct DenseGroundOptions {
-  /// Least probability by the network of a pixel that is ground.
+  /// Least probability, as the network gives it, of a pixel that counts as ground.
   double min_probability = 0.5;
   /// Standard deviation of the logarithm of the height from one keyframe whose ground appears
   /// perfectly flat, because roads are not flat and cameras sway.

@@ -30,7 +30,8 @@ struct Keypoint {
 /// Red, green and blue, 0 to 255.
 using Color = std::array<uint8_t, 3>;
 
-/// The features of one image; all arrays have the same length, index = feature. Corners come first.
+/// The features of one image. All arrays have the same length and are indexed by feature; corners
+/// come first. IndexFeatures computes `grid` and `corners` from the keypoints and bearings.
 struct Features {
   std::vector<Keypoint> keypoints;        ///< Positions in the image.
   std::vector<Eigen::Vector3d> bearings;  ///< Unit vectors, camera frame.

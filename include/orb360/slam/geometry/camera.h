@@ -24,7 +24,7 @@ class EquirectangularCamera {
   int height() const { return height_; }
   /// Returns f_x = W / 2 pi, pixels per radian of longitude (paper Eq. 1-4).
   double fx() const { return width_ / (2.0 * std::numbers::pi); }
-  /// Returns f_y = -H / pi, pixels per radian of latitude; v decreases upward.
+  /// Returns f_y = -H / pi, pixels per radian of latitude; negative since v increases downward.
   double fy() const { return -height_ / std::numbers::pi; }
   /// Returns c_x = W / 2, the column of the forward direction, pixels.
   double cx() const { return 0.5 * width_; }
@@ -36,8 +36,8 @@ class EquirectangularCamera {
   Eigen::Vector2d Project(const Eigen::Vector3d& point) const;
 
   /// Projects a point as above, with the Jacobian d(u,v)/d(point). Returns false and leaves the
-  /// outputs unchanged
-  /// where the derivative does not exist: at the centre and on the polar axis (within 1e-9 rad).
+  /// outputs unchanged where the derivative does not exist: at the camera's centre and on the polar
+  /// axis (within 1e-9 rad).
   bool Project(const Eigen::Vector3d& point, Eigen::Vector2d* pixel,
                Eigen::Matrix<double, 2, 3>* jacobian) const;
 

@@ -14,83 +14,102 @@
 
 namespace orb360 {
 
-// Images are stored here but not looked at, so that code that uses maps does not depend on OpenCV.
 struct PyramidLevel;
-using SpherePyramid = std::vector<PyramidLevel>;  // sphere_pyramid.h
+/// Image pyramid of a keyframe, with a margin that continues the sphere. A map stores it but does
+/// not look at it, so that code that uses maps does not depend on OpenCV.
+using SpherePyramid = std::vector<PyramidLevel>;
 
-/// Keyframes and landmarks refer to each other by id. An id is the index in the map and is never
-/// reused after removal.
+/// Index of a keyframe in its map, from 0. It is never reused after removal.
 using KeyframeId = int;
+/// Index of a landmark in its map, from 0. It is never reused after removal.
 using LandmarkId = int;
+/// The id of no keyframe and no landmark.
 inline constexpr int kNoId = -1;
 
-/// An observation of one landmark by feature `feature` of keyframe `keyframe`.
+/// An observation of one landmark by a feature of a keyframe.
 struct Observation {
-  KeyframeId keyframe = kNoId;
-  int feature = 0;
-  /// Direction in which the keyframe's image shows the landmark's patch, which is more exact than
-  /// the feature's: unit vector, camera frame. aligned_sigma is its angular noise, rad; 0 if the
-  /// direction is not known.
+  KeyframeId keyframe = kNoId;  ///< The keyframe that observes the landmark.
+  int feature = 0;              ///< Index of the feature in Keyframe::features.
+  /// Direction in which the keyframe's image shows the landmark's patch, found by alignment of gray
+  /// values: unit vector, camera frame. It is more exact than the feature's bearing.
   Eigen::Vector3f aligned_bearing = Eigen::Vector3f::Zero();
+  /// Angular noise of aligned_bearing, radians; 0 where that is not known.
   float aligned_sigma = 0;
-  bool was_compared = false;  // with the landmark's patch, whatever came of it
+  /// Whether the image was compared with the landmark's patch, with or without success.
+  bool was_compared = false;
 };
 
 /// A patch of a keyframe's image around a landmark, with which later images are aligned.
 struct LandmarkPatch {
-  KeyframeId keyframe;      // may have been removed since
-  Eigen::Vector3d bearing;  // of the patch's centre, unit, in its camera frame
-  double spacing;           // of its samples on the tangent plane (TangentBasis), rad
-  Patch patch;
+  /// The keyframe whose image contains the patch. It may have been removed since (Map::PoseOf).
+  KeyframeId keyframe;
+  Eigen::Vector3d bearing;  ///< Direction of the centre, unit vector, camera frame.
+  double spacing;           ///< Angle between samples on the tangent plane, radians.
+  Patch patch;              ///< Gray values of the samples.
 };
 
 /// Range of a feature from completed depth, independent of any landmark.
 struct RangePrior {
-  float range = 0;  // along the bearing, world units
-  float sigma = 0;  // standard deviation of ln(range); 0 where nothing is known
+  float range = 0;  ///< Range along the bearing, world units.
+  float sigma = 0;  ///< Standard deviation of ln(range); 0 where nothing is known.
 };
 
+/// A frame that is kept in the map with its features.
 struct Keyframe {
-  KeyframeId id = kNoId;
+  KeyframeId id = kNoId;  ///< Index in the map.
+  /// Index of the frame in the input; negative for a frame of the run that made a loaded map.
   int frame_index = 0;
-  double timestamp = 0;  // s
-  Rigid3 world_from_camera;
-  std::shared_ptr<const Features> features;
-  std::vector<LandmarkId> landmarks;           // by feature; kNoId where it sees none
-  std::vector<RangePrior> range_priors;        // by feature; empty where its depth is not completed
-  std::shared_ptr<const SpherePyramid> image;  // kept for a while only
+  double timestamp = 0;                      ///< Time of the frame, seconds.
+  Rigid3 world_from_camera;                  ///< Pose of the camera.
+  std::shared_ptr<const Features> features;  ///< Features of the image; never null in a map.
+  /// Landmark that each feature observes; kNoId where it observes none.
+  std::vector<LandmarkId> landmarks;
+  /// Range of each feature from completed depth; empty where the depth is not completed.
+  std::vector<RangePrior> range_priors;
+  /// Pyramid of the image, kept for the newest keyframes only (Map::ForgetImages); else null.
+  std::shared_ptr<const SpherePyramid> image;
 
+  /// Returns the range prior of a feature, with sigma 0 where there is none.
   RangePrior PriorOf(int feature) const {
     return range_priors.empty() ? RangePrior{} : range_priors[feature];
   }
 };
 
-/// For each corner (`Features::corners`): whether it has a landmark, by a feature of any level.
+/// Returns 1 for each corner (a value of Features::corners, by which the result is indexed) of
+/// which a feature on any level observes a landmark, and 0 elsewhere.
 std::vector<uint8_t> FindMappedCorners(const Keyframe& keyframe);
 
+/// A point of the map.
 struct Landmark {
-  LandmarkId id = kNoId;
-  Eigen::Vector3d position;        // world
-  Eigen::Vector3d mean_direction;  // unit, from the cameras that see it towards it, world
-  double max_range = 0;            // where it would be seen on pyramid level 0
-  Descriptor descriptor{};         // the most typical of its observations'
-  Color color{};
-  KeyframeId first_keyframe = kNoId;           // the newest keyframe when it was made
-  std::vector<Observation> observations;       // ordered by keyframe
-  std::shared_ptr<const LandmarkPatch> patch;  // null where no image that shows it was kept
-  PatchSlope patch_slope;                      // of the surface in it
-  int visible = 1;                             // frames in which it should have been seen
-  int found = 1;                               // and was
+  LandmarkId id = kNoId;     ///< Index in the map.
+  Eigen::Vector3d position;  ///< World frame.
+  /// Mean direction from the cameras that observe it towards it, unit vector, world frame; 0 where
+  /// these directions cancel.
+  Eigen::Vector3d mean_direction;
+  /// Range at which it appears on pyramid level 0, world units (RangeAtLevelZero).
+  double max_range = 0;
+  /// The descriptor of its observations with the smallest median distance to the others.
+  Descriptor descriptor{};
+  Color color{};                          ///< Colour of the feature by which it was made.
+  KeyframeId first_keyframe = kNoId;      ///< The newest keyframe when it was made.
+  std::vector<Observation> observations;  ///< Ordered by keyframe.
+  /// Null where no image that shows it was kept.
+  std::shared_ptr<const LandmarkPatch> patch;
+  PatchSlope patch_slope;  ///< Slope of the surface in the patch.
+  int visible = 1;         ///< Number of frames in which it should have been found.
+  int found = 1;           ///< Number of frames in which it was found.
 
-  /// Returns null if the keyframe does not observe the landmark.
+  /// Returns the observation by a keyframe, or null if the keyframe does not observe the landmark.
   const Observation* FindObservation(KeyframeId from) const;
+  /// Returns the observation by a keyframe as above, to be changed.
   Observation* FindObservation(KeyframeId from);
 };
 
 /// Returns the range at which a feature of pyramid level l at `range` would appear on level 0.
-/// Scales grow by 2^(1/4) per level (sphere_pyramid.h).
+/// Scales grow by 2^(1/4) per level.
 double RangeAtLevelZero(double range, int level);
-/// The inverse: returns the level, rounded and not clamped, on which a landmark appears at `range`.
+/// Returns the pyramid level, rounded and not clamped, on which a landmark of that `max_range`
+/// appears at `range`: the inverse of RangeAtLevelZero.
 int PredictLevel(double max_range, double range);
 
 /// The map: keyframes, landmarks and the observations between them. A map is a value with one owner
@@ -99,6 +118,8 @@ int PredictLevel(double max_range, double range);
 /// Invariant: landmark l lists the observation (k, f) exactly when keyframe k lists l at feature f.
 class Map {
  public:
+  /// Adds a keyframe that observes no landmark yet, and returns its id. Contract: `features` is not
+  /// null.
   KeyframeId AddKeyframe(int frame_index, double timestamp, const Rigid3& world_from_camera,
                          std::shared_ptr<const Features> features);
   /// Removes a keyframe and its observations. Its pose is kept relative to another keyframe,
@@ -108,32 +129,40 @@ class Map {
   /// Releases the images of all keyframes except the newest `num_kept`.
   void ForgetImages(int num_kept);
 
-  /// Adds a landmark without observations.
+  /// Adds a landmark without observations at a position in the world frame, and returns its id.
   LandmarkId AddLandmark(const Eigen::Vector3d& position, const Color& color);
+  /// Removes a landmark and its observations.
   void RemoveLandmark(LandmarkId id);
   /// Moves the observations of `from` to `to` and removes `from`. Where a keyframe observes both,
   /// `to` keeps its own observation. Resolve(from) is `to` from now on. Moved observations are not
   /// yet aligned with the patch of `to`.
   void MergeLandmark(LandmarkId from, LandmarkId to);
 
-  /// Contract: neither the landmark nor the feature has an observation of the other yet.
+  /// Adds an observation. Contract: the feature observes no landmark yet, and the keyframe does not
+  /// observe this one.
   void AddObservation(LandmarkId landmark, KeyframeId keyframe, int feature);
+  /// Removes an observation. Contract: it exists.
   void RemoveObservation(LandmarkId landmark, KeyframeId keyframe);
 
   /// Recomputes descriptor, mean direction and range limit from the observations, of which there
   /// must be at least one.
   void UpdateAppearance(LandmarkId id);
 
+  /// Returns whether a keyframe was added under this id and not removed.
   bool HasKeyframe(KeyframeId id) const {
     return id >= 0 && id < keyframe_end() && keyframes_[id].has_value();
   }
+  /// Returns whether a landmark was added under this id and not removed.
   bool HasLandmark(LandmarkId id) const {
     return id >= 0 && id < landmark_end() && landmarks_[id].has_value();
   }
-  /// Contract: the keyframe or landmark exists.
+  /// Returns a keyframe to be changed. Contract: it exists.
   Keyframe& keyframe(KeyframeId id);
+  /// Returns a keyframe. Contract: it exists.
   const Keyframe& keyframe(KeyframeId id) const;
+  /// Returns a landmark to be changed. Contract: it exists.
   Landmark& landmark(LandmarkId id);
+  /// Returns a landmark. Contract: it exists.
   const Landmark& landmark(LandmarkId id) const;
 
   /// Returns the landmark that contains `id` now, or kNoId if it was removed.
@@ -143,23 +172,28 @@ class Map {
   /// Returns an existing keyframe that represents `id`: itself or its successor.
   KeyframeId LivingKeyframe(KeyframeId id) const;
 
-  /// One more than the largest id ever given, for loops over all ids with Has...().
+  /// Returns one more than the largest keyframe id ever given, for loops with HasKeyframe.
   KeyframeId keyframe_end() const { return static_cast<int>(keyframes_.size()); }
+  /// Returns one more than the largest landmark id ever given, for loops with HasLandmark.
   LandmarkId landmark_end() const { return static_cast<int>(landmarks_.size()); }
+  /// Returns the number of keyframes that exist.
   int num_keyframes() const { return num_keyframes_; }
+  /// Returns the number of landmarks that exist.
   int num_landmarks() const { return num_landmarks_; }
+  /// Returns the ids of the keyframes that exist, in ascending order.
   std::vector<KeyframeId> KeyframeIds() const;
 
+  /// A keyframe that observes some of the given landmarks.
   struct Covisible {
-    KeyframeId keyframe;
-    int shared;  // landmarks seen by both
+    KeyframeId keyframe;  ///< Id of the keyframe.
+    int shared;           ///< Number of the given landmarks that it observes.
   };
-  /// Returns keyframes that observe at least `min_shared` of the landmarks, ordered by that number
-  /// (largest first; ties: newest first), without `except`.
+  /// Returns the keyframes other than `except` that observe at least `min_shared` of the landmarks,
+  /// and at least one, ordered by that number (largest first; ties: newest first).
   std::vector<Covisible> FindCovisible(std::span<const LandmarkId> landmarks, int min_shared,
                                        KeyframeId except = kNoId) const;
 
-  /// Returns the median distance of a keyframe's landmarks from it, or 0 if it has none.
+  /// Returns the median range of a keyframe's landmarks from it, world units, or 0 if it has none.
   double MedianRange(KeyframeId id) const;
 
   /// Applies target_from_world to every pose, landmark and range, which is a change of gauge.

@@ -7,16 +7,20 @@ namespace orb360 {
 
 class OptionSchema;
 
+/// How the depth of keyframes is completed (docs/concepts/depth_completion.md).
 struct DepthOptions {
+  /// How landmarks become sparse depth.
   SparseDepthOptions sparse = {};
+  /// How the ground is found in completed depth.
   DenseGroundOptions ground = {};
-  /// Of the images that are completed, pixels; they are twice as wide.
+  /// Height of the images that are completed, pixels; they are twice as wide.
   int height = 512;
-  /// Every so many keyframes are completed.
+  /// Interval of completed keyframes: those whose id is a multiple of it are completed.
   int every_keyframes = 1;
-  /// With fewer points there is nothing to complete.
+  /// Least number of points of sparse depth; a keyframe with fewer is not completed.
   int min_points = 50;
-  /// Frames after which the depth of a keyframe is used in mapping; it is completed meanwhile.
+  /// Number of frames after which the depth of a keyframe is used in mapping. It is completed
+  /// meanwhile.
   int adoption_frames = 4;
 };
 

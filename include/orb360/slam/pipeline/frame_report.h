@@ -8,17 +8,23 @@
 
 namespace orb360 {
 
-enum class TrackingState { kInitializing, kTracking, kLost };
+/// What tracking knows of the present frame.
+enum class TrackingState {
+  kInitializing,  ///< There is no map yet.
+  kTracking,      ///< The pose of the frame in the present map is known.
+  kLost,          ///< There is a map, but the pose of the frame in it is not known.
+};
 
 /// The result of one frame.
 struct FrameReport {
+  /// State after this frame.
   TrackingState state = TrackingState::kInitializing;
-  /// The pose as it is known now. System::Finish returns the final one.
+  /// Pose as it is known now, in kTracking only. System::Finish returns the final one.
   std::optional<Rigid3> world_from_camera;
   int map = 0;            ///< Number of the present map, from 0.
   int num_inliers = 0;    ///< Landmarks that agree with the pose.
-  int num_keyframes = 0;  ///< Of the present map, without results that are not adopted yet.
-  int num_landmarks = 0;
+  int num_keyframes = 0;  ///< Keyframes of the present map, without results not adopted yet.
+  int num_landmarks = 0;  ///< Landmarks of the present map, likewise.
   /// Wall time by stage, ms: "extraction", "tracking", "adoption" (waiting for mapping), and
   /// "frame" for the whole frame.
   std::map<std::string, double> timing_ms;

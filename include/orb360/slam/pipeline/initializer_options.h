@@ -4,19 +4,21 @@ namespace orb360 {
 
 class OptionSchema;
 
+/// How the first map of a run, or a new one after a loss, is made from two views.
 struct InitializerOptions {
-  /// Matches within this angle first (slow motion, few mistakes), then over the whole sphere.
+  /// Angle within which features of the two views are matched at first, radians. Slow motion gives
+  /// few wrong matches there. If they give no motion, features are matched over the whole sphere.
   double nearby_radius = 0.3;
-  /// Landmarks the first map must have.
+  /// Least number of landmarks of the map.
   int min_landmarks = 80;
-  /// Median parallax of the matches that are not far away, which makes a baseline, radians ...
+  /// Least median parallax of the matches that are not far away (min_landmark_parallax), radians.
   double min_parallax = 0.026;
-  /// ... and in standard deviations of a feature on pyramid level 0: with less, the direction of
-  /// motion is a guess.
+  /// Least median parallax in standard deviations of a feature on pyramid level 0. With less, the
+  /// direction of motion is a guess.
   double min_parallax_sigmas = 5.0;
-  /// Parallax of a single landmark, radians.
+  /// Least parallax of a single landmark, radians.
   double min_landmark_parallax = 0.01;
-  /// Of all matches, the fraction that must agree with the motion.
+  /// Least fraction of the matches that must agree with the motion.
   double min_inlier_ratio = 0.5;
 };
 

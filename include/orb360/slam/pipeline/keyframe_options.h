@@ -4,21 +4,28 @@ namespace orb360 {
 
 class OptionSchema;
 
+/// When a frame becomes a keyframe, and when its mapping is adopted.
 struct KeyframeOptions {
-  /// A frame becomes a keyframe when it tracks less than this fraction of the landmarks that its
-  /// reference keyframe shares with others ...
+  /// A frame becomes a keyframe when the number of landmarks that it tracks is less than this
+  /// fraction of those that its reference keyframe shares with at least two others, when it has
+  /// moved far (max_motion), or when it tracks few (urgent_inliers).
   double min_tracked_fraction = 0.75;
-  /// ... or has moved by this fraction of the median range of its surroundings.
+  /// Distance from the reference keyframe beyond which a frame becomes a keyframe, as a fraction of
+  /// the median range of the reference's landmarks.
   double max_motion = 0.1;
-  /// Standing still adds nothing: the least motion, as above.
+  /// Distance from the reference keyframe below which no frame becomes a keyframe, as the same
+  /// fraction, since a camera that stands still sees nothing new.
   double min_motion = 0.01;
-  /// Frames after which the mapping of a keyframe is adopted; it runs beside tracking meanwhile.
+  /// Number of frames after which the mapping of a keyframe is adopted. It runs beside tracking
+  /// meanwhile.
   int mapping_frames = 6;
-  /// Earlier when the landmarks tracked have fallen below this fraction of the keyframe's ...
+  /// Mapping is adopted earlier when the number of tracked landmarks has fallen below this fraction
+  /// of the keyframe's.
   double min_held_fraction = 0.8;
-  /// ... or below this number; then a keyframe is needed anyway.
+  /// With fewer tracked landmarks than this, a frame becomes a keyframe and mapping is adopted at
+  /// once.
   int urgent_inliers = 150;
-  /// Keyframes around the reference whose landmarks tracking searches.
+  /// Number of keyframes around the reference whose landmarks tracking searches.
   int local_keyframes = 12;
 };
 

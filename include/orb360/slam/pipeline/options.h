@@ -17,18 +17,18 @@ class OptionSchema;
 /// Every setting of the system, by part. System throws ContractError, with key, value and range in
 /// the message, for a setting out of range.
 struct Options {
-  /// Threads that the system may use at once; 0: as many as there are processors. No result depends
-  /// on it.
+  /// Number of threads that the system may use at once; 0: as many as there are processors. No
+  /// result depends on it.
   int num_threads = 0;
-  OrbOptions orb;
-  InitializerOptions initializer;
-  TrackerOptions tracker;
-  KeyframeOptions keyframe;
-  MapperOptions mapper;
-  RecoveryOptions recovery;
-  ScaleOptions scale;
-  DepthOptions depth;
-  LoopOptions loop;
+  OrbOptions orb;                  ///< Extraction of features.
+  InitializerOptions initializer;  ///< The first map.
+  TrackerOptions tracker;          ///< Poses of frames.
+  KeyframeOptions keyframe;        ///< Selection of keyframes.
+  MapperOptions mapper;            ///< Landmarks and local bundle adjustment.
+  RecoveryOptions recovery;        ///< What follows a loss of tracking.
+  ScaleOptions scale;              ///< Metric scale from the ground.
+  DepthOptions depth;              ///< Depth completion.
+  LoopOptions loop;                ///< Place recognition, loops and merges of maps.
 };
 
 /// Registers every option that has a key, in the order of the configuration file.

@@ -11,45 +11,45 @@
 
 namespace orb360 {
 
+/// Pose of a frame in the map to which it belongs.
 struct FramePose {
   /// Index in the sequence. It is negative for a frame of the run that made a loaded map.
   int index;
   double timestamp;  ///< Seconds.
-  /// Poses of different maps are related only by the motion that was assumed between the maps.
+  /// Index into Reconstruction::maps. Poses of different maps are related only by the motion that
+  /// was assumed between the maps.
   int map;
-  Rigid3 world_from_camera;
+  Rigid3 world_from_camera;  ///< Pose of the camera.
 };
 
+/// A landmark of the result.
 struct CloudPoint {
-  Eigen::Vector3d position;
-  Color color;
+  Eigen::Vector3d position;  ///< World frame.
+  Color color;               ///< Colour of the feature by which it was made.
 };
 
-/// Two keyframes that see the same landmarks.
+/// Two keyframes that observe the same landmarks.
 struct CovisibleFrames {
-  /// Indices into Reconstruction::keyframes.
-  size_t first;
-  size_t second;
-  int shared;  ///< Number of landmarks that both see.
+  size_t first;   ///< Index of one keyframe in Reconstruction::keyframes.
+  size_t second;  ///< Index of the other keyframe in Reconstruction::keyframes.
+  int shared;     ///< Number of landmarks that both observe.
 };
 
 /// One map of a reconstruction.
 struct MapSummary {
-  /// Indices of the first and the last tracked frame.
-  int first_frame = 0;
-  int last_frame = 0;
-  int tracked = 0;
-  int keyframes = 0;
-  int landmarks = 0;
+  int first_frame = 0;     ///< Index of the first frame with a pose.
+  int last_frame = 0;      ///< Index of the last frame with a pose.
+  int tracked = 0;         ///< Number of frames with a pose.
+  int keyframes = 0;       ///< Number of keyframes.
+  int landmarks = 0;       ///< Number of landmarks.
   bool is_metric = false;  ///< Whether the unit of length is the metre.
   bool is_rough = false;   ///< Whether metres come from completed depth only.
 };
 
-/// Indices of the frame at which the camera came back to a place, and of the frame that saw the
-/// place before.
+/// A return of the camera to a place that it had seen before.
 struct ClosedLoop {
-  int frame;
-  int place;
+  int frame;  ///< Index of the frame that came back.
+  int place;  ///< Index of the frame that saw the place before, negative in a loaded map.
 };
 
 /// Everything that a run computed, in the internal frames (camera: -X forward, +Y right, +Z up).
@@ -58,21 +58,22 @@ struct Reconstruction {
   std::vector<FramePose> keyframes;  ///< Ordered by index.
   /// Pairs with at least 15 landmarks in common.
   std::vector<CovisibleFrames> covisibility;
-  std::vector<CloudPoint> landmarks;
-  std::vector<MapSummary> maps;
-  /// Index of the frame at which the first map was made.
+  std::vector<CloudPoint> landmarks;  ///< Ordered by map.
+  std::vector<MapSummary> maps;       ///< In the order of their start.
+  /// Index of the frame at which the first map was made, or at which the camera was first localized
+  /// in a loaded map. None where neither happened.
   std::optional<int> initialized_at;
   int lost = 0;                    ///< How often tracking was lost after that.
   int relocalized = 0;             ///< How often a lost camera was found again.
   std::vector<ClosedLoop> loops;   ///< Loops that were closed within a map.
   std::vector<ClosedLoop> merges;  ///< Loops by which a map was merged into an older one.
-  /// Mean number of corners of a keyframe that are observations of landmarks.
+  /// Mean number of a keyframe's features whose corner has a landmark.
   double features_per_keyframe = 0;
-  /// Mean number of landmarks of a keyframe. A corner that has features on several levels counts
-  /// once.
+  /// Mean number of landmarks that a keyframe observes. A corner that has features on several
+  /// levels counts once.
   double landmarks_per_keyframe = 0;
-  /// By frame index of the keyframes that have dense depth: number of units of the result in one
-  /// unit of that depth.
+  /// For each keyframe that has dense depth, by frame index, the number of units of the result in
+  /// one unit of that depth.
   std::map<int, double> depth_scales;
   /// Normal of the ground, unit, world frame, towards the sky. None where no ground was found.
   std::optional<Eigen::Vector3d> up;

@@ -4,14 +4,17 @@ namespace orb360 {
 
 class OptionSchema;
 
-/// Where metres come from: a camera moves at a known height over the ground that it sees.
+/// How maps become metric: the camera moves at a known height over the ground that it sees
+/// (docs/concepts/scale.md).
 struct ScaleOptions {
-  /// Off: the scale of a map is arbitrary, and drifts.
+  /// Whether the ground is sought. Without it, the scale of a map is arbitrary and drifts.
   bool from_ground = true;
-  /// Of the camera over the ground, metres; 0: unknown, kAssumedHeight is taken.
+  /// Height of the camera over the ground, metres; 0 if it is not known.
   double camera_height = 0;
+  /// Height that is assumed where none is known, metres.
   static constexpr double kAssumedHeight = 1.6;
 
+  /// Returns the height over the ground that the system uses, metres.
   double height() const { return camera_height > 0 ? camera_height : kAssumedHeight; }
 };
 

@@ -32,7 +32,7 @@ class System {
 
   /// Before the first frame: continues a stored map, in which the camera has to be relocalized.
   void LoadMap(const StoredMap& stored);
-  /// The same, but frames are only localized in the map, which does not change.
+  /// Before the first frame: frames are only localized in a stored map, which does not change.
   void Localize(const StoredMap& stored);
   /// Before the first frame: keyframes get dense depth, computed beside tracking by the network in
   /// `weights` and stored in `folder` during the lifetime of the system. Throws UserError where one
@@ -45,12 +45,12 @@ class System {
   /// Waits for all jobs and returns everything computed. The system takes no further frames.
   Reconstruction Finish();
 
-  // After Finish:
-  /// The maps in the order of their start, and the ground under each. Maps with ground are metric.
+  /// Returns the maps in the order of their start, after Finish.
   std::span<const Map> maps() const;
+  /// Returns the ground under each map, after Finish. A map with ground is metric.
   std::span<const std::optional<KnownGround>> grounds() const;
-  /// Depth of the keyframes in Reconstruction::depth_scales; null without CompleteDepth. Throws
-  /// UserError where the depth could not be stored.
+  /// Returns the depth of the keyframes in Reconstruction::depth_scales, after Finish, or null
+  /// without CompleteDepth. Throws UserError where the depth could not be stored.
   const DepthMapStore* depth_maps() const;
 
  private:

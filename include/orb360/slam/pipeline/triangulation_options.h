@@ -4,26 +4,33 @@ namespace orb360 {
 
 class OptionSchema;
 
+/// How landmarks are made from matches of two keyframes (paper III-A,
+/// docs/concepts/triangulation.md).
 struct TriangulationOptions {
-  /// Keyframes a new one is matched with, those that share most landmarks.
+  /// Largest number of keyframes with which a new one is matched: those that share most landmarks.
   int max_neighbours = 10;
   /// Shortest baseline, as a fraction of the median range of the neighbour's landmarks.
   double min_baseline = 0.01;
-  /// Matches farther from the epipolar plane than this many standard deviations are wrong.
+  /// Largest angle of a match to its epipolar plane, in standard deviations of it (paper Eq. 7).
   double max_plane_sigmas = 2.5;
-  /// Angle to the epipole, radians, below which there is no parallax to measure.
+  /// Least angle of a match to the epipole, radians. Nearer to it there is no parallax to measure.
   double min_epipole_angle = 0.05;
-  /// Parallax of a new landmark: at least this (radians) ...
+  /// Least parallax of a new landmark, radians.
   double min_parallax = 0.008;
-  /// ... and this many standard deviations of it; and at most this (radians), which a wrong match
-  /// exceeds easily and a close point seldom.
+  /// Least parallax of a new landmark in standard deviations of the parallax.
   double min_parallax_sigmas = 2.5;
+  /// Largest parallax of a new landmark, radians. Wrong matches often exceed it, close points
+  /// seldom.
   double max_parallax = 1.0;
-  /// Ratio of ranges over ratio of feature scales that a match of the same patch may have.
+  /// Largest factor by which the ratio of the ranges may differ from the ratio of the features'
+  /// scales. For the same patch they are equal.
   double max_scale_ratio = 1.3;
-  /// Ranges farther from what completed depth says than this many standard deviations are wrong.
+  /// Largest difference between the logarithms of a match's range and of its completed range, in
+  /// standard deviations of the difference.
   double max_range_sigmas = 4.0;
-  int max_distance = 50;  // differing bits
+  /// Largest Hamming distance of two descriptors that match, bits of 256.
+  int max_distance = 50;
+  /// Largest ratio of the distance of the best match to that of the second best on the same level.
   double ratio = 0.85;
 };
 
