@@ -3,6 +3,7 @@
 #include <thread>
 
 #include <opencv2/imgcodecs.hpp>
+
 #include <orb360/nn/base/check.h>
 #include <orb360/nn/models/default_weights.h>
 #include <orb360/slam/depth/depth_completer.h>

@@ -28,8 +28,8 @@ int main(int argc, char** argv) try {
   for (const orb360::FramePose& frame : result.frames) {
     poses.push_back({frame.timestamp, frame.world_from_camera});
   }
-  orb360::WriteTrajectory(
-      argv[2], poses, orb360::FileWorldFromMap(poses.front().world_from_camera, result.up));
+  orb360::WriteTrajectory(argv[2], poses,
+                          orb360::FileWorldFromMap(poses.front().world_from_camera, result.up));
 } catch (const orb360::UserError& error) {
   return std::fprintf(stderr, "track: %s\n", error.what()), 1;
 }
