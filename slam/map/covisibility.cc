@@ -19,4 +19,18 @@ std::vector<CovisibilityEdge> FindCovisibilityEdges(const Map& map, int min_shar
   return edges;
 }
 
+std::vector<uint8_t> MarkCovisible(const Map& map, KeyframeId keyframe, int min_shared) {
+  std::vector<uint8_t> is_covisible(map.keyframe_end(), 0);
+  is_covisible[keyframe] = 1;
+  for (const Map::Covisible& near :
+       map.FindCovisible(map.keyframe(keyframe).landmarks, min_shared, keyframe)) {
+    is_covisible[near.keyframe] = 1;
+    for (const Map::Covisible& next :
+         map.FindCovisible(map.keyframe(near.keyframe).landmarks, min_shared)) {
+      is_covisible[next.keyframe] = 1;
+    }
+  }
+  return is_covisible;
+}
+
 }  // namespace orb360

@@ -17,4 +17,8 @@ struct CovisibilityEdge {
 /// ids.
 std::vector<CovisibilityEdge> FindCovisibilityEdges(const Map& map, int min_shared);
 
+/// Marks, by id, the keyframes that share at least `min_shared` landmarks with `keyframe`, those
+/// that share as many with one of them, and `keyframe` itself.
+std::vector<uint8_t> MarkCovisible(const Map& map, KeyframeId keyframe, int min_shared);
+
 }  // namespace orb360

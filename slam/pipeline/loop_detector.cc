@@ -4,28 +4,13 @@
 #include <cmath>
 
 #include "nn/base/statistics.h"
+#include "slam/map/covisibility.h"
 #include "slam/pipeline/make_reconstruction.h"
 
 namespace orb360 {
 namespace {
 
 double Angle(const Eigen::Quaterniond& turn) { return LogSo3(turn).norm(); }
-
-/// Marks the keyframes that share landmarks with the newest one, and those that share landmarks
-/// with them. They cannot close a loop.
-std::vector<uint8_t> FindConnected(const Map& map, KeyframeId newest) {
-  std::vector<uint8_t> is_connected(map.keyframe_end(), 0);
-  is_connected[newest] = 1;
-  for (const Map::Covisible& near :
-       map.FindCovisible(map.keyframe(newest).landmarks, kCovisible, newest)) {
-    is_connected[near.keyframe] = 1;
-    for (const Map::Covisible& next :
-         map.FindCovisible(map.keyframe(near.keyframe).landmarks, kCovisible)) {
-      is_connected[next.keyframe] = 1;
-    }
-  }
-  return is_connected;
-}
 
 /// Returns the length of the path from each keyframe to the newest, by id, world units; 0 for
 /// removed ones.
@@ -54,19 +39,6 @@ std::vector<Descriptor> LandmarkDescriptors(const Keyframe& keyframe) {
 }
 
 }  // namespace
-
-void Rescale(std::span<const Similarity3> corrections, Loop* loop) {
-  for (Revisit& revisit : loop->revisits) {
-    const double of_place = loop->finished_map ? 1.0 : corrections[revisit.place].scale;
-    revisit.place_from_keyframe.scale *= of_place / corrections[revisit.keyframe].scale;
-    revisit.place_from_keyframe.translation *= of_place;
-  }
-}
-
-Similarity3 CorrectionBy(const Revisit& revisit, const Map& map, const Map& place_map) {
-  return ToSimilarity(place_map.PoseOf(revisit.place)) * revisit.place_from_keyframe *
-         ToSimilarity(map.PoseOf(revisit.keyframe).Inverse());
-}
 
 LoopDetector::LoopDetector(const LoopOptions& options, const TrackerOptions& tracker,
                            int local_keyframes, double pixel_sigma)
@@ -202,7 +174,7 @@ std::optional<Loop> LoopDetector::Observe(const Map& map, KeyframeId newest,
                                           std::span<const Map> finished) {
   const int present = static_cast<int>(finished.size());
   const Keyframe& keyframe = map.keyframe(newest);
-  const std::vector<uint8_t> is_connected = FindConnected(map, newest);
+  const std::vector<uint8_t> is_connected = MarkCovisible(map, newest, kCovisible);
   const std::vector<double> ways = FindWays(map);
   const double min_way = options_.min_length * map.MedianRange(newest);
   const auto is_apart = [&](KeyframeId id) { return !is_connected[id] && ways[id] >= min_way; };

@@ -1,5 +1,6 @@
 #include "slam/io/image_file.h"
 
+#include <algorithm>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -95,7 +96,8 @@ TEST(LoadImage, DamagedJpegGivesTheImageOfOpenCvOrNone) {
     const std::string whole = ReadText(folder / "whole.jpg");
     for (size_t at = 100; at + 2 < whole.size(); at += 37) {
       std::string data = whole;
-      data.replace(at, 2, "\xff\x3c");  // a marker that does not exist, or a wrong code
+      std::copy_n("\xff\x3c", 2,
+                  data.begin() + at);  // a marker that does not exist, or a wrong code
       WriteText(folder / "damaged.jpg", data);
       const LoadedImage loaded = LoadImage(folder / "damaged.jpg");
       if (loaded.image.empty()) {
