@@ -15,7 +15,7 @@ BUILD = Path(os.environ.get("ORB360_BINARY_DIR", ROOT / "build"))
 WITH_COMMANDS = ("orb360", "town")
 # Programs that are not this project's.
 FOREIGN = {"cd", "cmake", "ctest", "ninja", "git", "npm", "ffmpeg", "yes", "head", "clang-format",
-           "clang-tidy", "export", "mkdir", "for", "do", "done", "sudo", "apt-get", "doxygen"}
+           "clang-tidy", "dpkg", "export", "mkdir", "for", "do", "done", "sudo", "apt-get", "doxygen"}
 
 
 @functools.cache
@@ -34,6 +34,8 @@ def options(words: list[str]) -> set[str]:
 def missing(words: list[str]) -> list[str]:
     """What of a command does not exist; nothing for programs that are not this project's."""
     name, *arguments = words
+    if re.match(r"\w+=", name):  # an assignment
+        return missing(arguments) if arguments else []
     if name in ("python3", "/usr/bin/python3"):
         if "-m" not in arguments:
             return [] if (ROOT / arguments[0]).exists() else [arguments[0]]
@@ -43,10 +45,18 @@ def missing(words: list[str]) -> list[str]:
         script = ROOT / name
         if not os.access(script, os.X_OK):
             return [name]
-        return lacking(script.read_text(), [a for a in arguments if not a.startswith("-D")])
+        text = script.read_text()
+        if text.startswith("#!/usr/bin/python3"):
+            text = printed(str(script), "--help")
+        return lacking(text, [a for a in arguments if not a.startswith("-D")])
     if name.startswith("build/"):
         return missing_of_program(BUILD / name.removeprefix("build/"), arguments)
     return [] if Path(name).name in FOREIGN else [name]
+
+
+def listed(text: str) -> list[str]:
+    """The tests or benchmarks of a listing, without what gmock_main says of itself."""
+    return [line for line in text.splitlines() if line and not line.startswith("Running main()")]
 
 
 def missing_of_program(program: Path, arguments: list[str]) -> list[str]:
@@ -63,7 +73,7 @@ def missing_of_program(program: Path, arguments: list[str]) -> list[str]:
     for option, listing in (("--gtest_filter", "--gtest_list_tests"),
                             ("--benchmark_filter", "--benchmark_list_tests")):
         for word in arguments:
-            if word.startswith(option + "=") and not printed(str(program), word, listing).strip():
+            if word.startswith(option + "=") and not listed(printed(str(program), word, listing)):
                 return [word]
     known = ("--gtest_", "--benchmark_")
     return lacking(printed(str(program), "--help"),
@@ -106,8 +116,10 @@ class Commands(unittest.TestCase):
                         self.run_in(folder, block)
 
     def run_in(self, folder: Path, block: Block) -> None:
+        # Debian's python3 first, which has the packages.
+        environment = os.environ | {"PATH": "/usr/bin:" + os.environ["PATH"]}
         done = subprocess.run(["bash", "-euo", "pipefail", "-c", block.text], cwd=folder,
-                              check=False, text=True, stdout=subprocess.PIPE,
+                              env=environment, check=False, text=True, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT)
         self.assertEqual(done.returncode, 0, done.stdout[-2000:])
 
