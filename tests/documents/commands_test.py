@@ -14,8 +14,9 @@ BUILD = Path(os.environ.get("ORB360_BINARY_DIR", ROOT / "build"))
 # Programs with commands of their own, each with its own --help.
 WITH_COMMANDS = ("orb360", "town")
 # Programs that are not this project's.
-FOREIGN = {"cd", "cmake", "ctest", "ninja", "git", "npm", "ffmpeg", "yes", "head", "clang-format",
-           "clang-tidy", "dpkg", "export", "mkdir", "for", "do", "done", "sudo", "apt-get", "doxygen"}
+FOREIGN = {"apt-get", "cd", "clang-format", "clang-tidy", "cmake", "ctest", "do", "done", "doxygen",
+           "dpkg", "export", "ffmpeg", "for", "git", "head", "mkdir", "ninja", "npm", "rm", "sudo",
+           "time", "yes"}
 
 
 @functools.cache
@@ -81,7 +82,8 @@ def missing_of_program(program: Path, arguments: list[str]) -> list[str]:
 
 
 def lacking(help_text: str, words: list[str]) -> list[str]:
-    return sorted(o for o in options(words) if not re.search(re.escape(o) + r"(?![\w-])", help_text))
+    return sorted(option for option in options(words)
+                  if not re.search(re.escape(option) + r"(?![\w-])", help_text))
 
 
 class Commands(unittest.TestCase):
