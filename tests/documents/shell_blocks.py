@@ -2,7 +2,6 @@
 
 import re
 import shlex
-import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -38,10 +37,9 @@ class Block:
 
 
 def documents() -> list[Path]:
-    """The documents that git keeps."""
-    listed = subprocess.run(["git", "ls-files", "-z", "*.md"], cwd=ROOT, check=True,
-                            stdout=subprocess.PIPE, text=True).stdout
-    return [ROOT / name for name in listed.split("\0") if name]
+    """The documents of the project: those at its top, and those in docs/ and weights/."""
+    folders = (ROOT / "docs", ROOT / "weights")
+    return sorted([*ROOT.glob("*.md"), *(path for f in folders for path in f.rglob("*.md"))])
 
 
 def blocks() -> list[Block]:
