@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "apps/orb360/evaluation_report.h"
 #include "slam/evaluation/cloud_folder.h"
 #include "slam/evaluation/depth_folder.h"
+#include "slam/evaluation/local_scale.h"
 #include "slam/evaluation/revisit.h"
 #include "slam/evaluation/trajectory_error.h"
 #include "slam/evaluation/trajectory_plot.h"
@@ -60,6 +62,22 @@ void AddRunFigures(const std::filesystem::path& estimate, double paired_fraction
   for (const char* key : {"features_per_keyframe", "landmarks_per_keyframe"}) {
     (*report)[key] = summary.value(key, 0.0);
   }
+}
+
+/// Returns the times at which the run continued in another map according to its summary. None where
+/// there is no summary, or one of an earlier version.
+std::vector<double> MapChanges(const std::filesystem::path& estimate) {
+  const nlohmann::json summary = RunSummary(estimate);
+  std::vector<double> times;
+  if (!summary.is_object() || !summary.contains("map_changes")) return times;
+  for (const nlohmann::json& time : summary["map_changes"]) {
+    if (!time.is_number()) {
+      throw UserError((estimate / "summary.json").string() + ": `map_changes` holds something " +
+                      "else than seconds; run the sequence again");
+    }
+    times.push_back(time.get<double>());
+  }
+  return times;
 }
 
 /// Compares the loops that the run has closed, according to its summary, with the true ones.
@@ -113,14 +131,17 @@ int Evaluate(const EvaluateOptions& options) {
                     " poses have a time in common, and at least three different ones are needed");
   }
 
+  const std::optional<LocalScale> local_scale =
+      MeasureLocalScale(truth, pairs, MapChanges(options.estimate));
   nlohmann::json report = ToJson(*errors);
+  report["local_scale"] = ToJson(local_scale);
   AddRunFigures(options.estimate,
                 static_cast<double>(pairs.size()) / static_cast<double>(truth.size()), &report);
   AddLoopErrors(options, truth, &report);
   AddDepthErrors(options.groundtruth, options.estimate, &report);
   AddCloudErrors(options, truth, pairs, &report);
   if (!options.plot.empty()) {
-    WriteFileAtomically(options.plot, PlotTrajectory(truth, pairs, *errors));
+    WriteFileAtomically(options.plot, PlotTrajectory(truth, pairs, *errors, local_scale));
   }
   if (options.prints_json) {
     std::cout << report.dump(2) << '\n';
@@ -140,7 +161,9 @@ void AddEvaluateCommand(CLI::App* app, Command* chosen) {
   command->add_option("ESTIMATE", options->estimate, "Folder of `orb360 run` or TUM trajectory")
       ->required();
   command->add_flag("--json", options->prints_json, "Print JSON instead of a table");
-  command->add_option("--plot", options->plot, "Also draw both trajectories and the error (SVG)")
+  command
+      ->add_option("--plot", options->plot,
+                   "Also draw both trajectories, the error and the local scale (SVG)")
       ->type_name("FILE");
   command
       ->add_option("--max-difference", options->max_difference,

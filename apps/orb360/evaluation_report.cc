@@ -38,6 +38,16 @@ constexpr Row kRows[] = {
     {"rpe_frame_rot_deg", "  rotation", "deg", 5},
 };
 
+/// The lines about the local scale.
+constexpr Row kLocalScaleRows[] = {
+    {"window_m", "local scale, length of the windows", "m", 0},
+    {"min", "  least (1 is perfect)", "", 5},
+    {"max", "  largest", "", 5},
+    {"drift_median_per_100m", "  drift in 100 m, median", "%", 2, 100.0},
+    {"drift_worst_per_100m", "  largest", "%", 2, 100.0},
+    {"worst_deviation_100m", "  largest error of the scale of 100 m", "%", 2, 100.0},
+};
+
 /// The lines about loops.
 constexpr Row kLoopRows[] = {
     {"revisits", "places that the camera comes back to", "", 0},
@@ -68,7 +78,7 @@ constexpr int kNumberWidth = 12;
 
 void PrintRows(std::span<const Row> rows, const nlohmann::json& report, std::ostream& out) {
   for (const Row& row : rows) {
-    if (!report.contains(row.key)) continue;
+    if (!report.contains(row.key) || report[row.key].is_null()) continue;
     out << std::left << std::setw(kLabelWidth) << row.label << std::right << std::setw(kNumberWidth)
         << std::setprecision(row.decimals) << row.factor * report[row.key].get<double>() << ' '
         << row.unit << '\n';
@@ -169,6 +179,20 @@ nlohmann::json ToJson(const CloudErrors& errors) {
           {"completeness_25cm", errors.completeness[1]}};
 }
 
+nlohmann::json ToJson(const std::optional<LocalScale>& scale) {
+  if (!scale) return nullptr;
+  const auto or_null = [](const std::optional<double>& value) {
+    return value ? nlohmann::json(*value) : nlohmann::json();
+  };
+  return {{"window_m", LocalScale::kWindow},
+          {"windows", scale->windows.size()},
+          {"min", scale->min},
+          {"max", scale->max},
+          {"drift_median_per_100m", or_null(scale->drift_median)},
+          {"drift_worst_per_100m", or_null(scale->drift_worst)},
+          {"worst_deviation_100m", or_null(scale->worst_deviation)}};
+}
+
 nlohmann::json ToJson(const LoopErrors& errors) {
   return {{"revisits", errors.revisits}, {"closed", errors.closed}, {"wrong", errors.wrong}};
 }
@@ -176,6 +200,10 @@ nlohmann::json ToJson(const LoopErrors& errors) {
 void PrintReport(const nlohmann::json& report, std::ostream& out) {
   out << std::fixed;
   PrintRows(kRows, report, out);
+  if (const nlohmann::json scale = report.value("local_scale", nlohmann::json());
+      !scale.is_null()) {
+    PrintRows(kLocalScaleRows, scale, out);
+  }
   if (report.contains("loops")) PrintRows(kLoopRows, report["loops"], out);
   if (report.contains("cloud")) PrintRows(kCloudRows, report["cloud"], out);
   if (report.contains("depth")) PrintDepth(report["depth"], out);

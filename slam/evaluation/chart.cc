@@ -9,6 +9,7 @@ namespace orb360 {
 namespace {
 
 constexpr size_t kMaxPoints = 4000;
+constexpr double kTickDistance = 80.0;  // pixels
 
 std::string Pixel(double value) { return Decimal(value, 1); }
 
@@ -70,26 +71,39 @@ std::string DrawPolyline(const std::vector<Eigen::Vector2d>& points, const Axes&
   return svg + "\"/>\n";
 }
 
+std::vector<Tick> LinearTicks(double low, double high, double extent) {
+  const double step = TickStep(high - low, static_cast<int>(extent / kTickDistance));
+  std::vector<Tick> ticks;
+  for (long i = std::lround(std::ceil(low / step)); step * static_cast<double>(i) <= high; ++i) {
+    const double at = step * static_cast<double>(i);
+    ticks.push_back({at, Decimal(at, TickDecimals(step))});
+  }
+  return ticks;
+}
+
 std::string DrawAxes(const Axes& axes, const std::string& title, const std::string& x_label,
                      const std::string& y_label) {
+  return DrawAxes(axes, LinearTicks(axes.data.min().y(), axes.data.max().y(), axes.size.y()), title,
+                  x_label, y_label);
+}
+
+std::string DrawAxes(const Axes& axes, const std::vector<Tick>& y_ticks, const std::string& title,
+                     const std::string& x_label, const std::string& y_label) {
   const Eigen::Vector2d corner = axes.origin - Eigen::Vector2d(0, axes.size.y());
   std::string svg = "<rect x=\"" + Pixel(corner.x()) + "\" y=\"" + Pixel(corner.y()) +
                     "\" width=\"" + Pixel(axes.size.x()) + "\" height=\"" + Pixel(axes.size.y()) +
                     "\" fill=\"none\" stroke=\"#888\"/>\n";
+  const std::vector<Tick> x_ticks =
+      LinearTicks(axes.data.min().x(), axes.data.max().x(), axes.size.x());
   for (int axis = 0; axis < 2; ++axis) {
-    const double low = axes.data.min()[axis];
-    const double high = axes.data.max()[axis];
-    const double step = TickStep(high - low, static_cast<int>(axes.size[axis] / 80.0));
-    for (long i = std::lround(std::ceil(low / step)); step * static_cast<double>(i) <= high; ++i) {
-      const double tick = step * static_cast<double>(i);
+    for (const Tick& tick : axis == 0 ? x_ticks : y_ticks) {
       Eigen::Vector2d from = axes.data.min();
       Eigen::Vector2d to = axes.data.max();
-      from[axis] = to[axis] = tick;
+      from[axis] = to[axis] = tick.at;
       const Eigen::Vector2d at = axes.ToPixel(from);
       svg += DrawLine(at, axes.ToPixel(to), "stroke=\"#e4e4e4\"");
-      const std::string label = Decimal(tick, TickDecimals(step));
-      svg += axis == 0 ? Text(at.x(), at.y() + 18, "middle", label)
-                       : Text(at.x() - 6, at.y() + 4, "end", label);
+      svg += axis == 0 ? Text(at.x(), at.y() + 18, "middle", tick.label)
+                       : Text(at.x() - 6, at.y() + 4, "end", tick.label);
     }
   }
   svg += Text(corner.x() + axes.size.x() / 2, axes.origin.y() + 38, "middle", x_label);

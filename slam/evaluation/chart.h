@@ -38,9 +38,23 @@ std::string DrawCircle(const Eigen::Vector2d& centre, double radius, const std::
 /// Draws points of the data, thinned.
 std::string DrawPolyline(const std::vector<Eigen::Vector2d>& points, const Axes& axes,
                          const std::string& attributes);
+
+/// A labelled line of the grid.
+struct Tick {
+  double at;  ///< In the data.
+  std::string label;
+};
+
+/// Returns multiples of 1, 2 or 5 times a power of ten from `low` to `high`, about one in each 80
+/// pixels of `extent`.
+std::vector<Tick> LinearTicks(double low, double high, double extent);
+
 /// Draws frame, grid and labels of both axes.
 std::string DrawAxes(const Axes& axes, const std::string& title, const std::string& x_label,
                      const std::string& y_label);
+/// Draws the same with a grid of its own for the y axis.
+std::string DrawAxes(const Axes& axes, const std::vector<Tick>& y_ticks, const std::string& title,
+                     const std::string& x_label, const std::string& y_label);
 
 /// Returns a whole file: elements on a white background.
 std::string MakeSvg(const Eigen::Vector2d& size, const std::string& elements);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "slam/evaluation/chart.h"
+#include "slam/evaluation/local_scale_plot.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
@@ -67,10 +68,12 @@ std::string DrawOverTime(std::span<const PosePair> pairs, const TrajectoryErrors
 }  // namespace
 
 std::string PlotTrajectory(std::span<const StampedPose> truth, std::span<const PosePair> pairs,
-                           const TrajectoryErrors& errors) {
+                           const TrajectoryErrors& errors, const std::optional<LocalScale>& scale) {
   ORB360_CHECK(!pairs.empty() && pairs.size() == errors.position_errors.size(), pairs.size(),
                errors.position_errors.size());
-  return MakeSvg({1400, 640}, DrawFromAbove(truth, pairs, errors) + DrawOverTime(pairs, errors));
+  const std::string charts = DrawFromAbove(truth, pairs, errors) + DrawOverTime(pairs, errors);
+  if (!scale) return MakeSvg({1400, 640}, charts);
+  return MakeSvg({1400, 1000}, charts + DrawLocalScale(*scale, {70, 940}, {1300, 240}));
 }
 
 }  // namespace orb360

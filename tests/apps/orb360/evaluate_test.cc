@@ -20,6 +20,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 constexpr int kFrames = 60;
@@ -91,6 +92,49 @@ TEST_F(EvaluateTest, LoopsOfTheRunAreComparedWithThoseOfTheTruth) {
               HasSubstr("wrong loops"));
 }
 
+TEST_F(EvaluateTest, TheLocalScaleIsThatOfEachPartOfThePath) {
+  // 300 m, a metre each second. From 150 m on the estimate is twice too small.
+  std::vector<StampedPose> truth;
+  std::vector<StampedPose> estimate;
+  for (int i = 0; i <= 300; ++i) {
+    const double x = i <= 150 ? i : 150 + 0.5 * (i - 150);
+    truth.push_back({1.0 * i, {Eigen::Quaterniond::Identity(), {1.0 * i, 0, 0}}});
+    estimate.push_back({1.0 * i, {Eigen::Quaterniond::Identity(), {0, x, 0}}});
+  }
+  WriteTrajectory(Truth(), truth);
+  WriteTrajectory(Estimate(), estimate);
+  const nlohmann::json scale = Report(folder_.path(), folder_.path())["local_scale"];
+  EXPECT_EQ(scale["window_m"], 20.0);
+  EXPECT_EQ(scale["windows"], 57);
+  EXPECT_NEAR(scale["min"], 1.0, 1e-6);
+  EXPECT_NEAR(scale["max"], 2.0, 1e-6);
+  EXPECT_NEAR(scale["drift_worst_per_100m"], std::log(2.0), 1e-6);
+  EXPECT_NEAR(scale["worst_deviation_100m"], 1.0, 1e-6);
+  EXPECT_THAT(RunOrb360({"evaluate", Truth(), Estimate()}).out,
+              AllOf(HasSubstr("local scale"), HasSubstr("2.00000"), HasSubstr("69.31")));
+  // The path continues in another map there, so that the windows across are left out.
+  WriteText(folder_ / "summary.json", R"({"frames": 301, "tracked": 301, "map_changes": [151.0]})");
+  EXPECT_EQ(Report(folder_.path(), folder_.path())["local_scale"]["windows"], 57 - 4);
+}
+
+TEST_F(EvaluateTest, AShortPathHasNoLocalScale) {
+  const nlohmann::json report = Report(Truth(), Estimate());  // 2.4 m
+  ASSERT_TRUE(report.contains("local_scale"));
+  EXPECT_TRUE(report["local_scale"].is_null());
+  EXPECT_THAT(RunOrb360({"evaluate", Truth(), Estimate()}).out, Not(HasSubstr("local scale")));
+  std::vector<StampedPose> poses;  // 60 m
+  for (int i = 0; i <= 60; ++i) {
+    poses.push_back({1.0 * i, {Eigen::Quaterniond::Identity(), {1.0 * i, 0, 0}}});
+  }
+  WriteTrajectory(Truth(), poses);
+  const nlohmann::json scale = Report(Truth(), Truth())["local_scale"];
+  EXPECT_EQ(scale["windows"], 9);
+  EXPECT_TRUE(scale["drift_median_per_100m"].is_null());
+  EXPECT_TRUE(scale["worst_deviation_100m"].is_null());
+  EXPECT_THAT(RunOrb360({"evaluate", Truth(), Truth()}).out,
+              AllOf(HasSubstr("local scale"), Not(HasSubstr("drift in 100 m"))));
+}
+
 TEST_F(EvaluateTest, DepthIsComparedWhereBothFoldersHaveIt) {
   const std::filesystem::path run = folder_ / "run";
   std::filesystem::create_directories(run / "depth");
@@ -137,6 +181,8 @@ TEST_F(EvaluateTest, MistakesAreOneLine) {
   WriteTrajectory(folder_ / "later.txt", later);
   EXPECT_THAT(error({"evaluate", Truth(), folder_ / "later.txt"}),
               HasSubstr("0 of its 60 poses have a time in common"));
+  WriteText(folder_ / "summary.json", R"({"frames": 60, "map_changes": ["late"]})");
+  EXPECT_THAT(error({"evaluate", folder_.path(), folder_.path()}), HasSubstr("`map_changes`"));
   EXPECT_THAT(error({"evaluate", Truth(), Estimate(), "--plot", folder_ / "no" / "plot.svg"}),
               HasSubstr("cannot be written"));
 }

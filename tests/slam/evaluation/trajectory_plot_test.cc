@@ -31,7 +31,7 @@ std::vector<StampedPose> Bend(int count, double error) {
 std::string Plot(int count, double error) {
   const std::vector<StampedPose> truth = Bend(count, 0.0);
   const std::vector<PosePair> pairs = PairPoses(truth, Bend(count, error), 1e-6);
-  return PlotTrajectory(truth, pairs, *EvaluateTrajectory(pairs));
+  return PlotTrajectory(truth, pairs, *EvaluateTrajectory(pairs), std::nullopt);
 }
 
 /// All "x,y" of the n-th polyline.
@@ -80,6 +80,22 @@ TEST(PlotTrajectory, PathsLieInsideTheirFrames) {
   for (const Eigen::Vector2d& point : PolylinePoints(svg, 1)) {
     EXPECT_TRUE(point.x() >= 740 && point.x() <= 1370 && point.y() > 60 && point.y() <= 580)
         << point;
+  }
+}
+
+TEST(PlotTrajectory, TheLocalScaleStandsBelowWhereThereIsOne) {
+  std::vector<StampedPose> truth = Bend(200, 0.0);
+  for (StampedPose& pose : truth) pose.world_from_camera.translation *= 20.0;
+  const std::vector<PosePair> pairs = PairPoses(truth, truth, 1e-6);
+  const auto errors = EvaluateTrajectory(pairs);
+  const auto scale = MeasureLocalScale(truth, pairs);
+  ASSERT_TRUE(errors && scale);
+  const std::string without = PlotTrajectory(truth, pairs, *errors, std::nullopt);
+  const std::string with = PlotTrajectory(truth, pairs, *errors, scale);
+  EXPECT_THAT(without, Not(HasSubstr("local scale")));
+  EXPECT_THAT(with, HasSubstr("local scale"));
+  for (const Eigen::Vector2d& point : PolylinePoints(with, 2)) {
+    EXPECT_TRUE(point.y() > 640 && point.y() < 1000) << point;
   }
 }
 
