@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <vector>
 
 #include <sys/resource.h>
 
@@ -49,6 +50,17 @@ nlohmann::json TimesOf(const std::vector<ClosedLoop>& loops, const std::vector<F
   return pairs;
 }
 
+/// Returns the times of the frames whose map is another than that of the frame before, seconds.
+/// Frames of the run that made a loaded map do not count.
+std::vector<double> MapChanges(const std::vector<FramePose>& frames) {
+  std::vector<double> times;
+  for (size_t i = 1; i < frames.size(); ++i) {
+    const bool is_of_run = frames[i - 1].index >= 0;
+    if (is_of_run && frames[i].map != frames[i - 1].map) times.push_back(frames[i].timestamp);
+  }
+  return times;
+}
+
 }  // namespace
 
 nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& record,
@@ -61,6 +73,7 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
       {"tracked", reconstruction.frames.size()},
       {"lost", reconstruction.lost},
       {"maps", reconstruction.maps.size()},
+      {"map_changes", MapChanges(reconstruction.frames)},
       {"loops", reconstruction.loops.size()},
       {"loop_frames", FramesOf(reconstruction.loops)},
       {"loop_times", TimesOf(reconstruction.loops, reconstruction.frames)},

@@ -104,6 +104,7 @@ TEST_F(RunTest, AFolderOfGreyImagesIsTrackedAndEverythingIsWritten) {
   EXPECT_EQ(summary["frames"], kFrames);
   EXPECT_EQ(summary["tracked"], kFrames);
   EXPECT_EQ(summary["maps"], 1);
+  EXPECT_TRUE(summary["map_changes"].empty());
   EXPECT_EQ(summary["lost"], 0);
   EXPECT_EQ(summary["threads"], 1);
   EXPECT_EQ(summary["weights"], "none");
@@ -413,6 +414,20 @@ TEST_F(RunTest, AMapIsKeptAndTheNextRunIsLocatedInItsWorld) {
   ASSERT_EQ(Run({"--map-in", map, "--map-out", map}).status, 0);
   EXPECT_EQ(Summary()["maps"], 1);
   EXPECT_GE(ReadMap(map).map.num_keyframes(), first["keyframes"]);
+}
+
+TEST_F(RunTest, TheSummaryTellsWhenAnotherMapBegins) {
+  // The room, and from frame 24 on a mirrored one, in which nothing looks as before. Its map is
+  // begun later and then tracked backwards, so that no frame is missing in between.
+  std::vector<cv::Mat> images = TexturedRoom(kSize).DrawAll(kFrames + 36);
+  for (size_t i = kFrames; i < images.size(); ++i) cv::flip(images[i].clone(), images[i], 1);
+  WriteFolder(Input(), images);
+  EXPECT_EQ(Run().status, 0);
+  const nlohmann::json summary = Summary();
+  ASSERT_EQ(summary["maps"], 2);
+  ASSERT_EQ(summary["map_changes"].size(), 1u);
+  EXPECT_NEAR(summary["map_changes"][0], kFrames / 30.0, 1e-9);
+  EXPECT_EQ(PosesIn("trajectory.txt"), images.size());
 }
 
 TEST_F(RunTest, AMapThatDoesNotFitIsRefused) {
