@@ -69,12 +69,19 @@ class Formats(unittest.TestCase):
             run(BUILD / "orb360", "run", town, "--mask", "none", "--quiet", "--out", result)
             summary = json.loads((result / "summary.json").read_text())
             errors = json.loads(run(BUILD / "orb360", "evaluate", town, result, "--json"))
+            # A path of 150 m, because the town's is too short for some figures.
+            path = Path(name) / "path.txt"
+            path.write_text("".join(f"{i} {i} 0 0 0 0 0 1\n" for i in range(151)))
+            long = json.loads(run(BUILD / "orb360", "evaluate", path, path, "--json"))
         self.assertEqual(set(summary), names(rows("summary.md")))
         self.assertEqual(set(summary["scale"]) - names(rows("summary.md", "`scale`:")), set())
         documented = names(rows("evaluation.md"))
         self.assertEqual(set(errors) - documented, set())
         self.assertEqual(documented - set(errors) - {"depth"}, set())
         text = (FORMATS / "evaluation.md").read_text()
+        documented = names(rows("evaluation.md", "`local_scale` compares"))
+        self.assertEqual(set(long["local_scale"]), documented)
+        self.assertNotIn(None, long["local_scale"].values())
         for key in errors["cloud"]:
             self.assertIn(f"`{key}`", text)
 

@@ -25,10 +25,10 @@ class Scripts(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr[-2000:] + done.stdout[-2000:])
         return done.stdout
 
-    def render(self, frames: int) -> Path:
+    def render(self, frames: int, *options: str) -> Path:
         town = self.folder / "town"
         subprocess.run([BUILD / "town", "render", "--town", "7", "--frames", str(frames), "--width",
-                        "512", "--out", town], check=True, stdout=subprocess.DEVNULL)
+                        "512", "--out", town, *options], check=True, stdout=subprocess.DEVNULL)
         return town
 
     def test_evaluate_prints_json_and_nothing_else(self) -> None:
@@ -44,6 +44,40 @@ class Scripts(unittest.TestCase):
             "--cache", self.folder, "--out", self.folder / "out")
         for variant in ("mono", "tri", "dc"):
             self.assertRegex(table, rf"Loop \| +{variant} \| +60/60 \| +0 \|")
+
+    def test_evaluate_outside_measures_every_recording_below_a_folder(self) -> None:
+        town = self.render(60, "--depth-every", "10")
+        (self.folder / "no_recording").mkdir()
+        (self.folder / "no_recording" / "sequence.yaml").write_text("fps: 10\n")
+        short = ("evaluate", "--outside", self.folder, "--skip-build", "--out",
+                 self.folder / "out")
+        results = json.loads(self.run_script(*short, "--json"))
+        self.assertEqual([(r["sequence"], r["variant"], r["tracked"]) for r in results],
+                         [(town.name, "tri", 60), (town.name, "dc", 60)])
+        for result in results:
+            self.assertEqual(result["scale"]["source"], "camera height")
+            self.assertGreater(result["frame_ms_p95"], 0.0)
+            local = result["local_scale"]  # 60 frames are about 30 m.
+            self.assertGreater(local["windows"], 0)
+            self.assertLessEqual(local["min"], local["max"])
+            self.assertAlmostEqual(local["min"], 1.0, delta=0.1)
+            self.assertIsNone(local["drift_median_per_100m"])
+        self.assertNotIn("cloud_accuracy_10cm", results[0])
+        self.assertGreater(results[1]["cloud_accuracy_25cm"], 0.1)
+        # The table has the same runs, which are not made again.
+        table = self.run_script(*short)
+        for variant in ("tri", "dc"):
+            self.assertRegex(table, rf"town \| +{variant} \| +60/60 \| +0 \|.* camera height")
+        short_form = json.loads(self.run_script(*short, "--json", "--variants", "tri",
+                                                "--max-frames", 20))
+        self.assertEqual([r["tracked"] for r in short_form], [20])
+
+    def test_evaluate_outside_refuses_a_folder_without_recordings(self) -> None:
+        done = subprocess.run([str(ROOT / "scripts" / "evaluate"), "--skip-build", "--outside",
+                               str(self.folder)], check=False, text=True, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"^evaluate: .*: no folder below has sequence.yaml.*\n$")
 
     def test_bench_prints_json_and_nothing_else(self) -> None:
         figures = json.loads(self.run_script("bench", "--quick", "--json", "--skip-build"))
