@@ -78,9 +78,12 @@ std::string RangeText(const OptionSchema::Option& option) {
   const bool is_int = std::holds_alternative<int*>(option.variable);
   const bool has_min = is_int ? option.min > OptionSchema::kIntMin : std::isfinite(option.min);
   const bool has_max = is_int ? option.max < OptionSchema::kIntMax : std::isfinite(option.max);
-  if (has_min && has_max) return ToText(option.min) + " to " + ToText(option.max);
-  if (has_min) return "at least " + ToText(option.min);
-  if (has_max) return "at most " + ToText(option.max);
+  const auto text = [is_int](double number) {  // to_chars would write 1000000.0 as "1e+06"
+    return is_int ? ToText(static_cast<int>(number)) : ToText(number);
+  };
+  if (has_min && has_max) return text(option.min) + " to " + text(option.max);
+  if (has_min) return "at least " + text(option.min);
+  if (has_max) return "at most " + text(option.max);
   return {};
 }
 

@@ -119,8 +119,9 @@ void TrueSurface::Thin() {
   std::ranges::stable_sort(entries_, [](const Entry& a, const Entry& b) {
     return a.cell != b.cell ? a.cell < b.cell : a.surfel.range < b.surfel.range;
   });
-  const auto rest = std::ranges::unique(entries_, {}, &Entry::cell);
-  entries_.erase(rest.begin(), rest.end());
+  // clang 14 cannot compile std::ranges::unique of GCC's library.
+  const auto is_same_cell = [](const Entry& a, const Entry& b) { return a.cell == b.cell; };
+  entries_.erase(std::unique(entries_.begin(), entries_.end(), is_same_cell), entries_.end());
   thinned_ = entries_.size();
 }
 

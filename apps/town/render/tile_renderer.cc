@@ -117,8 +117,12 @@ void TileRenderer::JoinCorners() {
     const float off_plane = c.normal[0][a] * (c.way[0][b] - c.way[0][a]) +
                             c.normal[1][a] * (c.way[1][b] - c.way[1][a]) +
                             c.normal[2][a] * (c.way[2][b] - c.way[2][a]);
-    const bool on_plane = (alike > kCosine) & (std::abs(off_plane) < 5e-3F + step * c.range[a]);
-    return static_cast<uint8_t>((c.surface[a] == c.surface[b]) & (on_plane | (c.surface[a] == 0)));
+    // Integers, combined without a branch, so that the loops below are vectorized.
+    const int is_parallel = alike > kCosine;
+    const int is_near = std::abs(off_plane) < 5e-3F + step * c.range[a];
+    const int is_one_surface = c.surface[a] == c.surface[b];
+    const int is_sky = c.surface[a] == 0;
+    return static_cast<uint8_t>(is_one_surface & ((is_parallel & is_near) | is_sky));
   };
   const auto used = static_cast<size_t>(tile_.height + 2) * kStride;
   for (size_t i = 0; i + 1 < used; ++i) corners_.joins_right[i] = join(i, i + 1);

@@ -97,10 +97,13 @@ TEST(OptionSchema, RangesReadAsText) {
   RegisterOptions(&schema, &options);
   double cold = -300.0;
   schema.Add("cold", &cold, "", -OptionSchema::kInfinity, -273.15);
+  int many = 1000000;
+  schema.Add("many", &many, "", 1000000, 2000000000);
   const auto range = [&](const char* key) { return RangeText(*schema.Find(key)); };
   EXPECT_EQ(range("brush.width"), "1 to 64");
   EXPECT_EQ(range("brush.layers"), "at least 1");
   EXPECT_EQ(range("brush.opacity"), "0.25 to 1");
+  EXPECT_EQ(range("many"), "1000000 to 2000000000") << "integers have no exponent";
   EXPECT_EQ(range("cold"), "at most -273.15");
   EXPECT_EQ(range("brush.color"), "red, green or blue");
   for (const char* key : {"brush.angle", "brush.is_round", "brush.name"}) {

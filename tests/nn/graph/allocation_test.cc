@@ -14,13 +14,16 @@ namespace {
 
 std::atomic<long> allocations = 0;
 
-void* Allocate(std::size_t bytes, std::size_t alignment) {
+/// Returns nullptr when there is no memory.
+void* AllocateOrNull(std::size_t bytes, std::size_t alignment) noexcept {
   ++allocations;
   // std::aligned_alloc wants whole multiples.
   const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
-  if (void* const memory = std::aligned_alloc(alignment, whole == 0 ? alignment : whole)) {
-    return memory;
-  }
+  return std::aligned_alloc(alignment, whole == 0 ? alignment : whole);
+}
+
+void* Allocate(std::size_t bytes, std::size_t alignment) {
+  if (void* const memory = AllocateOrNull(bytes, alignment)) return memory;
   throw std::bad_alloc();
 }
 
@@ -30,7 +33,11 @@ void* operator new(std::size_t bytes) { return Allocate(bytes, alignof(std::max_
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
   return Allocate(bytes, static_cast<std::size_t>(alignment));
 }
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  return AllocateOrNull(bytes, alignof(std::max_align_t));
+}
 void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }

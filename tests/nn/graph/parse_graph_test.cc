@@ -194,7 +194,9 @@ TEST(ParseGraph, RefusesNodesWithTheirNameAndTheReason) {
   };
   for (const auto& [node, patch, reason] : cases) {
     const std::string refusal = Refusal(
-        [&](NetworkBuilder* net) { NodeNamed(net, node)->merge_patch(json::parse(patch)); });
+        [node = node, patch = patch](NetworkBuilder* net) {
+          NodeNamed(net, node)->merge_patch(json::parse(patch));
+        });
     EXPECT_THAT(refusal, HasSubstr(reason)) << node << " " << patch;
     if (!json::parse(patch).contains("op") || json::parse(patch)["op"].is_string()) {
       EXPECT_THAT(refusal, HasSubstr("\"" + std::string(node) + "\"")) << patch;

@@ -97,7 +97,7 @@ TEST(Alignment, PlanarPointsAreNotReflected) {
 
 TEST(Alignment, MirroredPointsGetTheBestProperRotation) {
   RandomGeometry random(4);
-  std::vector<Vector3d> source = RandomPoints(20, &random), target = source;
+  std::vector<Vector3d> source = RandomPoints(200, &random), target = source;
   for (Vector3d& point : source) point.z() *= 0.1;  // mirroring the thin axis costs least
   for (size_t i = 0; i < source.size(); ++i) target[i] = source[i].cwiseProduct(Vector3d(1, 1, -1));
   const auto found = AlignRigid(source, target);

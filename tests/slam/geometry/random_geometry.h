@@ -11,7 +11,8 @@
 
 namespace orb360 {
 
-/// Seeded source of synthetic truth for the tests of the geometry.
+/// Seeded source of synthetic truth for the tests of the geometry. Numbers are drawn in separate
+/// statements: the order in which a compiler evaluates arguments is its own.
 class RandomGeometry {
  public:
   explicit RandomGeometry(unsigned seed) : generator_(seed) {}
@@ -30,18 +31,21 @@ class RandomGeometry {
   }
   /// In every direction, with a range between the two.
   Eigen::Vector3d Point(double nearest, double farthest) {
-    return Uniform(nearest, farthest) * Bearing();
+    const double range = Uniform(nearest, farthest);
+    return range * Bearing();
   }
   /// About a random axis, by an angle up to the one given.
   Eigen::Quaterniond Rotation(double angle = std::numbers::pi) {
-    return Eigen::Quaterniond(Eigen::AngleAxisd(Uniform(-angle, angle), Bearing()));
+    const double signed_angle = Uniform(-angle, angle);
+    return Eigen::Quaterniond(Eigen::AngleAxisd(signed_angle, Bearing()));
   }
   Rigid3 Transform() { return {Rotation(), Point(0.5, 5.0)}; }
   Similarity3 Similarity() { return {Uniform(0.2, 5.0), Rotation(), Point(0.5, 5.0)}; }
 
   /// The bearing turned by Gaussian noise of `sigma` radians in each of the two tangent directions.
   Eigen::Vector3d Noisy(const Eigen::Vector3d& bearing, double sigma) {
-    const Eigen::Vector3d noise(Normal(sigma), Normal(sigma), Normal(sigma));
+    Eigen::Vector3d noise;
+    for (double& element : noise) element = Normal(sigma);
     return (bearing + noise - bearing.dot(noise) * bearing).normalized();
   }
 

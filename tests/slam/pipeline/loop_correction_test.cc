@@ -25,7 +25,7 @@ struct Closed {
 // An even image for the newest keyframe.
 void KeepImage(Map* map) {
   SpherePyramid image;
-  BuildSpherePyramid(cv::Mat(64, 128, CV_8U, cv::Scalar(90)), 8, &image);
+  BuildSpherePyramid(cv::Mat(512, 1024, CV_8U, cv::Scalar(90)), 8, &image);
   map->keyframe(map->keyframe_end() - 1).image =
       std::make_shared<const SpherePyramid>(std::move(image));
 }
