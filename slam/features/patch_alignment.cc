@@ -59,20 +59,6 @@ bool IsInside(const PyramidLevel& level, const PatchGrid& grid, double radius) {
          ((grid.center + reach).array() <= most.array()).all();
 }
 
-float Blend(const PyramidLevel& level, float u, float v) {
-  const float x = u + (PyramidLevel::kMarginX - 0.5f);  // of the padded image, positive
-  const float y = v + (PyramidLevel::kMarginY - 0.5f);
-  const int column = static_cast<int>(x);
-  const int row = static_cast<int>(y);
-  const float a = x - static_cast<float>(column);
-  const float b = y - static_cast<float>(row);
-  const uint8_t* upper = level.padded.ptr(row) + column;
-  const uint8_t* lower = upper + level.padded.step;
-  const float top = static_cast<float>(upper[0]) + a * static_cast<float>(upper[1] - upper[0]);
-  const float bottom = static_cast<float>(lower[0]) + a * static_cast<float>(lower[1] - lower[0]);
-  return top + b * (bottom - top);
-}
-
 // Calls take(index, gray value) for the samples up to `radius`.
 template <typename Take>
 void Sample(const PyramidLevel& level, const PatchGrid& grid, int radius, const Take& take) {
@@ -83,7 +69,7 @@ void Sample(const PyramidLevel& level, const PatchGrid& grid, int radius, const 
     const Eigen::Vector2f middle = center + static_cast<float>(y) * steps.col(1);
     for (int x = -radius; x <= radius; ++x, ++index) {
       const Eigen::Vector2f pixel = middle + static_cast<float>(x) * steps.col(0);
-      take(index, Blend(level, pixel.x(), pixel.y()));
+      take(index, SampleBilinear(level, pixel.x(), pixel.y()));
     }
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -43,6 +44,22 @@ using SpherePyramid = std::vector<PyramidLevel>;
 /// result does not depend on how many.
 void BuildSpherePyramid(const cv::Mat& gray, int num_levels, SpherePyramid* levels,
                         int num_threads = 1);
+
+/// Returns the gray value at a pixel (continuous coordinates), interpolated bilinearly. Contract:
+/// it lies in the level or at least one pixel inside the level's margin.
+inline float SampleBilinear(const PyramidLevel& level, float u, float v) {
+  const float x = u + (PyramidLevel::kMarginX - 0.5f);  // of the padded image, positive
+  const float y = v + (PyramidLevel::kMarginY - 0.5f);
+  const int column = static_cast<int>(x);
+  const int row = static_cast<int>(y);
+  const float a = x - static_cast<float>(column);
+  const float b = y - static_cast<float>(row);
+  const uint8_t* upper = level.padded.ptr(row) + column;
+  const uint8_t* lower = upper + level.padded.step;
+  const float top = static_cast<float>(upper[0]) + a * static_cast<float>(upper[1] - upper[0]);
+  const float bottom = static_cast<float>(lower[0]) + a * static_cast<float>(lower[1] - lower[0]);
+  return top + b * (bottom - top);
+}
 
 /// Fills the margins of a level from its image.
 void FillSphereMargin(PyramidLevel* level);

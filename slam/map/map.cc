@@ -67,14 +67,14 @@ KeyframeId Map::AddKeyframe(int frame_index, double timestamp, const Rigid3& wor
   ORB360_CHECK(features != nullptr);
   const KeyframeId id = keyframe_end();
   const int num_features = features->size();
-  keyframes_.push_back(Keyframe{id,
-                                frame_index,
-                                timestamp,
-                                world_from_camera,
-                                std::move(features),
-                                std::vector<LandmarkId>(num_features, kNoId),
-                                {},
-                                nullptr});
+  Keyframe keyframe;
+  keyframe.id = id;
+  keyframe.frame_index = frame_index;
+  keyframe.timestamp = timestamp;
+  keyframe.world_from_camera = world_from_camera;
+  keyframe.features = std::move(features);
+  keyframe.landmarks.assign(num_features, kNoId);
+  keyframes_.push_back(std::move(keyframe));
   successors_.emplace_back();
   ++num_keyframes_;
   return id;
@@ -290,6 +290,7 @@ void Map::Append(const Map& other) {
     if (!theirs) continue;
     keyframes_.back()->id += first_keyframe;
     for (LandmarkId& id : keyframes_.back()->landmarks) id = shift(id, first_landmark);
+    for (GroundStepFrom& step : keyframes_.back()->ground_steps) step.keyframe += first_keyframe;
   }
   for (const Successor& theirs : other.successors_) {
     successors_.push_back({shift(theirs.keyframe, first_keyframe), theirs.successor_from_camera});

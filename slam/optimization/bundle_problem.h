@@ -35,6 +35,13 @@ struct BundleProblem {
     double range;  ///< World units.
     double sigma;  ///< Standard deviation of ln(range).
   };
+  /// The distance between two cameras is known. Its residual is that of RangeResidual.
+  struct Distance {
+    int pose1;
+    int pose2;
+    double distance;  ///< World units.
+    double sigma;     ///< Standard deviation of ln(distance).
+  };
   std::vector<Rigid3> world_from_camera;
   /// By pose. At least one pose is fixed, since the gauge is free otherwise.
   std::vector<uint8_t> pose_fixed;
@@ -42,6 +49,7 @@ struct BundleProblem {
   std::vector<Observation> observations;
   std::vector<Height> heights;
   std::vector<Range> ranges;
+  std::vector<Distance> distances;
 };
 
 }  // namespace orb360

@@ -25,6 +25,10 @@ constexpr int kGlobalRounds = 2;
 // (GroundPlaneOptions) lies at least twice as deep as the ground.
 constexpr double kGroundReach = 8.0;
 
+// Standard deviation of the camera's height over the ground from place to place, a fraction of it:
+// the road is uneven and the camera bobs. Twice as much lets a car beside the camera prevail.
+constexpr double kReliefSigma = 0.005;
+
 // Adds the heights of the camera with index `pose` over the points of the ground around it.
 void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem* problem) {
   const Rigid3& world_from_camera = problem->world_from_camera[pose];
@@ -50,6 +54,20 @@ void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem
                                 .normal = plane->normal,
                                 .height = ground.camera_height,
                                 .sigma = sigma * std::sqrt(total / plane->weights[i])});
+  }
+}
+
+// Adds the lengths of the steps to a keyframe that were measured on the ground. `pose_of`: by
+// keyframe, -1 for those that do not take part.
+void AddDistances(const Keyframe& keyframe, const std::vector<int>& pose_of, double camera_height,
+                  BundleProblem* problem) {
+  for (const GroundStepFrom& step : keyframe.ground_steps) {
+    const int from = pose_of[step.keyframe];
+    if (from < 0) continue;
+    problem->distances.push_back({.pose1 = from,
+                                  .pose2 = pose_of[keyframe.id],
+                                  .distance = step.ratio * camera_height,
+                                  .sigma = std::hypot(step.sigma, kReliefSigma)});
   }
 }
 
@@ -163,6 +181,14 @@ void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixe
   LevelRanges(&problem);
   for (size_t i = 0; ground && i < moving.size(); ++i) {
     AddHeights(static_cast<int>(i), *ground, height_sigma, &problem);
+  }
+  if (ground) {
+    for (const KeyframeId id : moving) {
+      AddDistances(map->keyframe(id), pose_of, ground->camera_height, &problem);
+    }
+    for (const KeyframeId id : fixed) {
+      AddDistances(map->keyframe(id), pose_of, ground->camera_height, &problem);
+    }
   }
   if (free_scale) RestoreMeanHeight(&problem);
   if (!SolveBundle(options, &problem).usable) return;

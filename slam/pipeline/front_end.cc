@@ -84,12 +84,17 @@ void FrontEnd::Anchor(const TrackedFrame& frame, Atlas* atlas) const {
                               .sightings = SightingsOf(frame)});
 }
 
-bool FrontEnd::NeedsKeyframe() const {
+bool FrontEnd::NeedsKeyframe(bool has_ground) const {
   const TrackedFrame& last = std::get<Tracking>(state_).last;
   const KeyframeOptions& options = options_.keyframe;
   const double motion =
       (last.world_from_camera.translation - local_.world_from_reference.translation).norm() /
       std::max(local_.median_range, 1e-12);
+  // The next step over the ground would be too long to be measured (GroundSweepOptions).
+  constexpr double kMaxGroundStep = 2.5;  // heights of the camera
+  if (has_ground && motion * local_.median_range > kMaxGroundStep * options_.scale.height()) {
+    return true;
+  }
   if (motion < options.min_motion) return false;
   return motion > options.max_motion ||
          last.num_inliers < options.min_tracked_fraction * local_.reference_matches ||

@@ -60,6 +60,8 @@ class FrontEnd {
   const LocalMap& local() const { return local_; }
   /// Angular noise of a feature on pyramid level 0, rad.
   double pixel_sigma() const { return pixel_sigma_; }
+  /// CV_8U, 0 where features are left out; may be empty.
+  const cv::Mat& mask() const { return mask_; }
 
   /// Tracks a frame in the local map. False where that fails. State: tracking.
   bool Track(const PendingFrame& frame, int num_threads, Atlas* atlas);
@@ -83,7 +85,7 @@ class FrontEnd {
   void StartTracking(const InitialMap& initial, int num_threads, Atlas* atlas);
 
   /// Whether the last frame should become a keyframe. State: tracking.
-  bool NeedsKeyframe() const;
+  bool NeedsKeyframe(bool has_ground) const;
   /// Adds the collected counts to the landmarks of the map, and makes the local map anew where
   /// another keyframe than its reference shares most landmarks with the last frame. State:
   /// tracking.

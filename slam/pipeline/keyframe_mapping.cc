@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "slam/pipeline/ground.h"
+#include "slam/pipeline/ground_steps.h"
 
 namespace orb360 {
 namespace {
@@ -16,11 +17,14 @@ std::optional<KnownGround> LookForGround(const Map& map, const std::optional<Kno
   if (!known) {
     constexpr size_t kEnough = 5;  // keyframes
     if (keyframes.size() < kEnough) return std::nullopt;
-    return EstimateGround(map, std::span(keyframes).last(kEnough));
+    const std::span newest = std::span(keyframes).last(kEnough);
+    if (std::optional<KnownGround> ground = GroundFromSteps(map, newest)) return ground;
+    return EstimateGround(map, newest);
   }
   // Weight of a new normal. It is small, because the slope of a road changes slowly.
   constexpr double kWeight = 0.2;
-  const std::optional<Eigen::Vector3d> normal = GroundNormal(map, keyframes.back(), known->up);
+  std::optional<Eigen::Vector3d> normal = GroundNormalFromSteps(map.keyframe(keyframes.back()));
+  if (!normal) normal = GroundNormal(map, keyframes.back(), known->up);
   if (!normal) return known;
   return KnownGround{.up = ((1 - kWeight) * known->up + kWeight * *normal).normalized(),
                      .camera_height = known->camera_height};
@@ -32,7 +36,8 @@ MappedKeyframe MapKeyframe(KeyframeMapping job, const Options& options) {
   MappedKeyframe result{.active = std::move(job.active), .color = std::move(job.color)};
   Map& map = result.active.map;
   const KeyframeId id =
-      IntegrateKeyframe(job.frame, std::move(job.pyramid), options.mapper, job.ground, &map);
+      IntegrateKeyframe(job.frame, std::move(job.pyramid), options.mapper, job.ground,
+                        options.scale.from_ground ? std::optional(job.mask) : std::nullopt, &map);
   result.update.reference = id;
   result.update.correction =
       ToSimilarity(map.keyframe(id).world_from_camera * job.frame.world_from_camera.Inverse());

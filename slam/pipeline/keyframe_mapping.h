@@ -21,7 +21,8 @@ struct KeyframeMapping {
   std::span<const Map> finished;
   TrackedFrame frame;
   std::shared_ptr<const SpherePyramid> pyramid;  ///< Image pyramid of the frame.
-  std::optional<KnownGround> ground;             ///< The ground that landmarks have shown so far.
+  std::optional<KnownGround> ground;             ///< The ground that has been seen so far.
+  cv::Mat mask = {};  ///< What moves with the camera (CV_8U, 0: not used); may be empty.
   /// The camera and the image (CV_8UC3, BGR) in the size in which depth is completed. None and
   /// empty where the keyframe gets no dense depth.
   std::optional<EquirectangularCamera> completed_camera = {};

@@ -6,9 +6,10 @@ namespace orb360 {
 void RegisterOptions(OptionSchema* schema, LoopOptions* options) {
   schema->Add("loop.enabled", &options->enabled,
               "recognise places: close loops, merge maps, find a lost camera by its image");
-  schema->Add("loop.min_similarity", &options->min_similarity,
-              "least similarity score of a candidate place, fraction of the score of the keyframe before",
-              0.0, 10.0);
+  schema->Add(
+      "loop.min_similarity", &options->min_similarity,
+      "least similarity score of a candidate place, fraction of the score of the keyframe before",
+      0.0, 10.0);
   schema->Add("loop.max_candidates", &options->max_candidates,
               "candidate places that are verified for each lost frame", 1, 100);
   schema->Add("loop.min_inliers", &options->min_inliers,
@@ -23,16 +24,17 @@ void RegisterOptions(OptionSchema* schema, LoopOptions* options) {
   schema->Add("loop.min_length", &options->min_length,
               "least length of a loop, multiples of the median range", 0.0, 10000.0);
   schema->Add("loop.max_drift", &options->max_drift,
-              "largest drift of the position, fraction of the path round the loop", 0.0,
-              10.0);
-  schema->Add("loop.max_turn", &options->max_turn, "largest drift of the orientation round a loop, radians", 0.0, 3.2);
-  schema->Add("loop.max_scale", &options->max_scale, "largest drift of the scale round a loop, a factor", 1.0,
-              100.0);
+              "largest drift of the position, fraction of the path round the loop", 0.0, 10.0);
+  schema->Add("loop.max_turn", &options->max_turn,
+              "largest drift of the orientation round a loop, radians", 0.0, 3.2);
+  schema->Add("loop.max_scale", &options->max_scale,
+              "largest drift of the scale round a loop, a factor", 1.0, 100.0);
   schema->Add("loop.correction_frames", &options->correction_frames,
               "frames after which the correction of a loop is adopted", 1, 1000);
-  schema->Add("loop.bundle_frames", &options->bundle_frames,
-              "frames after which a bundle adjustment of the whole map is adopted, for each keyframe",
-              0.0, 100.0);
+  schema->Add(
+      "loop.bundle_frames", &options->bundle_frames,
+      "frames after which a bundle adjustment of the whole map is adopted, for each keyframe", 0.0,
+      100.0);
   schema->Add("loop.bundle_iterations", &options->bundle_iterations,
               "iterations of each round of the bundle adjustment of the whole map", 1, 1000);
   schema->Add("loop.height_sigma", &options->height_sigma,

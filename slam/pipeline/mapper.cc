@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "slam/optimization/local_bundle_adjustment.h"
+#include "slam/pipeline/ground_steps.h"
 #include "slam/pipeline/landmark_fusion.h"
 #include "slam/pipeline/observation_alignment.h"
 #include "slam/pipeline/panoramic_triangulation.h"
@@ -76,7 +77,7 @@ void CullRedundantKeyframes(KeyframeId newest, const MapperOptions& options, Map
 
 KeyframeId IntegrateKeyframe(const TrackedFrame& frame, std::shared_ptr<const SpherePyramid> image,
                              const MapperOptions& options, const std::optional<KnownGround>& ground,
-                             Map* map) {
+                             const std::optional<cv::Mat>& ground_mask, Map* map) {
   const KeyframeId id =
       map->AddKeyframe(frame.index, frame.timestamp, frame.world_from_camera, frame.features);
   for (size_t f = 0; f < frame.landmarks.size(); ++f) {
@@ -89,6 +90,8 @@ KeyframeId IntegrateKeyframe(const TrackedFrame& frame, std::shared_ptr<const Sp
     map->UpdateAppearance(landmark);
   }
   map->keyframe(id).image = std::move(image);
+  if (ground_mask) MeasureGroundSteps(id, ground, *ground_mask, map);
+  if (ground) CorrectStep(id, *ground, map);
   CullRecentLandmarks(id, options, map);
   TriangulateNewLandmarks(id, options.triangulation, map);
   FuseWithNeighbours(id, options.max_fusion_neighbours, map);

@@ -15,9 +15,10 @@ namespace orb360 {
 /// of doubtful landmarks, panoramic triangulation of new ones, fusion of duplicates with
 /// neighbouring keyframes, alignment with the patches of landmarks and search for further landmarks
 /// (both where `image` is not null), local bundle adjustment, and culling of redundant keyframes.
-/// Returns the id of the keyframe.
+/// Returns the id of the keyframe. `ground`: as it is known so far. `ground_mask`: what moves with
+/// the camera, where steps over the ground are to be measured (MeasureGroundSteps).
 KeyframeId IntegrateKeyframe(const TrackedFrame& frame, std::shared_ptr<const SpherePyramid> image,
                              const MapperOptions& options, const std::optional<KnownGround>& ground,
-                             Map* map);
+                             const std::optional<cv::Mat>& ground_mask, Map* map);
 
 }  // namespace orb360

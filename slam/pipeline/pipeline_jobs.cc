@@ -27,7 +27,7 @@ void Pipeline::StartDue(const cv::Mat& image) {
   front_end_.UpdateLocalMap(&atlas_.map());
   if (atlas_.found_loop && !back_end_.is_adjusting()) {
     StartLoopCorrection();
-  } else if (!keeps_map_ && front_end_.NeedsKeyframe()) {
+  } else if (!keeps_map_ && front_end_.NeedsKeyframe(atlas_.ReliableGround().has_value())) {
     StartMapping(image);
   }
 }
@@ -48,7 +48,8 @@ void Pipeline::StartMapping(const cv::Mat& image) {
                       .finished = atlas_.finished(),
                       .frame = std::move(frame),
                       .pyramid = std::make_shared<const SpherePyramid>(front_end_.TakePyramid()),
-                      .ground = ground};
+                      .ground = ground,
+                      .mask = front_end_.mask()};
   if (is_completed) {
     job.completed_camera = dense_->camera();
     cv::resize(image, job.color, {dense_->camera().width(), dense_->camera().height()}, 0, 0,

@@ -9,6 +9,7 @@
 #include <ceres/ceres.h>
 
 #include "slam/optimization/bundle_loss.h"
+#include "slam/optimization/ceres/distance_cost.h"
 #include "slam/optimization/ceres/point_cost.h"
 #include "slam/optimization/ceres/solver_options.h"
 
@@ -37,6 +38,7 @@ class CeresBundle {
       : direction_loss_(MakeCeresLoss(DirectionLoss(loss))),
         height_loss_(MakeCeresLoss(HeightLoss())),
         range_loss_(MakeCeresLoss(RangeLoss())),
+        distance_loss_(MakeCeresLoss(DistanceLoss())),
         poses_(bundle.world_from_camera.size()),
         points_(bundle.points),
         ordering_(std::make_shared<ceres::ParameterBlockOrdering>()),
@@ -50,8 +52,9 @@ class CeresBundle {
     }
     for (Eigen::Vector3d& point : points_) problem_.AddParameterBlock(point.data(), 3);
     // The more numerous variables are eliminated. Those are the points, except where a long track
-    // follows a few of them: their elimination would make the reduced system large and full.
-    const bool eliminates_points = points_.size() >= poses_.size();
+    // follows a few of them: their elimination would make the reduced system large and full. Poses
+    // with a residual in common cannot be eliminated one by one.
+    const bool eliminates_points = points_.size() >= poses_.size() || !bundle.distances.empty();
     for (auto& pose : poses_) ordering_->AddElementToGroup(pose.data(), eliminates_points ? 1 : 0);
     for (Eigen::Vector3d& point : points_) {
       ordering_->AddElementToGroup(point.data(), eliminates_points ? 0 : 1);
@@ -67,6 +70,11 @@ class CeresBundle {
     for (const BundleProblem::Range& r : bundle.ranges) {
       ranges_.emplace_back(RangeResidual(r.range, r.sigma));
       AddBlock(&ranges_.back(), range_loss_.get(), r.pose, r.point);
+    }
+    for (const BundleProblem::Distance& d : bundle.distances) {
+      distances_.emplace_back(RangeResidual(d.distance, d.sigma));
+      problem_.AddResidualBlock(&distances_.back(), distance_loss_.get(), poses_[d.pose1].data(),
+                                poses_[d.pose2].data());
     }
   }
   CeresBundle(const CeresBundle&) = delete;
@@ -110,11 +118,13 @@ class CeresBundle {
   std::unique_ptr<ceres::LossFunction> direction_loss_;
   std::unique_ptr<ceres::LossFunction> height_loss_;
   std::unique_ptr<ceres::LossFunction> range_loss_;
+  std::unique_ptr<ceres::LossFunction> distance_loss_;
   std::vector<std::array<double, 7>> poses_;
   std::vector<Eigen::Vector3d> points_;
   std::deque<PointCost<DirectionResidual>> directions_;  // cost functions cannot move
   std::deque<PointCost<HeightResidual>> heights_;
   std::deque<PointCost<RangeResidual>> ranges_;
+  std::deque<DistanceCost> distances_;
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering_;
   ceres::Problem problem_;
 };

@@ -14,8 +14,9 @@ struct BlockStructure {
   size_t num_rows() const { return first.size() - 1; }
 };
 
-/// Sorts indices and removes duplicates.
-inline void SortUnique(std::vector<int>* indices) {
+/// Sorts indices, or pairs of them, and removes duplicates.
+template <typename Index>
+void SortUnique(std::vector<Index>* indices) {
   std::sort(indices->begin(), indices->end());
   indices->erase(std::unique(indices->begin(), indices->end()), indices->end());
 }

@@ -6,7 +6,9 @@
 #include <span>
 
 #include "slam/optimization/bundle_loss.h"
+#include "slam/optimization/point_residual.h"
 #include "slam/optimization/schur/block_structure.h"
+#include <orb360/nn/base/check.h>
 #include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
@@ -57,10 +59,12 @@ PosePointPairs FindPairs(const std::vector<int>& free_index, size_t num_points,
   return pairs;
 }
 
+PosePair SortedPair(int a, int b) { return {std::max(a, b), std::min(a, b)}; }
+
 }  // namespace
 
 BundleEvaluator::BundleEvaluator(BundleLoss loss, const BundleProblem& problem)
-    : blocks_(MakeResidualBlocks(problem)) {
+    : blocks_(MakeResidualBlocks(problem)), distances_(problem.distances) {
   losses_[ResidualBlocks::kDirection] = DirectionLoss(loss);
   losses_[ResidualBlocks::kHeight] = HeightLoss();
   losses_[ResidualBlocks::kRange] = RangeLoss();
@@ -68,6 +72,13 @@ BundleEvaluator::BundleEvaluator(BundleLoss loss, const BundleProblem& problem)
     free_index_.push_back(is_fixed ? -1 : num_free_poses_++);
   }
   pairs_ = FindPairs(free_index_, problem.points.size(), &blocks_);
+  for (const BundleProblem::Distance& distance : distances_) {
+    const int free1 = free_index_[distance.pose1];
+    const int free2 = free_index_[distance.pose2];
+    ORB360_CHECK(distance.pose1 != distance.pose2, distance.pose1);
+    if (free1 >= 0 && free2 >= 0) pose_pairs_.push_back(SortedPair(free1, free2));
+  }
+  SortUnique(&pose_pairs_);
 }
 
 double BundleEvaluator::Evaluate(const BundleState& state, NormalEquations* equations) const {
@@ -97,13 +108,53 @@ double BundleEvaluator::Evaluate(const BundleState& state, NormalEquations* equa
       }
     }
   }
+  return cost + EvaluateDistances(state, equations);
+}
+
+double BundleEvaluator::EvaluateDistances(const BundleState& state,
+                                          NormalEquations* equations) const {
+  double cost = 0;
+  for (const BundleProblem::Distance& distance : distances_) {
+    const Rigid3& pose1 = state.camera_from_world[distance.pose1];
+    const Rigid3& pose2 = state.camera_from_world[distance.pose2];
+    const Eigen::Vector3d between = pose2.Inverse().translation - pose1.Inverse().translation;
+    PointJacobian by_between;
+    const double residual =
+        RangeResidual(distance.distance, distance.sigma)(between, &by_between).x();
+    if (!std::isfinite(residual)) return std::numeric_limits<double>::infinity();
+    const RobustLoss::Value loss = DistanceLoss()(residual * residual);
+    cost += 0.5 * loss.rho;
+    if (equations == nullptr) continue;
+    // A rotation leaves the camera's centre where it is; a translation d of camera_from_world moves
+    // it by -R^T d.
+    const Eigen::Vector3d across = by_between.row(0).transpose();
+    PaddedVector by_pose1 = PaddedVector::Zero();
+    PaddedVector by_pose2 = PaddedVector::Zero();
+    by_pose1.segment<3>(3) = pose1.rotation * across;
+    by_pose2.segment<3>(3) = -(pose2.rotation * across);
+    const int free1 = free_index_[distance.pose1];
+    const int free2 = free_index_[distance.pose2];
+    const auto add = [&](int free, const PaddedVector& by_pose) {
+      if (free < 0) return;
+      equations->pose_hessian[free] += loss.slope * by_pose * by_pose.head<kPoseSize>().transpose();
+      equations->pose_gradient[free] += loss.slope * residual * by_pose;
+    };
+    add(free1, by_pose1);
+    add(free2, by_pose2);
+    if (free1 < 0 || free2 < 0) continue;
+    const auto pair = std::ranges::lower_bound(pose_pairs_, SortedPair(free1, free2));
+    const bool is_first_row = free1 > free2;
+    equations->pose_pair_hessian[pair - pose_pairs_.begin()] +=
+        loss.slope * (is_first_row ? by_pose1 : by_pose2) *
+        (is_first_row ? by_pose2 : by_pose1).head<kPoseSize>().transpose();
+  }
   return cost;
 }
 
 double BundleEvaluator::Cost(const BundleState& state) const { return Evaluate(state, nullptr); }
 
 double BundleEvaluator::Linearize(const BundleState& state, NormalEquations* equations) const {
-  equations->SetZero(static_cast<size_t>(num_free_poses_), pairs_);
+  equations->SetZero(static_cast<size_t>(num_free_poses_), pairs_, pose_pairs_.size());
   return Evaluate(state, equations);
 }
 

@@ -39,16 +39,21 @@ class BundleEvaluator {
   BundleState Plus(const BundleState& state, const BundleStep& step) const;
 
   const PosePointPairs& pairs() const { return pairs_; }
+  const std::vector<PosePair>& pose_pairs() const { return pose_pairs_; }
   /// Number of poses that are not fixed.
   int num_free_poses() const { return num_free_poses_; }
 
  private:
   double Evaluate(const BundleState& state, NormalEquations* equations) const;
 
+  double EvaluateDistances(const BundleState& state, NormalEquations* equations) const;
+
   std::array<ResidualBlocks, 3> blocks_;  ///< By kind.
   std::array<RobustLoss, 3> losses_;      ///< By kind.
+  std::vector<BundleProblem::Distance> distances_;
   PosePointPairs pairs_;
-  std::vector<int> free_index_;  ///< By pose: its index among those that are not fixed, or -1.
+  std::vector<PosePair> pose_pairs_;  ///< Sorted.
+  std::vector<int> free_index_;       ///< By pose: its index among those that are not fixed, or -1.
   int num_free_poses_ = 0;
 };
 

@@ -18,7 +18,8 @@ class BundleMinimization {
  public:
   BundleMinimization(BundleLoss loss, const BundleProblem& problem)
       : evaluator_(loss, problem),
-        structure_(evaluator_.num_free_poses(), evaluator_.pairs(), MaxPoses(problem)),
+        structure_(evaluator_.num_free_poses(), evaluator_.pairs(), MaxPoses(problem),
+                   evaluator_.pose_pairs()),
         cholesky_(structure_) {
     for (const Rigid3& pose : problem.world_from_camera) {
       state_.camera_from_world.push_back(pose.Inverse());

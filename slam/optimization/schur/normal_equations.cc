@@ -60,12 +60,14 @@ HWY_EXPORT(Accumulate);
 
 }  // namespace
 
-void NormalEquations::SetZero(size_t num_poses, const PosePointPairs& pairs) {
+void NormalEquations::SetZero(size_t num_poses, const PosePointPairs& pairs,
+                              size_t num_pose_pairs) {
   pose_hessian.assign(num_poses, PoseBlock::Zero());
   pose_gradient.assign(num_poses, PaddedVector::Zero());
   point_hessian.assign(pairs.num_points(), Eigen::Matrix3d::Zero());
   point_gradient.assign(pairs.num_points(), Eigen::Vector3d::Zero());
   pair_hessian.assign(pairs.pose.size(), PosePointBlock::Zero());
+  pose_pair_hessian.assign(num_pose_pairs, PoseBlock::Zero());
 }
 
 void NormalEquations::Accumulate(const PosePointPairs& pairs, const ResidualBlocks& blocks,

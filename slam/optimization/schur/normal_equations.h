@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -25,6 +26,10 @@ struct PosePointPairs {
   size_t num_points() const { return first.size() - 1; }
 };
 
+/// Two poses that are not fixed with residual blocks in common that depend on no point. The first
+/// one has the larger index.
+using PosePair = std::array<int, 2>;
+
 /// The normal equations of a bundle: the gradient J^T r and the Gauss-Newton approximation J^T J of
 /// the Hessian, whose blocks are called U (poses), V (points) and W (pairs) as in Triggs,
 /// McLauchlan, Hartley, Fitzgibbon, Bundle Adjustment: A Modern Synthesis, 2000.
@@ -34,8 +39,9 @@ struct NormalEquations {
   std::vector<Eigen::Matrix3d> point_hessian;  ///< V
   std::vector<Eigen::Vector3d> point_gradient;
   std::vector<PosePointBlock> pair_hessian;  ///< W
+  std::vector<PoseBlock> pose_pair_hessian;  ///< U below the diagonal, by pair of poses.
 
-  void SetZero(size_t num_poses, const PosePointPairs& pairs);
+  void SetZero(size_t num_poses, const PosePointPairs& pairs, size_t num_pose_pairs = 0);
 
   /// Adds `weights.size()` residual blocks from `begin` on, given their rows as
   /// EvaluateResidualBlocks writes them. A block counts `weights` times.

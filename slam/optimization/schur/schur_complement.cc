@@ -1,5 +1,7 @@
 #include "slam/optimization/schur/schur_complement.h"
 
+#include <algorithm>
+
 #include <Eigen/Cholesky>
 
 #include "slam/optimization/schur/levenberg_marquardt.h"
@@ -91,11 +93,13 @@ Eigen::Matrix3d InverseOfLower(const Eigen::Matrix3d& l) {
 }  // namespace
 
 ReducedCameraStructure::ReducedCameraStructure(size_t num_poses, const PosePointPairs& pairs,
-                                               size_t max_poses) {
+                                               size_t max_poses,
+                                               std::span<const PosePair> pose_pairs) {
   // Duplicates are removed from a row when it has this many more entries than there are poses.
   constexpr size_t kMaxDuplicates = 4096;
   std::vector<std::vector<int>> rows(num_poses);
   for (size_t i = 0; i < num_poses; ++i) rows[i].push_back(static_cast<int>(i));
+  for (const auto& [row, other] : pose_pairs) rows[row].push_back(other);
   for (size_t p = 0; p < pairs.num_points(); ++p) {
     const std::span poses(pairs.pose.data() + pairs.first[p],
                           pairs.pose.data() + pairs.first[p + 1]);
@@ -115,6 +119,11 @@ ReducedCameraStructure::ReducedCameraStructure(size_t num_poses, const PosePoint
     SortUnique(&row);
     column.insert(column.end(), row.begin(), row.end());
     first.push_back(column.size());
+  }
+  for (const auto& [row, other] : pose_pairs) {
+    const auto begin = column.begin() + static_cast<std::ptrdiff_t>(first[row]);
+    const auto end = column.begin() + static_cast<std::ptrdiff_t>(first[row + 1]);
+    block_of_pose_pair.push_back(std::lower_bound(begin, end, other) - column.begin());
   }
 }
 
@@ -145,6 +154,9 @@ bool EliminatePoints(const NormalEquations& equations, const PosePointPairs& pai
     const Eigen::Matrix<double, kPoseSize, 1> diagonal = block.diagonal();
     block.diagonal() += LevenbergMarquardtDamping(diagonal, radius);
     rhs[i] = -equations.pose_gradient[i];
+  }
+  for (size_t i = 0; i < equations.pose_pair_hessian.size(); ++i) {
+    blocks[structure.block_of_pose_pair[i]] += equations.pose_pair_hessian[i];
   }
   const size_t num_points = equations.point_hessian.size();
   system->inverse_factors.resize(num_points);

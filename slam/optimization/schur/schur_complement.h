@@ -13,18 +13,19 @@
 namespace orb360 {
 
 /// Structure of the reduced camera system, which is left when the points are eliminated: two poses
-/// have a block in common where they see a point in common. A point that more than `max_poses`
-/// poses see is kept as a row behind those of the poses. Its elimination would link each of these
-/// poses with each other, and a few clouds or towers that are seen from everywhere would make the
-/// sparse matrix full.
+/// have a block in common where they see a point in common or are a pair of poses. A point that
+/// more than `max_poses` poses see is kept as a row behind those of the poses. Its elimination
+/// would link each of these poses with each other, and a few clouds or towers that are seen from
+/// everywhere would make the sparse matrix full.
 struct ReducedCameraStructure : BlockStructure {
   static constexpr size_t kMaxPoses = 80;
 
-  std::vector<int> row_of_point;  ///< -1 where the point is eliminated.
+  std::vector<int> row_of_point;           ///< -1 where the point is eliminated.
+  std::vector<size_t> block_of_pose_pair;  ///< Index of the block, by pair of poses.
 
   ReducedCameraStructure() = default;
   ReducedCameraStructure(size_t num_poses, const PosePointPairs& pairs,
-                         size_t max_poses = kMaxPoses);
+                         size_t max_poses = kMaxPoses, std::span<const PosePair> pose_pairs = {});
 };
 
 /// The reduced camera system S x = b of the damped normal equations, with S = U - W V^-1 W^T and

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <algorithm>
+
 #include "slam/optimization/bundle_adjustment.h"
 #include "tests/slam/geometry/random_geometry.h"
 
 namespace orb360 {
 
-/// A walk that sees points from a few poses each, over a ground and with ranges, all with noise,
-/// and every twentieth observation wrong altogether. Three of its twelve poses are fixed.
+/// A walk that sees points from a few poses each, over a ground and with ranges and distances, all
+/// with noise, and every twentieth observation wrong altogether. Three of its
+/// twelve poses are fixed.
 inline BundleProblem NoisyWalk(int seed) {
   RandomGeometry random(seed);
   BundleProblem problem;
@@ -32,6 +35,18 @@ inline BundleProblem NoisyWalk(int seed) {
         problem.heights.push_back(
             {i, p, problem.world_from_camera[i].rotation.inverse() * up, height, 0.05});
       }
+    }
+  }
+  RandomGeometry random_distances(seed + 1000);
+  for (int i = 0; i < 12; ++i) {
+    for (int j = i + 1; j < std::min(12, i + 3); ++j) {
+      const double distance =
+          (problem.world_from_camera[j].translation - problem.world_from_camera[i].translation)
+              .norm();
+      problem.distances.push_back({.pose1 = i,
+                                   .pose2 = j,
+                                   .distance = distance * random_distances.Uniform(0.98, 1.02),
+                                   .sigma = 0.02});
     }
   }
   for (size_t i = 0; i < problem.world_from_camera.size(); ++i) {

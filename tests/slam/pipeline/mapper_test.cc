@@ -29,7 +29,7 @@ TEST(Mapper, TakesAFrameInAndCorrectsItsPose) {
   Rigid3 disturbed = truth;
   disturbed.translation += Eigen::Vector3d(0.03, -0.03, 0.02);
   const KeyframeId id = IntegrateKeyframe(FrameSeeing(scene, scene.See(truth), disturbed, 250),
-                                          nullptr, {}, {}, &map);
+                                          nullptr, {}, {}, {}, &map);
   map.CheckConsistency();
   EXPECT_EQ(id, 3);
   EXPECT_EQ(map.keyframe(id).frame_index, 40);
@@ -46,7 +46,7 @@ TEST(Mapper, DropsLandmarksThatAreRarelyFound) {
   const Rigid3 pose = Walk(4, {-0.4, 0.1, 0.0})[3];
   TrackedFrame frame = FrameSeeing(scene, scene.See(pose), pose, 300);
   frame.landmarks[doubtful] = kNoId;
-  IntegrateKeyframe(frame, nullptr, {}, {}, &map);
+  IntegrateKeyframe(frame, nullptr, {}, {}, {}, &map);
   EXPECT_FALSE(map.HasLandmark(doubtful));
 }
 
@@ -56,7 +56,7 @@ TEST(Mapper, RemovesKeyframesThatOthersMakeRedundantAndKeepsTheirPoses) {
   const std::vector<Rigid3> poses = Walk(5, {-0.05, 0.0, 0.0});
   Map map = scene.MakeMap(poses, 300);
   const Rigid3 pose = Walk(6, {-0.05, 0.0, 0.0})[5];
-  IntegrateKeyframe(FrameSeeing(scene, scene.See(pose), pose, 300), nullptr, {}, {}, &map);
+  IntegrateKeyframe(FrameSeeing(scene, scene.See(pose), pose, 300), nullptr, {}, {}, {}, &map);
   map.CheckConsistency();
   EXPECT_LT(map.num_keyframes(), 6);
   EXPECT_TRUE(map.HasKeyframe(0));  // the gauge
@@ -79,7 +79,7 @@ TEST(Mapper, KeepsTheImagesOfTheNewestKeyframesOnly) {
   for (int k = 3; k < 8; ++k) {
     TrackedFrame frame = FrameSeeing(scene, scene.See(poses[k]), poses[k], 200);
     for (LandmarkId& id : frame.landmarks) id = map.Resolve(id);
-    IntegrateKeyframe(frame, image, options, {}, &map);
+    IntegrateKeyframe(frame, image, options, {}, {}, &map);
   }
   for (KeyframeId id = 0; id < 8; ++id) EXPECT_EQ(map.keyframe(id).image != nullptr, id >= 6);
   EXPECT_EQ(image.use_count(), 3);

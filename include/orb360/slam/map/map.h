@@ -54,6 +54,17 @@ struct RangePrior {
   float sigma = 0;  ///< Standard deviation of ln(range); 0 where nothing is known.
 };
 
+/// The length of the motion from another keyframe, measured on the ground.
+struct GroundStepFrom {
+  KeyframeId keyframe = kNoId;  ///< The other keyframe. It may have been removed since.
+  double ratio = 0;             ///< Length, divided by the camera's height over the ground.
+  double sigma = 0;             ///< Standard deviation of ln(ratio).
+  /// Direction of the motion and normal of the ground half-way, unit vectors, frame of the keyframe
+  /// that has this step.
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+};
+
 /// A frame that is kept in the map with its features.
 struct Keyframe {
   KeyframeId id = kNoId;  ///< Index in the map.
@@ -66,6 +77,8 @@ struct Keyframe {
   std::vector<LandmarkId> landmarks;
   /// Range of each feature from completed depth; empty where the depth is not completed.
   std::vector<RangePrior> range_priors;
+  /// Steps from earlier keyframes to this one; empty where the ground did not show them.
+  std::vector<GroundStepFrom> ground_steps;
   /// Pyramid of the image, kept for the newest keyframes only (Map::ForgetImages); else null.
   std::shared_ptr<const SpherePyramid> image;
 

@@ -1,0 +1,111 @@
+// How well two images of the ground tell the length of a step: measured against true poses and
+// depth.
+//
+//   ground_sweep_accuracy SEQUENCE [GAP]
+//
+// For each frame of a sequence folder with true depth and the frame GAP after it [1]: the true
+// ratio of the step to the height over the ground, the measured one, the error of its logarithm and
+// that in standard deviations; at the end their summary.
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "nn/base/statistics.h"
+#include "slam/features/sphere_pyramid.h"
+#include "slam/scale/ground_sweep.h"
+#include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/io/depth_image.h>
+#include <orb360/slam/io/trajectory.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+using orb360::Rigid3;
+
+std::string NameOf(int index, const char* ending) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06d.%s", index, ending);
+  return name;
+}
+
+orb360::SpherePyramid ReadPyramid(const fs::path& sequence, int index) {
+  fs::path path = sequence / "rgb" / NameOf(index, "jpg");
+  if (!fs::exists(path)) path.replace_extension("png");
+  orb360::SpherePyramid pyramid;
+  orb360::BuildSpherePyramid(cv::imread(path.string(), cv::IMREAD_GRAYSCALE), 8, &pyramid);
+  return pyramid;
+}
+
+/// Height of the point half-way over the ground below it, within a fifth of the height; 0 where
+/// there is no depth. `step` is the motion and `up` the normal, camera frame.
+double TrueHeight(const cv::Mat& range, const Eigen::Vector3d& step, const Eigen::Vector3d& up) {
+  const orb360::EquirectangularCamera camera(range.cols, range.rows);
+  const Eigen::Vector3d forward = step.normalized();
+  const Eigen::Vector3d normal = (up - forward.dot(up) * forward).normalized();
+  std::vector<double> heights;
+  for (int row = range.rows / 2; row < range.rows; ++row) {
+    for (int column = 0; column < range.cols; ++column) {
+      const Eigen::Vector3d point =
+          camera.BackProject({column + 0.5, row + 0.5}, range.at<float>(row, column));
+      const double height = -normal.dot(point);
+      const Eigen::Vector3d off = point + height * normal - 0.5 * step;
+      if (height > 0 && off.norm() < 0.2 * height) heights.push_back(height);
+    }
+  }
+  return heights.empty() ? 0.0 : orb360::Median(heights);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2 || argc > 3) {
+    std::fprintf(stderr, "usage: ground_sweep_accuracy SEQUENCE [GAP]\n");
+    return 2;
+  }
+  const fs::path sequence = argv[1];
+  const int gap = argc > 2 ? std::atoi(argv[2]) : 1;
+  const std::vector<orb360::StampedPose> poses =
+      orb360::ReadTrajectory(sequence / "groundtruth.txt");
+  std::vector<double> errors;
+  std::vector<double> normalized;
+  int num_frames = 0;
+  int num_measured = 0;
+  std::printf("%6s %7s %8s %7s %7s %6s %6s %6s %6s\n", "frame", "true", "measured", "error",
+              "sigma", "error/", "corr.", "rival", "tiles");
+  for (int i = 0; i + gap < static_cast<int>(poses.size()); ++i) {
+    const fs::path depth = sequence / "depth" / NameOf(i, "png");
+    if (!fs::exists(depth)) continue;
+    ++num_frames;
+    const Rigid3 pose1 = poses[i].world_from_camera;
+    const Rigid3 motion = pose1.Inverse() * poses[i + gap].world_from_camera;
+    const Eigen::Vector3d up = pose1.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+    const double height = TrueHeight(orb360::ReadDepthImage(depth), motion.translation, up);
+    const double truth = height > 0 ? motion.translation.norm() / height : 0.0;
+    const auto step = orb360::MeasureGroundStep(ReadPyramid(sequence, i),
+                                                ReadPyramid(sequence, i + gap), motion, up, {}, {});
+    if (!step) {
+      std::printf("%6d %7.4f %8s\n", i, truth, "-");
+      continue;
+    }
+    ++num_measured;
+    const double error = std::log(step->ratio / truth);
+    errors.push_back(std::abs(error));
+    normalized.push_back(std::abs(error) / step->sigma);
+    std::printf("%6d %7.4f %8.4f %7.4f %7.4f %6.1f %6.2f %6.2f %6d\n", i, truth, step->ratio, error,
+                step->sigma, error / step->sigma, step->correlation, step->rival, step->num_tiles);
+  }
+  if (errors.empty()) return 0;
+  std::printf(
+      "measured %d of %d; |error|: median %.4f, 90 %% %.4f, largest %.4f; in sigmas: 68 %% "
+      "%.2f, 95 %% %.2f\n",
+      num_measured, num_frames, orb360::Median(errors), orb360::NearestRankQuantile(errors, 0.9),
+      orb360::NearestRankQuantile(errors, 1.0), orb360::NearestRankQuantile(normalized, 0.68),
+      orb360::NearestRankQuantile(normalized, 0.95));
+  return 0;
+}

@@ -1,0 +1,191 @@
+#include "slam/pipeline/ground_steps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "nn/base/statistics.h"
+#include "slam/features/sphere_pyramid.h"
+#include "slam/geometry/bearing.h"
+#include "slam/scale/ground_sweep.h"
+
+namespace orb360 {
+namespace {
+
+// Number of earlier keyframes from which the step is measured.
+constexpr int kSources = 2;
+// Standard deviation of ln(step) of a tracked pose in good conditions, and the number of standard
+// deviations from which the ground overrules it.
+constexpr double kTrackedSigma = 0.01;
+constexpr double kMaxSigmas = 3.0;
+// Standard deviations of a bearing beyond which it contradicts the pose that the ground has
+// corrected. The landmark's own error is unknown, so it is more than the 95 % bound.
+constexpr double kMaxBearingSigmas = 5.0;
+// Largest factor by which the speed changes from one step to the next, if not more than this time
+// passes, seconds.
+constexpr double kMaxSpeedChange = 1.6;
+constexpr double kMaxGap = 1.0;
+// Largest difference between heights of the camera that count as equal, as a fraction, and the
+// least fraction of the keyframes that must agree.
+constexpr double kSameHeight = 0.1;
+constexpr double kMinAgreement = 0.8;
+
+// The speed over the ground, heights of the camera per second, that the newest step up to a
+// keyframe showed, if that is not long ago.
+std::optional<double> RecentSpeed(const Map& map, const Keyframe& keyframe) {
+  for (KeyframeId id = keyframe.id; id >= 0; --id) {
+    if (!map.HasKeyframe(id)) continue;
+    const Keyframe& recent = map.keyframe(id);
+    if (!(std::abs(keyframe.timestamp - recent.timestamp) < kMaxGap)) break;
+    for (const GroundStepFrom& step : recent.ground_steps) {
+      if (!map.HasKeyframe(step.keyframe)) continue;
+      const double elapsed = recent.timestamp - map.keyframe(step.keyframe).timestamp;
+      if (elapsed > 0) return step.ratio / elapsed;
+    }
+  }
+  return std::nullopt;
+}
+
+// The range in which the step from one keyframe to another is sought: around what the speed of the
+// last step lets expect, or else tracking. Textures repeat, in rendered worlds more than in others,
+// so that a step beyond the range may look like a short one. Empty where the step is too long or
+// too short.
+std::optional<GroundSweepOptions> RangeOfSweep(const Map& map, const Keyframe& earlier,
+                                               const Keyframe& later,
+                                               const std::optional<KnownGround>& ground) {
+  GroundSweepOptions options;
+  double expected = 0;  // ratio
+  if (const std::optional<double> speed = RecentSpeed(map, earlier)) {
+    expected = *speed * (later.timestamp - earlier.timestamp);
+  } else if (ground) {
+    expected =
+        (later.world_from_camera.translation - earlier.world_from_camera.translation).norm() /
+        ground->camera_height;
+  } else {
+    return options;
+  }
+  if (!(options.min_ratio < expected && expected < options.max_ratio)) return std::nullopt;
+  options.min_ratio = std::max(options.min_ratio, expected / kMaxSpeedChange);
+  options.max_ratio = std::min(options.max_ratio, expected * kMaxSpeedChange);
+  return options;
+}
+
+// What a sweep starts from, frame of the earlier camera.
+struct Assumption {
+  Eigen::Vector3d direction;  // of the motion
+  Eigen::Vector3d up;         // normal of the ground
+};
+
+// A carrier stands on the ground and drives ahead, so that both directions change little in the
+// frame of the camera. They are tried where tracking may be wrong about the motion, as it is beside
+// another car, and about the ground.
+std::vector<Assumption> Assume(const Keyframe& earlier, const Rigid3& motion,
+                               const std::optional<KnownGround>& ground) {
+  const Eigen::Vector3d known_up = ground
+                                       ? earlier.world_from_camera.rotation.conjugate() * ground->up
+                                       : Eigen::Vector3d::UnitZ();
+  if (earlier.ground_steps.empty()) return {{motion.translation, known_up}};
+  const GroundStepFrom& before = earlier.ground_steps.front();
+  return {{motion.translation, before.up},
+          {before.direction, before.up},
+          {motion.translation, known_up}};
+}
+
+// Removes a keyframe's observations that its pose contradicts: those of landmarks that move with
+// the camera, and of landmarks that were made with wrong poses.
+void RemoveWrongObservations(KeyframeId id, Map* map) {
+  const Keyframe& keyframe = map->keyframe(id);
+  const Rigid3 camera_from_world = keyframe.world_from_camera.Inverse();
+  const std::vector<LandmarkId> landmarks = keyframe.landmarks;
+  for (size_t f = 0; f < landmarks.size(); ++f) {
+    if (landmarks[f] == kNoId) continue;
+    const Landmark& landmark = map->landmark(landmarks[f]);
+    const double error =
+        AngleBetween(camera_from_world * landmark.position, keyframe.features->bearings[f]);
+    if (error < kMaxBearingSigmas * keyframe.features->keypoints[f].sigma) continue;
+    map->RemoveObservation(landmarks[f], id);
+    if (map->landmark(landmarks[f]).observations.size() < 2) map->RemoveLandmark(landmarks[f]);
+  }
+}
+
+}  // namespace
+
+void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
+                        const cv::Mat& mask, Map* map) {
+  Keyframe& keyframe = map->keyframe(id);
+  if (!keyframe.image) return;
+  int num_sources = 0;
+  for (KeyframeId other = id - 1; other >= 0 && num_sources < kSources; --other) {
+    if (!map->HasKeyframe(other)) continue;
+    ++num_sources;
+    const Keyframe& earlier = map->keyframe(other);
+    if (!earlier.image) break;
+    const Rigid3& pose = earlier.world_from_camera;
+    const Rigid3 motion = pose.Inverse() * keyframe.world_from_camera;
+    const std::optional<GroundSweepOptions> options = RangeOfSweep(*map, earlier, keyframe, ground);
+    if (!options) continue;
+    std::optional<GroundStep> step;
+    for (const Assumption& assumed : Assume(earlier, motion, ground)) {
+      step = MeasureGroundStep(*earlier.image, *keyframe.image,
+                               {motion.rotation, assumed.direction}, assumed.up, mask, *options);
+      if (step) break;
+    }
+    if (!step) continue;
+    keyframe.ground_steps.push_back({.keyframe = other,
+                                     .ratio = step->ratio,
+                                     .sigma = step->sigma,
+                                     .direction = motion.rotation.conjugate() * step->direction,
+                                     .up = motion.rotation.conjugate() * step->up});
+  }
+}
+
+void CorrectStep(KeyframeId id, const KnownGround& ground, Map* map) {
+  Keyframe& keyframe = map->keyframe(id);
+  if (keyframe.ground_steps.empty()) return;
+  const GroundStepFrom& measured = keyframe.ground_steps.front();
+  const Eigen::Vector3d& from = map->keyframe(measured.keyframe).world_from_camera.translation;
+  Eigen::Vector3d& to = keyframe.world_from_camera.translation;
+  const double factor = measured.ratio * ground.camera_height / (to - from).norm();
+  if (!(std::abs(std::log(factor)) > kMaxSigmas * std::hypot(measured.sigma, kTrackedSigma))) {
+    return;
+  }
+  to = from + measured.ratio * ground.camera_height *
+                  (keyframe.world_from_camera.rotation * measured.direction);
+  RemoveWrongObservations(id, map);
+}
+
+std::optional<KnownGround> GroundFromSteps(const Map& map, std::span<const KeyframeId> keyframes) {
+  struct Seen {
+    double height;
+    Eigen::Vector3d up;
+  };
+  std::vector<Seen> seen;
+  std::vector<double> heights;
+  for (const KeyframeId id : keyframes) {
+    const Keyframe& keyframe = map.keyframe(id);
+    if (keyframe.ground_steps.empty()) continue;
+    const GroundStepFrom& step = keyframe.ground_steps.front();
+    const double length =
+        (keyframe.world_from_camera.translation - map.PoseOf(step.keyframe).translation).norm();
+    seen.push_back({length / step.ratio, keyframe.world_from_camera.rotation * step.up});
+    heights.push_back(seen.back().height);
+  }
+  if (heights.empty()) return std::nullopt;
+  KnownGround ground{Eigen::Vector3d::Zero(), Median(heights)};
+  size_t agreeing = 0;
+  for (const Seen& step : seen) {
+    if (std::abs(step.height / ground.camera_height - 1) > kSameHeight) continue;
+    ground.up += step.up;
+    ++agreeing;
+  }
+  if (agreeing < kMinAgreement * static_cast<double>(keyframes.size())) return std::nullopt;
+  ground.up.normalize();
+  return ground;
+}
+
+std::optional<Eigen::Vector3d> GroundNormalFromSteps(const Keyframe& keyframe) {
+  if (keyframe.ground_steps.empty()) return std::nullopt;
+  return keyframe.world_from_camera.rotation * keyframe.ground_steps.front().up;
+}
+
+}  // namespace orb360

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include <opencv2/core.hpp>
+
+#include <orb360/slam/map/ground.h>
+#include <orb360/slam/map/map.h>
+
+namespace orb360 {
+
+/// Measures the steps from the last keyframes before `id` to it on the ground that the images show
+/// (MeasureGroundStep), and stores them in the keyframe. `mask` removes what moves with the camera
+/// (CV_8U, 0: not used; may be empty).
+void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
+                        const cv::Mat& mask, Map* map);
+
+/// Moves a keyframe so that the step from the keyframe before it is the one that the ground shows.
+/// Does nothing where the lengths agree within their error.
+void CorrectStep(KeyframeId id, const KnownGround& ground, Map* map);
+
+/// The ground as the steps of some keyframes show it, in the map's unit of length. Empty where
+/// fewer than four fifths of the keyframes have steps that agree on the height of the camera.
+std::optional<KnownGround> GroundFromSteps(const Map& map, std::span<const KeyframeId> keyframes);
+
+/// The normal of the ground that the steps of a keyframe show, unit, world frame.
+std::optional<Eigen::Vector3d> GroundNormalFromSteps(const Keyframe& keyframe);
+
+}  // namespace orb360

@@ -1,0 +1,426 @@
+#include "slam/scale/ground_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Dense>
+#include <opencv2/imgproc.hpp>
+
+#include "nn/base/statistics.h"
+#include "slam/features/sphere_pyramid.h"
+#include <orb360/nn/base/check.h>
+
+namespace orb360 {
+namespace {
+
+// Distances on the ground are in heights of the camera.
+constexpr double kCell = 0.02;  // side of a cell of the bird's-eye view
+constexpr int kTile = 16;       // cells on each side of a tile
+constexpr int kAlong = static_cast<int>(2 * kGroundSweepAlong / kCell + 0.5);    // cells
+constexpr int kAcross = static_cast<int>(2 * kGroundSweepAcross / kCell + 0.5);  // cells
+static_assert(kAlong % (2 * kTile) == 0 && kAcross % (2 * kTile) == 0);
+constexpr int kTilesAlong = kAlong / kTile;
+constexpr int kTilesAcross = kAcross / kTile;
+// The first sweep joins this many cells in each direction.
+constexpr int kCoarse = 2;
+// Largest shift across the direction of motion, cells: an error of the direction.
+constexpr int kMaxAside = 12;
+// Cells around the result of the first sweep in which the second one searches, and around that in
+// which the shift of a tile may lie.
+constexpr int kFineReach = 3;
+constexpr int kTileReach = 3;
+constexpr int kMargin = 2 + kFineReach + kTileReach;  // cells, for all of these
+// Gray levels: variance of the noise in one cell. Ground with less texture counts less.
+constexpr float kNoiseVariance = 4.0f;
+// Least cosine of the angle between the ground and the motion.
+constexpr double kMinHorizontal = 0.5;
+constexpr float kMinTileCorrelation = 0.35f;
+// A tile's shift farther from the common polynomial than this many robust standard deviations is an
+// outlier.
+constexpr double kMaxTileSigmas = 3.0;
+// Standard deviation of the shift of a perfect tile, cells: interpolation and the tile's own
+// relief.
+constexpr double kTileFloor = 0.05;
+// Angle between the assumed normal of the ground across the motion and the one that the tiles show
+// up to which the error of the height, 1 - cos, does not matter, rad.
+constexpr double kMaxTilt = 0.035;
+
+/// The ground as one camera sees it, in cells: rows along the direction of motion, columns across
+/// it. The gray values are relative to the mean around
+/// them and divided by their standard deviation, so that a mean product of two views is their
+/// normalized correlation; 0 where the ground is masked.
+struct BirdsEye {
+  int begin;  // first row, relative to the point below the camera, and the end
+  int end;
+  int half_width;             // columns on each side of that point
+  std::vector<float> values;  // row by row
+
+  int width() const { return 2 * half_width; }
+  const float* At(int along, int across) const {
+    return &values[static_cast<size_t>(along - begin) * width() + across + half_width];
+  }
+};
+
+constexpr float kMasked = -1.0f;  // as a gray value
+
+/// Gray values of the ground. `axes`: columns are the direction of motion, left and up, in the
+/// camera's frame.
+BirdsEye LookDown(const SpherePyramid& image, const Eigen::Matrix3d& axes, const cv::Mat& mask,
+                  int begin, int end, int half_width) {
+  BirdsEye view{begin, end, half_width, {}};
+  view.values.reserve(static_cast<size_t>(end - begin) * view.width());
+  const EquirectangularCamera& camera = image.front().camera;
+  const double level_ratio = std::log(RangeAtLevelZero(1.0, 1));
+  const double pixel = camera.AngleOfPixels(1.0);
+  const int top = static_cast<int>(image.size()) - 1;
+  for (int i = begin; i < end; ++i) {
+    for (int j = -half_width; j < half_width; ++j) {
+      const Eigen::Vector3d point((i + 0.5) * kCell, (j + 0.5) * kCell, -1.0);
+      const Eigen::Vector2d on_level_0 = camera.Project(axes * point);
+      if (!mask.empty() &&
+          mask.at<uint8_t>(std::min(static_cast<int>(on_level_0.y()), mask.rows - 1),
+                           std::min(static_cast<int>(on_level_0.x()), mask.cols - 1)) == 0) {
+        view.values.push_back(kMasked);
+        continue;
+      }
+      // The angle of a cell is the root of its solid angle.
+      const double spacing = kCell / std::pow(point.squaredNorm(), 0.75);
+      const int level = std::clamp(
+          static_cast<int>(std::lround(std::log(spacing / pixel) / level_ratio)), 0, top);
+      const EquirectangularCamera& of_level = image[level].camera;
+      const double u = on_level_0.x() * of_level.width() / camera.width();
+      const double v = on_level_0.y() * of_level.height() / camera.height();
+      view.values.push_back(
+          SampleBilinear(image[level], static_cast<float>(u), static_cast<float>(v)));
+    }
+  }
+  return view;
+}
+
+/// Joins kCoarse x kCoarse cells; masked where one of them is.
+BirdsEye Halve(const BirdsEye& fine) {
+  BirdsEye coarse{fine.begin / kCoarse, fine.end / kCoarse, fine.half_width / kCoarse, {}};
+  for (int i = coarse.begin; i < coarse.end; ++i) {
+    for (int j = -coarse.half_width; j < coarse.half_width; ++j) {
+      float sum = 0;
+      bool is_masked = false;
+      for (int k = 0; k < kCoarse * kCoarse; ++k) {
+        const float value = *fine.At(kCoarse * i + k / kCoarse, kCoarse * j + k % kCoarse);
+        is_masked |= value == kMasked;
+        sum += value;
+      }
+      coarse.values.push_back(is_masked ? kMasked : sum / (kCoarse * kCoarse));
+    }
+  }
+  return coarse;
+}
+
+/// Replaces gray values by those relative to the mean and the deviation within `radius` cells.
+void NormalizeLocally(int radius, BirdsEye* view) {
+  const cv::Mat gray(view->end - view->begin, view->width(), CV_32F, view->values.data());
+  const cv::Mat is_seen = gray != kMasked;
+  cv::Mat seen;
+  is_seen.convertTo(seen, CV_32F, 1.0 / 255);
+  const cv::Mat values = gray.mul(seen);
+  const cv::Size box(2 * radius + 1, 2 * radius + 1);
+  cv::Mat weight, mean, square;
+  cv::boxFilter(seen, weight, CV_32F, box);
+  cv::boxFilter(values, mean, CV_32F, box);
+  cv::boxFilter(values.mul(values), square, CV_32F, box);
+  for (int row = 0; row < gray.rows; ++row) {
+    float* to = &view->values[static_cast<size_t>(row) * gray.cols];
+    for (int column = 0; column < gray.cols; ++column) {
+      const float sum = weight.at<float>(row, column);
+      if (to[column] == kMasked || sum < 0.5f) {
+        to[column] = 0;
+        continue;
+      }
+      const float center = mean.at<float>(row, column) / sum;
+      const float variance = std::max(0.0f, square.at<float>(row, column) / sum - center * center);
+      to[column] = (to[column] - center) / std::sqrt(variance + kNoiseVariance);
+    }
+  }
+}
+
+/// Mean product of a square of both views.
+template <int kSide>
+float Correlate(const BirdsEye& view1, int along1, int across1, const BirdsEye& view2, int along2,
+                int across2) {
+  // Sums by column, so that the loop is vectorized in a fixed order.
+  float sums[kSide] = {};
+  for (int row = 0; row < kSide; ++row) {
+    const float* a = view1.At(along1 + row, across1);
+    const float* b = view2.At(along2 + row, across2);
+    for (int i = 0; i < kSide; ++i) sums[i] += a[i] * b[i];
+  }
+  float sum = 0;
+  for (const float value : sums) sum += value;
+  return sum / (kSide * kSide);
+}
+
+/// A shift from one view to the other: along the motion, and across it, in cells.
+struct Shift {
+  int along;
+  int across;
+};
+
+/// The correlation of a tile, kSide cells on each side. The tiles lie symmetrically about the point
+/// half-way between the cameras: ahead of the first one, behind the second one.
+template <int kSide>
+float CorrelateTile(const BirdsEye& view1, const BirdsEye& view2, int tile, const Shift& shift) {
+  const int along = (tile / kTilesAcross - kTilesAlong / 2) * kSide;
+  const int across = (tile % kTilesAcross - kTilesAcross / 2) * kSide;
+  const auto half = [](int s) { return s >> 1; };  // rounded down
+  return Correlate<kSide>(view1, along + shift.along - half(shift.along),
+                          across + shift.across - half(shift.across), view2,
+                          along - half(shift.along), across - half(shift.across));
+}
+
+template <int kSide>
+float MeanCorrelation(const BirdsEye& view1, const BirdsEye& view2, const Shift& shift) {
+  float sum = 0;
+  for (int tile = 0; tile < kTilesAlong * kTilesAcross; ++tile) {
+    sum += CorrelateTile<kSide>(view1, view2, tile, shift);
+  }
+  return sum / (kTilesAlong * kTilesAcross);
+}
+
+/// Position of the maximum of a parabola through three values, relative to the middle one.
+double ParabolaPeak(double before, double at, double after) {
+  return 0.5 * (before - after) / (before - 2 * at + after);
+}
+
+struct CoarseShift {
+  Shift shift;  // cells of the coarse views
+  double correlation;
+  double rival;
+};
+
+/// Sweeps both shifts over the whole range. Empty where the best one is at its end.
+std::optional<CoarseShift> SweepCoarsely(const BirdsEye& view1, const BirdsEye& view2,
+                                         const GroundSweepOptions& options) {
+  constexpr int kSide = kTile / kCoarse;
+  constexpr int kAside = kMaxAside / kCoarse;
+  const int first = std::max(1, static_cast<int>(options.min_ratio / (kCoarse * kCell)));
+  const int last = static_cast<int>(options.max_ratio / (kCoarse * kCell));
+  std::vector<Shift> best;    // by shift along the motion, from `first`
+  std::vector<float> values;  // of these
+  for (int along = first; along <= last; ++along) {
+    best.push_back({along, 0});
+    values.push_back(-1);
+    for (int across = -kAside; across <= kAside; ++across) {
+      const float value = MeanCorrelation<kSide>(view1, view2, {along, across});
+      if (value <= values.back()) continue;
+      values.back() = value;
+      best.back().across = across;
+    }
+  }
+  const auto size = static_cast<int>(values.size());
+  const auto top = static_cast<int>(std::ranges::max_element(values) - values.begin());
+  if (top == 0 || top + 1 == size || std::abs(best[top].across) == kAside) return std::nullopt;
+  CoarseShift result{best[top], values[top], 0};
+  for (int i = 1; i + 1 < size; ++i) {
+    if (i == top || values[i] < values[i - 1] || values[i] < values[i + 1]) continue;
+    result.rival = std::max<double>(result.rival, values[i]);
+  }
+  return result;
+}
+
+/// How far a tile is shifted from one view to the other.
+struct TileShift {
+  Eigen::Vector2d place;  // of its centre relative to the point half-way, heights: along, across
+  double shift;           // cells
+};
+
+/// The shift at the point half-way between the cameras.
+struct ShiftBelow {
+  double shift;              // cells
+  Eigen::Vector2d gradient;  // of its logarithm, along and across
+  double sigma;              // standard deviation, cells
+  int num_tiles;
+};
+
+Eigen::Vector2d CenterOf(int tile) {
+  const auto center = [](int index, int count) { return (index + 0.5 - 0.5 * count) * kTile; };
+  return kCell * Eigen::Vector2d(center(tile / kTilesAcross, kTilesAlong),
+                                 center(tile % kTilesAcross, kTilesAcross));
+}
+
+/// Fits the shifts of the tiles by a polynomial of their place, because roads are cambered and bend
+/// over hills, and leaves out tiles that do not agree: what moves, or stands on the ground.
+std::optional<ShiftBelow> FitShifts(std::vector<TileShift> tiles, int min_tiles) {
+  constexpr int kParameters = 6;  // of a quadratic polynomial in two variables
+  constexpr int kRounds = 4;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto count = static_cast<Eigen::Index>(tiles.size());
+    if (count < std::max(min_tiles, 2 * kParameters)) return std::nullopt;
+    Eigen::MatrixXd terms(count, kParameters);
+    Eigen::VectorXd shifts(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double x = tiles[i].place.x();
+      const double y = tiles[i].place.y();
+      terms.row(i) << 1, x, y, x * x, x * y, y * y;
+      shifts[i] = tiles[i].shift;
+    }
+    const Eigen::LDLT<Eigen::MatrixXd> normal((terms.transpose() * terms).eval());
+    const Eigen::VectorXd solution = normal.solve(terms.transpose() * shifts);
+    const Eigen::VectorXd residuals = shifts - terms * solution;
+    std::vector<double> absolute(count);
+    for (Eigen::Index i = 0; i < count; ++i) absolute[i] = std::abs(residuals[i]);
+    const double robust_sigma = std::hypot(1.4826 * Median(absolute), kTileFloor);
+    const auto is_outlier = [&](const TileShift& tile) {
+      return std::abs(residuals[&tile - tiles.data()]) > kMaxTileSigmas * robust_sigma;
+    };
+    const bool is_last = round + 1 == kRounds || std::ranges::none_of(tiles, is_outlier);
+    if (is_last) {
+      const double scatter = std::hypot(
+          residuals.norm() / std::sqrt(static_cast<double>(count - kParameters)), kTileFloor);
+      const Eigen::VectorXd unit = Eigen::VectorXd::Unit(kParameters, 0);
+      return ShiftBelow{.shift = solution[0],
+                        .gradient = solution.segment<2>(1) / solution[0],
+                        .sigma = scatter * std::sqrt(normal.solve(unit)[0]),
+                        .num_tiles = static_cast<int>(count)};
+    }
+    std::vector<TileShift> kept;
+    std::ranges::remove_copy_if(tiles, std::back_inserter(kept), is_outlier);
+    tiles = std::move(kept);
+  }
+  return std::nullopt;
+}
+
+/// The direction of motion, left and up in the frame of camera 1. The ground is parallel to the
+/// motion, or its normal is `up`: the direction of the motion may be the less certain of both.
+/// Empty where the motion is too steep.
+std::optional<Eigen::Matrix3d> GroundAxes(const Eigen::Vector3d& step, const Eigen::Vector3d& up,
+                                          bool is_parallel) {
+  const Eigen::Vector3d direction = step.normalized();
+  const double rise = direction.dot(up);
+  if (!(1 - rise * rise > kMinHorizontal * kMinHorizontal)) return std::nullopt;  // also for NaN
+  Eigen::Matrix3d axes;
+  axes.col(0) = is_parallel ? direction : (direction - rise * up).normalized();
+  axes.col(2) = is_parallel ? (up - rise * direction).normalized() : up;
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return axes;
+}
+
+/// The shifts of the tiles around a common one, along the motion and across it, cells.
+struct TileShifts {
+  std::vector<TileShift> along;
+  std::vector<double> across;
+};
+
+TileShifts ShiftsOfTiles(const BirdsEye& view1, const BirdsEye& view2, const Shift& common) {
+  TileShifts shifts;
+  for (int tile = 0; tile < kTilesAlong * kTilesAcross; ++tile) {
+    const auto value = [&](int along, int across) {
+      return CorrelateTile<kTile>(view1, view2, tile,
+                                  {common.along + along, common.across + across});
+    };
+    float best = -1;
+    int along = 0;
+    int across = 0;
+    for (int i = -kTileReach; i <= kTileReach; ++i) {
+      for (int j = -kTileReach; j <= kTileReach; ++j) {
+        const float here = value(i, j);
+        if (here > best) {
+          best = here;
+          along = i;
+          across = j;
+        }
+      }
+    }
+    if (best < kMinTileCorrelation || std::abs(along) == kTileReach ||
+        std::abs(across) == kTileReach) {
+      continue;
+    }
+    shifts.along.push_back({CenterOf(tile), common.along + along +
+                                                ParabolaPeak(value(along - 1, across), best,
+                                                             value(along + 1, across))});
+    shifts.across.push_back(common.across + across +
+                            ParabolaPeak(value(along, across - 1), best, value(along, across + 1)));
+  }
+  return shifts;
+}
+
+/// `axes`: of the ground, in the frame of camera 1.
+std::optional<GroundStep> Sweep(const SpherePyramid& image1, const SpherePyramid& image2,
+                                const Eigen::Quaterniond& camera2_from_camera1,
+                                const Eigen::Matrix3d& axes, const cv::Mat& mask,
+                                const GroundSweepOptions& options) {
+  const auto farthest = static_cast<int>(options.max_ratio / kCell);
+  // The cells lie ahead of the first camera and behind the second one. All numbers are even.
+  const int near = kAlong / 2 + kMargin;
+  const int far = near + farthest / 4 * 2 + 2;
+  const int half_width = (kAcross + kMaxAside) / 4 * 2 + 2 + kMargin;
+  BirdsEye view1 = LookDown(image1, axes, mask, -near, far, half_width);
+  BirdsEye view2 = LookDown(image2, camera2_from_camera1 * axes, mask, -far, near, half_width);
+  BirdsEye coarse1 = Halve(view1);
+  BirdsEye coarse2 = Halve(view2);
+  NormalizeLocally(kTile / 2, &view1);
+  NormalizeLocally(kTile / 2, &view2);
+  NormalizeLocally(kTile / 2 / kCoarse, &coarse1);
+  NormalizeLocally(kTile / 2 / kCoarse, &coarse2);
+  const std::optional<CoarseShift> coarse = SweepCoarsely(coarse1, coarse2, options);
+  if (!coarse || coarse->correlation < options.min_correlation ||
+      coarse->rival > options.max_rival * coarse->correlation) {
+    return std::nullopt;
+  }
+  Shift common{};
+  float best = -1;
+  for (int i = -kFineReach; i <= kFineReach; ++i) {
+    for (int j = -kFineReach; j <= kFineReach; ++j) {
+      const Shift shift{kCoarse * coarse->shift.along + i, kCoarse * coarse->shift.across + j};
+      const float value = MeanCorrelation<kTile>(view1, view2, shift);
+      if (value <= best) continue;
+      best = value;
+      common = shift;
+    }
+  }
+  TileShifts tiles = ShiftsOfTiles(view1, view2, common);
+  const std::optional<ShiftBelow> below = FitShifts(std::move(tiles.along), options.min_tiles);
+  if (!below) return std::nullopt;
+  const double across = Median(tiles.across);
+  GroundStep step;
+  step.ratio = kCell * std::hypot(below->shift, across);
+  step.sigma = below->sigma / below->shift;
+  step.correlation = coarse->correlation;
+  step.rival = coarse->rival;
+  step.num_tiles = below->num_tiles;
+  step.direction = axes * Eigen::Vector3d(below->shift, across, 0).normalized();
+  // The shift is inversely proportional to the height of the camera over a piece of the ground,
+  // which is thus 1 - gradient . place.
+  const Eigen::Vector2d slope = below->gradient;
+  step.up = (axes * Eigen::Vector3d(-slope.x(), -slope.y(), 1.0)).normalized();
+  return step;
+}
+
+}  // namespace
+
+std::optional<GroundStep> MeasureGroundStep(const SpherePyramid& image1,
+                                            const SpherePyramid& image2,
+                                            const Rigid3& camera1_from_camera2,
+                                            const Eigen::Vector3d& up, const cv::Mat& mask,
+                                            const GroundSweepOptions& options) {
+  ORB360_CHECK(0 < options.min_ratio && options.min_ratio < options.max_ratio, options.min_ratio,
+               options.max_ratio);
+  const Eigen::Quaterniond camera2_from_camera1 = camera1_from_camera2.rotation.conjugate();
+  for (const bool is_parallel : {true, false}) {
+    const std::optional<Eigen::Matrix3d> axes =
+        GroundAxes(camera1_from_camera2.translation, up, is_parallel);
+    if (!axes) return std::nullopt;
+    const std::optional<GroundStep> step =
+        Sweep(image1, image2, camera2_from_camera1, *axes, mask, options);
+    if (!step) continue;
+    const std::optional<Eigen::Matrix3d> seen = GroundAxes(step->direction, step->up, true);
+    if (!seen) return std::nullopt;
+    if (seen->col(2).dot(axes->col(2)) > std::cos(kMaxTilt)) return step;
+    return Sweep(image1, image2, camera2_from_camera1, *seen, mask, options);
+  }
+  return std::nullopt;
+}
+
+}  // namespace orb360

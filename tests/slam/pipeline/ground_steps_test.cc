@@ -1,0 +1,99 @@
+#include "slam/pipeline/ground_steps.h"
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/slam/scale/ground_scene.h"
+#include <orb360/slam/geometry/so3.h>
+
+namespace orb360 {
+namespace {
+
+constexpr double kHeight = 1.5;
+constexpr double kStep = 1.1;
+
+// The true pose of keyframe i: a drive along +X, turning a little.
+Rigid3 TruePose(int i) {
+  return {ExpSo3({0.01 * i, 0.02, 3.0 + 0.05 * i}), {kStep * i, 0.0, kHeight}};
+}
+
+// A map of `count` keyframes over asphalt, as large as `scale` says.
+Map Drive(int count, double scale, const Ground& ground) {
+  Map map;
+  for (int i = 0; i < count; ++i) {
+    Rigid3 pose = TruePose(i);
+    const auto image = std::make_shared<const SpherePyramid>(LookAtGround(pose, ground));
+    pose.translation *= scale;
+    const KeyframeId id = map.AddKeyframe(i, 0.1 * i, pose, std::make_shared<Features>());
+    map.keyframe(id).image = image;
+  }
+  return map;
+}
+
+Ground Scaled(const Asphalt& asphalt) {
+  return [asphalt](const Eigen::Vector2d& p) { return asphalt(p / kHeight); };
+}
+
+TEST(MeasureGroundSteps, MeasuresFromTheLastTwoKeyframes) {
+  Map map = Drive(4, 0.3, Scaled(Asphalt(1)));
+  MeasureGroundSteps(3, std::nullopt, {}, &map);
+  const std::vector<GroundStepFrom>& steps = map.keyframe(3).ground_steps;
+  ASSERT_EQ(steps.size(), 2u);
+  for (const int gap : {1, 2}) {
+    const GroundStepFrom& step = steps[static_cast<size_t>(gap) - 1];
+    EXPECT_EQ(step.keyframe, 3 - gap);
+    EXPECT_NEAR(std::log(step.ratio / (gap * kStep / kHeight)), 0.0, 0.005) << gap;
+    const Eigen::Vector3d up = TruePose(3).rotation * step.up;
+    EXPECT_LT(std::acos(up.z()), 0.02) << gap;
+  }
+}
+
+TEST(MeasureGroundSteps, MeasuresNothingWithoutAnImage) {
+  Map map = Drive(2, 1.0, Scaled(Asphalt(2)));
+  map.keyframe(0).image = nullptr;
+  MeasureGroundSteps(1, std::nullopt, {}, &map);
+  EXPECT_TRUE(map.keyframe(1).ground_steps.empty());
+}
+
+TEST(CorrectStep, GivesAStepTheLengthThatTheGroundShows) {
+  Map map = Drive(2, 1.0, Scaled(Asphalt(3)));
+  Eigen::Vector3d& to = map.keyframe(1).world_from_camera.translation;
+  const Eigen::Vector3d from = map.keyframe(0).world_from_camera.translation;
+  const KnownGround ground{Eigen::Vector3d::UnitZ(), kHeight};
+  MeasureGroundSteps(1, ground, {}, &map);
+  const Eigen::Vector3d truth = to;
+  to = from + 0.2 * (truth - from);
+  CorrectStep(1, ground, &map);
+  EXPECT_LT((to - truth).norm(), 0.01);
+  // A step that agrees stays as tracking has found it.
+  const Eigen::Vector3d tracked = from + 1.01 * (truth - from);
+  to = tracked;
+  CorrectStep(1, ground, &map);
+  EXPECT_EQ(to, tracked);
+}
+
+TEST(GroundFromSteps, FindsHeightAndNormalInTheMapsUnit) {
+  Map map = Drive(6, 0.25, Scaled(Asphalt(4)));
+  for (KeyframeId id = 1; id < 6; ++id) MeasureGroundSteps(id, std::nullopt, {}, &map);
+  const std::vector<KeyframeId> all = {1, 2, 3, 4, 5};
+  const std::optional<KnownGround> ground = GroundFromSteps(map, all);
+  ASSERT_TRUE(ground);
+  EXPECT_NEAR(ground->camera_height / (0.25 * kHeight), 1.0, 0.005);
+  EXPECT_LT(std::acos(ground->up.z()), 0.02);
+  EXPECT_FALSE(ground->is_rough);
+}
+
+TEST(GroundFromSteps, IsEmptyWhereTheHeightsDisagree) {
+  Map map = Drive(6, 1.0, Scaled(Asphalt(5)));
+  for (KeyframeId id = 1; id < 6; ++id) MeasureGroundSteps(id, std::nullopt, {}, &map);
+  map.keyframe(1).ground_steps.clear();
+  map.keyframe(2).ground_steps.front().ratio *= 1.3;
+  const std::vector<KeyframeId> all = {1, 2, 3, 4, 5};
+  EXPECT_FALSE(GroundFromSteps(map, all));
+}
+
+}  // namespace
+}  // namespace orb360

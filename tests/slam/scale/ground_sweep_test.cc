@@ -1,0 +1,128 @@
+#include "slam/scale/ground_sweep.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "slam/features/sphere_pyramid.h"
+#include "tests/slam/scale/ground_scene.h"
+#include <orb360/slam/geometry/so3.h>
+
+namespace orb360 {
+namespace {
+
+constexpr double kHeight = 1.0;
+const Rigid3 kFirst{ExpSo3({0.03, -0.02, 0.4}), {0.0, 0.0, kHeight}};
+
+// The camera after a step along the ground, turned a little.
+Rigid3 After(double step) {
+  return {ExpSo3({-0.02, 0.03, 0.45}), {0.8 * step, -0.6 * step, kHeight}};
+}
+
+std::optional<GroundStep> Measure(const Ground& ground, double step,
+                                  const Eigen::Vector3d& up_error = Eigen::Vector3d::Zero(),
+                                  const cv::Mat& mask = {}) {
+  const Rigid3 second = After(step);
+  Rigid3 motion = kFirst.Inverse() * second;
+  motion.translation *= 7.0;  // its length must not matter
+  const Eigen::Vector3d up =
+      kFirst.rotation.conjugate() * (ExpSo3(up_error) * Eigen::Vector3d::UnitZ());
+  return MeasureGroundStep(LookAtGround(kFirst, ground), LookAtGround(second, ground), motion, up,
+                           mask, {});
+}
+
+TEST(MeasureGroundStep, FindsTheRatioOfStepAndHeightOnFlatGround) {
+  const Asphalt asphalt(1);
+  for (const double step : {0.17, 0.42, 0.96, 1.31, 2.2}) {
+    const auto found = Measure(asphalt, step);
+    ASSERT_TRUE(found) << step;
+    EXPECT_NEAR(std::log(found->ratio / step), 0.0, 0.004) << step;
+    EXPECT_GT(found->correlation, 0.5) << step;
+    EXPECT_GE(found->num_tiles, 60) << step;
+  }
+}
+
+TEST(MeasureGroundStep, AnErrorOfTheNormalCancels) {
+  const Asphalt asphalt(2);
+  for (const Eigen::Vector3d& error : {Eigen::Vector3d(0.05, 0, 0), Eigen::Vector3d(0, -0.05, 0),
+                                       Eigen::Vector3d(0.04, 0.04, 0)}) {
+    const auto found = Measure(asphalt, 0.9, error);
+    ASSERT_TRUE(found) << error.transpose();
+    EXPECT_NEAR(std::log(found->ratio / 0.9), 0.0, 0.006) << error.transpose();
+  }
+}
+
+TEST(MeasureGroundStep, ItsErrorsAreWithinItsSigma) {
+  double squares = 0;
+  constexpr int kCount = 12;
+  for (unsigned seed = 10; seed < 10 + kCount; ++seed) {
+    const double step = 0.3 + 0.11 * (seed - 10);
+    const auto found = Measure(Asphalt(seed), step);
+    ASSERT_TRUE(found) << step;
+    const double error = std::log(found->ratio / step) / found->sigma;
+    EXPECT_LT(std::abs(error), 4.0) << step;
+    squares += error * error;
+  }
+  EXPECT_LT(squares / kCount, 2.5);
+}
+
+TEST(MeasureGroundStep, IsEmptyWhereTheGroundHasNoTexture) {
+  EXPECT_FALSE(Measure([](const Eigen::Vector2d&) { return 100.0; }, 0.8));
+}
+
+TEST(MeasureGroundStep, IsEmptyWhereTheGroundRepeatsItself) {
+  const auto slabs = [](const Eigen::Vector2d& p) {
+    return 110 + 40 * std::sin(2 * std::numbers::pi * (0.8 * p.x() - 0.6 * p.y()) / 0.4) +
+           30 * std::sin(2 * std::numbers::pi * (0.6 * p.x() + 0.8 * p.y()) / 0.4);
+  };
+  EXPECT_FALSE(Measure(slabs, 0.9));
+}
+
+TEST(MeasureGroundStep, IsEmptyForDifferentGrounds) {
+  const Rigid3 second = After(0.8);
+  EXPECT_FALSE(MeasureGroundStep(LookAtGround(kFirst, Asphalt(3)), LookAtGround(second, Asphalt(4)),
+                                 kFirst.Inverse() * second,
+                                 kFirst.rotation.conjugate() * Eigen::Vector3d::UnitZ(), {}, {}));
+}
+
+TEST(MeasureGroundStep, IsEmptyWhereTheCameraRises) {
+  const Asphalt asphalt(5);
+  const Rigid3 second{kFirst.rotation, kFirst.translation + Eigen::Vector3d(0, 0, 0.5)};
+  EXPECT_FALSE(MeasureGroundStep(LookAtGround(kFirst, asphalt), LookAtGround(second, asphalt),
+                                 kFirst.Inverse() * second,
+                                 kFirst.rotation.conjugate() * Eigen::Vector3d::UnitZ(), {}, {}));
+}
+
+TEST(MeasureGroundStep, WhatTheMaskCoversDoesNotCount) {
+  // A carrier covers all below 45 degrees under the horizon and moves with the camera.
+  const Asphalt asphalt(6);
+  const Asphalt paint(7);
+  const EquirectangularCamera camera(kGroundWidth, kGroundWidth / 2);
+  cv::Mat mask(kGroundWidth / 2, kGroundWidth, CV_8U, cv::Scalar(255));
+  mask.rowRange(3 * kGroundWidth / 8, kGroundWidth / 2).setTo(0);
+  const auto look = [&](const Rigid3& pose) {
+    SpherePyramid bare = LookAtGround(pose, asphalt);
+    cv::Mat gray = bare.front().image().clone();
+    for (int v = 3 * kGroundWidth / 8; v < kGroundWidth / 2; ++v) {
+      for (int u = 0; u < kGroundWidth; ++u) {
+        const Eigen::Vector3d ray = camera.Bearing({u + 0.5, v + 0.5});
+        gray.at<uint8_t>(v, u) = cv::saturate_cast<uint8_t>(paint((ray / -ray.z()).head<2>()));
+      }
+    }
+    SpherePyramid pyramid;
+    BuildSpherePyramid(gray, 8, &pyramid);
+    return pyramid;
+  };
+  const double step = 0.5;
+  const Rigid3 second = After(step);
+  const auto found =
+      MeasureGroundStep(look(kFirst), look(second), kFirst.Inverse() * second,
+                        kFirst.rotation.conjugate() * Eigen::Vector3d::UnitZ(), mask, {});
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(std::log(found->ratio / step), 0.0, 0.02);
+}
+
+}  // namespace
+}  // namespace orb360
