@@ -24,7 +24,7 @@ constexpr double kMaxBearingSigmas = 5.0;
 // Largest factor by which the speed changes from one step to the next, if not more than this time
 // passes, seconds.
 constexpr double kMaxSpeedChange = 1.6;
-constexpr double kMaxGap = 1.0;
+constexpr double kMaxGap = 5.0;
 // Largest difference between heights of the camera that count as equal, as a fraction, and the
 // least fraction of the keyframes that must agree.
 constexpr double kSameHeight = 0.1;

@@ -542,22 +542,5 @@ TEST_F(InterruptedRunTest, AKilledRunLeavesTheJournal) {
   EXPECT_FALSE(std::filesystem::exists(OutFile("trajectory.txt")));
 }
 
-TEST_F(RunTest, RendersATownWhileTrackingIt) {
-  const ProgramResult result = RunOrb360({"run", "town:Loop", "--out", Out(), "--resize", "512x256",
-                                          "--max-frames", "15", "--quiet", "--weights", "none"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(Summary()["frames"], 15);
-  EXPECT_EQ(Summary()["input"], "town:Loop");
-  const std::vector<StampedPose> poses = ReadTrajectory(OutFile("trajectory.txt"));
-  ASSERT_EQ(poses.size(), 15u);
-  EXPECT_NEAR(poses[1].timestamp - poses[0].timestamp, 0.05, 1e-9);
-}
-
-TEST_F(RunTest, NamesATownThatDoesNotExist) {
-  const ProgramResult result = RunOrb360({"run", "town:Nowhere", "--out", Out()});
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("Nowhere"), HasSubstr("Town1")));
-}
-
 }  // namespace
 }  // namespace orb360

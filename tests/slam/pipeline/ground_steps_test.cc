@@ -75,6 +75,49 @@ TEST(CorrectStep, GivesAStepTheLengthThatTheGroundShows) {
   EXPECT_EQ(to, tracked);
 }
 
+TEST(CorrectStep, RemovesWhatMovesWithTheCamera) {
+  const Ground ground = Scaled(Asphalt(6));
+  const Eigen::Vector3d wall(3.0, 4.0, 1.0);
+  const Eigen::Vector3d car = TruePose(0) * Eigen::Vector3d(0.5, 3.0, -0.5);
+  Map map;
+  for (int i = 0; i < 2; ++i) {
+    auto features = std::make_shared<Features>();
+    // The car is in the same place beside both cameras.
+    for (const Eigen::Vector3d& seen :
+         {Eigen::Vector3d(TruePose(i).Inverse() * wall), Eigen::Vector3d(0.5, 3.0, -0.5)}) {
+      features->keypoints.push_back({Eigen::Vector2f::Zero(), 0.0F, 0.004F, 0, 50});
+      features->bearings.push_back(seen.normalized());
+      features->descriptors.push_back({});
+    }
+    const KeyframeId id = map.AddKeyframe(i, 0.1 * i, TruePose(i), features);
+    map.keyframe(id).image =
+        std::make_shared<const SpherePyramid>(LookAtGround(TruePose(i), ground));
+  }
+  const LandmarkId on_wall = map.AddLandmark(wall, {});
+  const LandmarkId on_car = map.AddLandmark(car, {});
+  for (const KeyframeId id : {0, 1}) {
+    map.AddObservation(on_wall, id, 0);
+    map.AddObservation(on_car, id, 1);
+  }
+  // By the car, the camera stands still.
+  Eigen::Vector3d& to = map.keyframe(1).world_from_camera.translation;
+  to = map.keyframe(0).world_from_camera.translation + Eigen::Vector3d(0.05, 0, 0);
+  const KnownGround known{Eigen::Vector3d::UnitZ(), kHeight};
+  MeasureGroundSteps(1, known, {}, &map);
+  // Tracking lets expect a step that is too short to be measured.
+  ASSERT_TRUE(map.keyframe(1).ground_steps.empty());
+  map.keyframe(1).ground_steps.push_back(
+      {.keyframe = 0,
+       .ratio = kStep / kHeight,
+       .sigma = 0.002,
+       .direction = TruePose(1).rotation.conjugate() * Eigen::Vector3d::UnitX()});
+  CorrectStep(1, known, &map);
+  EXPECT_LT((to - TruePose(1).translation).norm(), 0.01);
+  EXPECT_TRUE(map.HasLandmark(on_wall));
+  EXPECT_FALSE(map.HasLandmark(on_car));
+  map.CheckConsistency();
+}
+
 TEST(GroundFromSteps, FindsHeightAndNormalInTheMapsUnit) {
   Map map = Drive(6, 0.25, Scaled(Asphalt(4)));
   for (KeyframeId id = 1; id < 6; ++id) MeasureGroundSteps(id, std::nullopt, {}, &map);
