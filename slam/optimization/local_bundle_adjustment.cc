@@ -26,8 +26,11 @@ constexpr int kGlobalRounds = 2;
 constexpr double kGroundReach = 8.0;
 
 // Standard deviation of the camera's height over the ground from place to place, a fraction of it:
-// the road is uneven and the camera bobs. Twice as much lets a car beside the camera prevail.
-constexpr double kReliefSigma = 0.005;
+// the road is uneven and the camera bobs. In local bundle adjustment twice as much lets a car
+// beside the camera prevail. In the whole map all keyframes together determine the scale well, and
+// an uneven road must not bend the path.
+constexpr double kLocalReliefSigma = 0.005;
+constexpr double kGlobalReliefSigma = 0.03;
 
 // Adds the heights of the camera with index `pose` over the points of the ground around it.
 void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem* problem) {
@@ -60,14 +63,14 @@ void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem
 // Adds the lengths of the steps to a keyframe that were measured on the ground. `pose_of`: by
 // keyframe, -1 for those that do not take part.
 void AddDistances(const Keyframe& keyframe, const std::vector<int>& pose_of, double camera_height,
-                  BundleProblem* problem) {
+                  double relief_sigma, BundleProblem* problem) {
   for (const GroundStepFrom& step : keyframe.ground_steps) {
     const int from = pose_of[step.keyframe];
     if (from < 0) continue;
     problem->distances.push_back({.pose1 = from,
                                   .pose2 = pose_of[keyframe.id],
                                   .distance = step.ratio * camera_height,
-                                  .sigma = std::hypot(step.sigma, kReliefSigma)});
+                                  .sigma = std::hypot(step.sigma, relief_sigma)});
   }
 }
 
@@ -183,11 +186,12 @@ void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixe
     AddHeights(static_cast<int>(i), *ground, height_sigma, &problem);
   }
   if (ground) {
+    const double relief_sigma = free_scale ? kGlobalReliefSigma : kLocalReliefSigma;
     for (const KeyframeId id : moving) {
-      AddDistances(map->keyframe(id), pose_of, ground->camera_height, &problem);
+      AddDistances(map->keyframe(id), pose_of, ground->camera_height, relief_sigma, &problem);
     }
     for (const KeyframeId id : fixed) {
-      AddDistances(map->keyframe(id), pose_of, ground->camera_height, &problem);
+      AddDistances(map->keyframe(id), pose_of, ground->camera_height, relief_sigma, &problem);
     }
   }
   if (free_scale) RestoreMeanHeight(&problem);

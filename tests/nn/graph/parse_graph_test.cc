@@ -193,10 +193,9 @@ TEST(ParseGraph, RefusesNodesWithTheirNameAndTheReason) {
       {"affine", R"({"attributes": {"scale": true}})", "should be a number"},
   };
   for (const auto& [node, patch, reason] : cases) {
-    const std::string refusal = Refusal(
-        [node = node, patch = patch](NetworkBuilder* net) {
-          NodeNamed(net, node)->merge_patch(json::parse(patch));
-        });
+    const std::string refusal = Refusal([node = node, patch = patch](NetworkBuilder* net) {
+      NodeNamed(net, node)->merge_patch(json::parse(patch));
+    });
     EXPECT_THAT(refusal, HasSubstr(reason)) << node << " " << patch;
     if (!json::parse(patch).contains("op") || json::parse(patch)["op"].is_string()) {
       EXPECT_THAT(refusal, HasSubstr("\"" + std::string(node) + "\"")) << patch;

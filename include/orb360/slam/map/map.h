@@ -59,9 +59,9 @@ struct GroundStepFrom {
   KeyframeId keyframe = kNoId;  ///< The other keyframe. It may have been removed since.
   double ratio = 0;             ///< Length, divided by the camera's height over the ground.
   double sigma = 0;             ///< Standard deviation of ln(ratio).
-  /// Direction of the motion and normal of the ground half-way, unit vectors, frame of the keyframe
-  /// that has this step.
+  /// Direction of the motion, unit, frame of the keyframe that has this step.
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  /// Normal of the ground below the point half-way, unit, frame of the keyframe that has this step.
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 };
 
