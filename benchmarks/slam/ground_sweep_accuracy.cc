@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -61,15 +62,8 @@ double TrueHeight(const cv::Mat& range, const Eigen::Vector3d& step, const Eigen
   return heights.empty() ? 0.0 : orb360::Median(heights);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  if (argc < 2 || argc > 3) {
-    std::fprintf(stderr, "usage: ground_sweep_accuracy SEQUENCE [GAP]\n");
-    return 2;
-  }
-  const fs::path sequence = argv[1];
-  const int gap = argc > 2 ? std::atoi(argv[2]) : 1;
+/// Prints the table of one sequence folder.
+void Measure(const fs::path& sequence, int gap) {
   const std::vector<orb360::StampedPose> poses =
       orb360::ReadTrajectory(sequence / "groundtruth.txt");
   std::vector<double> errors;
@@ -100,12 +94,32 @@ int main(int argc, char** argv) {
     std::printf("%6d %7.4f %8.4f %7.4f %7.4f %6.1f %6.2f %6.2f %6d\n", i, truth, step->ratio, error,
                 step->sigma, error / step->sigma, step->correlation, step->rival, step->num_tiles);
   }
-  if (errors.empty()) return 0;
+  if (errors.empty()) return;
   std::printf(
       "measured %d of %d; |error|: median %.4f, 90 %% %.4f, largest %.4f; in sigmas: 68 %% "
       "%.2f, 95 %% %.2f\n",
       num_measured, num_frames, orb360::Median(errors), orb360::NearestRankQuantile(errors, 0.9),
       orb360::NearestRankQuantile(errors, 1.0), orb360::NearestRankQuantile(normalized, 0.68),
       orb360::NearestRankQuantile(normalized, 0.95));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const bool wants_help = argc == 2 && std::string(argv[1]) == "--help";
+  const int gap = argc == 3 ? std::atoi(argv[2]) : 1;
+  if (wants_help || argc < 2 || argc > 3 || gap < 1) {
+    std::fprintf(
+        wants_help ? stdout : stderr,
+        "usage: ground_sweep_accuracy SEQUENCE [GAP]\n"
+        "SEQUENCE: folder with rgb/, depth/ and groundtruth.txt; GAP: frames, at least 1\n");
+    return wants_help ? 0 : 2;
+  }
+  try {
+    Measure(argv[1], gap);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "ground_sweep_accuracy: %s\n", error.what());
+    return 1;
+  }
   return 0;
 }
