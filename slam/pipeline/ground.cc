@@ -48,28 +48,34 @@ std::vector<Eigen::Vector3d> PointsAround(const Map& map, const Keyframe& keyfra
 
 }  // namespace
 
-std::optional<KnownGround> EstimateGround(const Map& map, std::span<const KeyframeId> keyframes) {
-  std::vector<GroundPlane> planes;
+std::optional<KnownGround> AgreeOnGround(std::span<const GroundSighting> sightings,
+                                         double min_agreeing) {
+  if (sightings.empty()) return std::nullopt;
   std::vector<double> heights;
+  for (const GroundSighting& sighting : sightings) heights.push_back(sighting.height);
+  KnownGround ground{Eigen::Vector3d::Zero(), Median(heights)};
+  size_t agreeing = 0;
+  for (const GroundSighting& sighting : sightings) {
+    if (std::abs(sighting.height / ground.camera_height - 1) > kSameHeight) continue;
+    ground.up += sighting.up;
+    ++agreeing;
+  }
+  if (agreeing < min_agreeing) return std::nullopt;
+  ground.up.normalize();
+  return ground;
+}
+
+std::optional<KnownGround> EstimateGround(const Map& map, std::span<const KeyframeId> keyframes) {
+  std::vector<GroundSighting> sightings;
   for (const KeyframeId id : keyframes) {
     const Keyframe& keyframe = map.keyframe(id);
     const Eigen::Vector3d up = keyframe.world_from_camera.rotation * Eigen::Vector3d::UnitZ();
-    std::optional<GroundPlane> plane = FitGroundPlane(PointsAround(map, keyframe), up, kFirstLook);
-    if (!plane) continue;
-    heights.push_back(plane->height);
-    planes.push_back(std::move(*plane));
+    const std::optional<GroundPlane> plane =
+        FitGroundPlane(PointsAround(map, keyframe), up, kFirstLook);
+    if (plane) sightings.push_back({plane->normal, plane->height});
   }
-  if (planes.size() < kMinKeyframes) return std::nullopt;
-  KnownGround ground{Eigen::Vector3d::Zero(), Median(heights)};
-  size_t agreeing = 0;
-  for (const GroundPlane& plane : planes) {
-    if (std::abs(plane.height / ground.camera_height - 1) > kSameHeight) continue;
-    ground.up += plane.normal;
-    ++agreeing;
-  }
-  if (agreeing < kMinAgreement * static_cast<double>(keyframes.size())) return std::nullopt;
-  ground.up.normalize();
-  return ground;
+  if (sightings.size() < kMinKeyframes) return std::nullopt;
+  return AgreeOnGround(sightings, kMinAgreement * static_cast<double>(keyframes.size()));
 }
 
 std::optional<Eigen::Vector3d> GroundNormal(const Map& map, KeyframeId keyframe,

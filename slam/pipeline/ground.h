@@ -10,6 +10,18 @@
 
 namespace orb360 {
 
+/// What one keyframe shows of the ground: its normal, unit, world frame, and the camera's height
+/// over it, world units.
+struct GroundSighting {
+  Eigen::Vector3d up;
+  double height;
+};
+
+/// Returns the mean normal and the median height of sightings, without those whose height differs
+/// by more than a tenth. Empty where fewer than `min_agreeing` remain.
+std::optional<KnownGround> AgreeOnGround(std::span<const GroundSighting> sightings,
+                                         double min_agreeing);
+
 /// Estimates the ground under some keyframes from the landmarks below them: its mean normal and the
 /// median height of the cameras above it. The camera may be tilted by up to 45 degrees. Empty where
 /// most keyframes show no ground, or ground at another height.

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "nn/base/statistics.h"
 #include "slam/features/sphere_pyramid.h"
 #include "slam/geometry/bearing.h"
+#include "slam/pipeline/ground.h"
 #include "slam/scale/ground_sweep.h"
 
 namespace orb360 {
@@ -25,9 +25,7 @@ constexpr double kMaxBearingSigmas = 5.0;
 // passes, seconds.
 constexpr double kMaxSpeedChange = 1.6;
 constexpr double kMaxGap = 5.0;
-// Largest difference between heights of the camera that count as equal, as a fraction, and the
-// least fraction of the keyframes that must agree.
-constexpr double kSameHeight = 0.1;
+// Least fraction of the keyframes that must agree on the height of the camera.
 constexpr double kMinAgreement = 0.8;
 
 // The speed over the ground, heights of the camera per second, that the newest step up to a
@@ -155,32 +153,16 @@ void CorrectStep(KeyframeId id, const KnownGround& ground, Map* map) {
 }
 
 std::optional<KnownGround> GroundFromSteps(const Map& map, std::span<const KeyframeId> keyframes) {
-  struct Seen {
-    double height;
-    Eigen::Vector3d up;
-  };
-  std::vector<Seen> seen;
-  std::vector<double> heights;
+  std::vector<GroundSighting> sightings;
   for (const KeyframeId id : keyframes) {
     const Keyframe& keyframe = map.keyframe(id);
     if (keyframe.ground_steps.empty()) continue;
     const GroundStepFrom& step = keyframe.ground_steps.front();
-    const double length =
-        (keyframe.world_from_camera.translation - map.PoseOf(step.keyframe).translation).norm();
-    seen.push_back({length / step.ratio, keyframe.world_from_camera.rotation * step.up});
-    heights.push_back(seen.back().height);
+    const Rigid3& pose = keyframe.world_from_camera;
+    const double length = (pose.translation - map.PoseOf(step.keyframe).translation).norm();
+    sightings.push_back({pose.rotation * step.up, length / step.ratio});
   }
-  if (heights.empty()) return std::nullopt;
-  KnownGround ground{Eigen::Vector3d::Zero(), Median(heights)};
-  size_t agreeing = 0;
-  for (const Seen& step : seen) {
-    if (std::abs(step.height / ground.camera_height - 1) > kSameHeight) continue;
-    ground.up += step.up;
-    ++agreeing;
-  }
-  if (agreeing < kMinAgreement * static_cast<double>(keyframes.size())) return std::nullopt;
-  ground.up.normalize();
-  return ground;
+  return AgreeOnGround(sightings, kMinAgreement * static_cast<double>(keyframes.size()));
 }
 
 std::optional<Eigen::Vector3d> GroundNormalFromSteps(const Keyframe& keyframe) {

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Dense>
-#include <opencv2/imgproc.hpp>
 
 #include "nn/base/statistics.h"
-#include "slam/features/sphere_pyramid.h"
+#include "slam/scale/birds_eye_view.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
@@ -34,8 +32,6 @@ constexpr int kMaxAside = 12;
 constexpr int kFineReach = 3;
 constexpr int kTileReach = 3;
 constexpr int kMargin = 2 + kFineReach + kTileReach;  // cells, for all of these
-// Gray levels: variance of the noise in one cell. Ground with less texture counts less.
-constexpr float kNoiseVariance = 4.0f;
 // Least cosine of the angle between the ground and the motion.
 constexpr double kMinHorizontal = 0.5;
 constexpr float kMinTileCorrelation = 0.35f;
@@ -49,107 +45,10 @@ constexpr double kTileFloor = 0.05;
 // up to which the error of the height, 1 - cos, does not matter, rad.
 constexpr double kMaxTilt = 0.035;
 
-/// The ground as one camera sees it, in cells: rows along the direction of motion, columns across
-/// it. The gray values are relative to the mean around
-/// them and divided by their standard deviation, so that a mean product of two views is their
-/// normalized correlation; 0 where the ground is masked.
-struct BirdsEye {
-  int begin;  // first row, relative to the point below the camera, and the end
-  int end;
-  int half_width;             // columns on each side of that point
-  std::vector<float> values;  // row by row
-
-  int width() const { return 2 * half_width; }
-  const float* At(int along, int across) const {
-    return &values[static_cast<size_t>(along - begin) * width() + across + half_width];
-  }
-};
-
-constexpr float kMasked = -1.0f;  // as a gray value
-
-/// Gray values of the ground. `axes`: columns are the direction of motion, left and up, in the
-/// camera's frame.
-BirdsEye LookDown(const SpherePyramid& image, const Eigen::Matrix3d& axes, const cv::Mat& mask,
-                  int begin, int end, int half_width) {
-  BirdsEye view{begin, end, half_width, {}};
-  view.values.reserve(static_cast<size_t>(end - begin) * view.width());
-  const EquirectangularCamera& camera = image.front().camera;
-  const double level_ratio = std::log(RangeAtLevelZero(1.0, 1));
-  const double pixel = camera.AngleOfPixels(1.0);
-  const int top = static_cast<int>(image.size()) - 1;
-  for (int i = begin; i < end; ++i) {
-    for (int j = -half_width; j < half_width; ++j) {
-      const Eigen::Vector3d point((i + 0.5) * kCell, (j + 0.5) * kCell, -1.0);
-      const Eigen::Vector2d on_level_0 = camera.Project(axes * point);
-      if (!mask.empty() &&
-          mask.at<uint8_t>(std::min(static_cast<int>(on_level_0.y()), mask.rows - 1),
-                           std::min(static_cast<int>(on_level_0.x()), mask.cols - 1)) == 0) {
-        view.values.push_back(kMasked);
-        continue;
-      }
-      // The angle of a cell is the root of its solid angle.
-      const double spacing = kCell / std::pow(point.squaredNorm(), 0.75);
-      const int level = std::clamp(
-          static_cast<int>(std::lround(std::log(spacing / pixel) / level_ratio)), 0, top);
-      const EquirectangularCamera& of_level = image[level].camera;
-      const double u = on_level_0.x() * of_level.width() / camera.width();
-      const double v = on_level_0.y() * of_level.height() / camera.height();
-      view.values.push_back(
-          SampleBilinear(image[level], static_cast<float>(u), static_cast<float>(v)));
-    }
-  }
-  return view;
-}
-
-/// Joins kCoarse x kCoarse cells; masked where one of them is.
-BirdsEye Halve(const BirdsEye& fine) {
-  BirdsEye coarse{fine.begin / kCoarse, fine.end / kCoarse, fine.half_width / kCoarse, {}};
-  for (int i = coarse.begin; i < coarse.end; ++i) {
-    for (int j = -coarse.half_width; j < coarse.half_width; ++j) {
-      float sum = 0;
-      bool is_masked = false;
-      for (int k = 0; k < kCoarse * kCoarse; ++k) {
-        const float value = *fine.At(kCoarse * i + k / kCoarse, kCoarse * j + k % kCoarse);
-        is_masked |= value == kMasked;
-        sum += value;
-      }
-      coarse.values.push_back(is_masked ? kMasked : sum / (kCoarse * kCoarse));
-    }
-  }
-  return coarse;
-}
-
-/// Replaces gray values by those relative to the mean and the deviation within `radius` cells.
-void NormalizeLocally(int radius, BirdsEye* view) {
-  const cv::Mat gray(view->end - view->begin, view->width(), CV_32F, view->values.data());
-  const cv::Mat is_seen = gray != kMasked;
-  cv::Mat seen;
-  is_seen.convertTo(seen, CV_32F, 1.0 / 255);
-  const cv::Mat values = gray.mul(seen);
-  const cv::Size box(2 * radius + 1, 2 * radius + 1);
-  cv::Mat weight, mean, square;
-  cv::boxFilter(seen, weight, CV_32F, box);
-  cv::boxFilter(values, mean, CV_32F, box);
-  cv::boxFilter(values.mul(values), square, CV_32F, box);
-  for (int row = 0; row < gray.rows; ++row) {
-    float* to = &view->values[static_cast<size_t>(row) * gray.cols];
-    for (int column = 0; column < gray.cols; ++column) {
-      const float sum = weight.at<float>(row, column);
-      if (to[column] == kMasked || sum < 0.5f) {
-        to[column] = 0;
-        continue;
-      }
-      const float center = mean.at<float>(row, column) / sum;
-      const float variance = std::max(0.0f, square.at<float>(row, column) / sum - center * center);
-      to[column] = (to[column] - center) / std::sqrt(variance + kNoiseVariance);
-    }
-  }
-}
-
 /// Mean product of a square of both views.
 template <int kSide>
-float Correlate(const BirdsEye& view1, int along1, int across1, const BirdsEye& view2, int along2,
-                int across2) {
+float Correlate(const BirdsEyeView& view1, int along1, int across1, const BirdsEyeView& view2,
+                int along2, int across2) {
   // Sums by column, so that the loop is vectorized in a fixed order.
   float sums[kSide] = {};
   for (int row = 0; row < kSide; ++row) {
@@ -171,7 +70,8 @@ struct Shift {
 /// The correlation of a tile, kSide cells on each side. The tiles lie symmetrically about the point
 /// half-way between the cameras: ahead of the first one, behind the second one.
 template <int kSide>
-float CorrelateTile(const BirdsEye& view1, const BirdsEye& view2, int tile, const Shift& shift) {
+float CorrelateTile(const BirdsEyeView& view1, const BirdsEyeView& view2, int tile,
+                    const Shift& shift) {
   const int along = (tile / kTilesAcross - kTilesAlong / 2) * kSide;
   const int across = (tile % kTilesAcross - kTilesAcross / 2) * kSide;
   const auto half = [](int s) { return s >> 1; };  // rounded down
@@ -181,7 +81,7 @@ float CorrelateTile(const BirdsEye& view1, const BirdsEye& view2, int tile, cons
 }
 
 template <int kSide>
-float MeanCorrelation(const BirdsEye& view1, const BirdsEye& view2, const Shift& shift) {
+float MeanCorrelation(const BirdsEyeView& view1, const BirdsEyeView& view2, const Shift& shift) {
   float sum = 0;
   for (int tile = 0; tile < kTilesAlong * kTilesAcross; ++tile) {
     sum += CorrelateTile<kSide>(view1, view2, tile, shift);
@@ -201,7 +101,7 @@ struct CoarseShift {
 };
 
 /// Sweeps both shifts over the whole range. Empty where the best one is at its end.
-std::optional<CoarseShift> SweepCoarsely(const BirdsEye& view1, const BirdsEye& view2,
+std::optional<CoarseShift> SweepCoarsely(const BirdsEyeView& view1, const BirdsEyeView& view2,
                                          const GroundSweepOptions& options) {
   constexpr int kSide = kTile / kCoarse;
   constexpr int kAside = kMaxAside / kCoarse;
@@ -313,7 +213,8 @@ struct TileShifts {
   std::vector<double> across;
 };
 
-TileShifts ShiftsOfTiles(const BirdsEye& view1, const BirdsEye& view2, const Shift& common) {
+TileShifts ShiftsOfTiles(const BirdsEyeView& view1, const BirdsEyeView& view2,
+                         const Shift& common) {
   TileShifts shifts;
   for (int tile = 0; tile < kTilesAlong * kTilesAcross; ++tile) {
     const auto value = [&](int along, int across) {
@@ -356,10 +257,11 @@ std::optional<GroundStep> Sweep(const SpherePyramid& image1, const SpherePyramid
   const int near = kAlong / 2 + kMargin;
   const int far = near + farthest / 4 * 2 + 2;
   const int half_width = (kAcross + kMaxAside) / 4 * 2 + 2 + kMargin;
-  BirdsEye view1 = LookDown(image1, axes, mask, -near, far, half_width);
-  BirdsEye view2 = LookDown(image2, camera2_from_camera1 * axes, mask, -far, near, half_width);
-  BirdsEye coarse1 = Halve(view1);
-  BirdsEye coarse2 = Halve(view2);
+  BirdsEyeView view1 = LookDown(image1, axes, mask, kCell, -near, far, half_width);
+  BirdsEyeView view2 =
+      LookDown(image2, camera2_from_camera1 * axes, mask, kCell, -far, near, half_width);
+  BirdsEyeView coarse1 = JoinCells(kCoarse, view1);
+  BirdsEyeView coarse2 = JoinCells(kCoarse, view2);
   NormalizeLocally(kTile / 2, &view1);
   NormalizeLocally(kTile / 2, &view2);
   NormalizeLocally(kTile / 2 / kCoarse, &coarse1);

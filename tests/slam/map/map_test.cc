@@ -174,6 +174,15 @@ TEST(Map, AnAppendedPatchStaysWithItsKeyframe) {
   EXPECT_EQ(other.landmark(8).patch->keyframe, 3);
 }
 
+TEST(Map, AppendedStepsOverTheGroundStayWithTheirKeyframes) {
+  Map map = SmallMap();
+  Map other = SmallMap();
+  other.keyframe(3).ground_steps.push_back({.keyframe = 2, .ratio = 0.7, .sigma = 0.01});
+  map.Append(other);
+  EXPECT_EQ(map.keyframe(4 + 3).ground_steps.front().keyframe, 4 + 2);
+  EXPECT_EQ(map.keyframe(4 + 3).ground_steps.front().ratio, 0.7);
+}
+
 TEST(Map, ForgetsTheImagesOfAllButTheNewestKeyframes) {
   Map map = SmallMap();
   for (const KeyframeId id : map.KeyframeIds()) {

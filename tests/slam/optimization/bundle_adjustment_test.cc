@@ -172,6 +172,24 @@ TEST(LocalBundleAdjustment, RoughRangesHelpWithPointsOfLittleParallax) {
   EXPECT_LT(median_error(&with_ranges), 0.8 * without);
 }
 
+TEST(LocalBundleAdjustment, StepsOverTheGroundHoldTheLengthThatFarPointsDoNot) {
+  SyntheticScene scene(300, 200.0, 400.0);
+  const std::vector<Rigid3> poses = Walk(6, {-1.2, 0.1, 0.0});
+  Map map = scene.MakeMap(poses, 300);
+  const double step = (poses[5].translation - poses[4].translation).norm();
+  Eigen::Vector3d& last = map.keyframe(5).world_from_camera.translation;
+  last = poses[4].translation + 0.8 * (poses[5].translation - poses[4].translation);
+  const auto length_after = [&](Map adjusted) {
+    AdjustLocally(5, {.max_iterations = 10}, KnownGround{Eigen::Vector3d::UnitZ(), 1.6}, &adjusted);
+    return (adjusted.keyframe(5).world_from_camera.translation -
+            adjusted.keyframe(4).world_from_camera.translation)
+        .norm();
+  };
+  EXPECT_GT(std::abs(length_after(map) / step - 1), 0.03) << "or there is nothing to hold";
+  map.keyframe(5).ground_steps.push_back({.keyframe = 4, .ratio = step / 1.6, .sigma = 0.002});
+  EXPECT_NEAR(length_after(map) / step, 1.0, 0.01);
+}
+
 TEST(LocalBundleAdjustment, GlobalAdjustmentBringsTheWholeMapToRest) {
   SyntheticScene scene(200);
   const std::vector<Rigid3> poses = Walk(5, {-0.3, 0.1, 0.0});

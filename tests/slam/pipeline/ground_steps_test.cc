@@ -51,6 +51,20 @@ TEST(MeasureGroundSteps, MeasuresFromTheLastTwoKeyframes) {
   }
 }
 
+TEST(MeasureGroundSteps, SeeksTheStepAroundTheLastSpeed) {
+  for (const double last_ratio : {0.9, 0.3}) {  // of the true step, and of one far shorter
+    Map map = Drive(3, 1.0, Scaled(Asphalt(7)));
+    map.keyframe(1).ground_steps.push_back({.keyframe = 0,
+                                            .ratio = last_ratio * kStep / kHeight,
+                                            .sigma = 0.002,
+                                            .direction = Eigen::Vector3d(-1, 0, 0)});
+    MeasureGroundSteps(2, std::nullopt, {}, &map);
+    const std::vector<GroundStepFrom>& steps = map.keyframe(2).ground_steps;
+    const bool is_measured = !steps.empty() && steps.front().keyframe == 1;
+    EXPECT_EQ(is_measured, last_ratio > 0.5);
+  }
+}
+
 TEST(MeasureGroundSteps, MeasuresNothingWithoutAnImage) {
   Map map = Drive(2, 1.0, Scaled(Asphalt(2)));
   map.keyframe(0).image = nullptr;

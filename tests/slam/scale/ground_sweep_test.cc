@@ -54,6 +54,23 @@ TEST(MeasureGroundStep, AnErrorOfTheNormalCancels) {
   }
 }
 
+TEST(MeasureGroundStep, FindsTheDirectionOfTheMotionToo) {
+  const Asphalt asphalt(8);
+  const double step = 0.9;
+  const Rigid3 second = After(step);
+  const Rigid3 motion = kFirst.Inverse() * second;
+  for (const double error : {0.1, -0.15}) {  // rad, about the vertical
+    Rigid3 wrong = motion;
+    wrong.translation = ExpSo3({0, 0, error}) * motion.translation;
+    const auto found =
+        MeasureGroundStep(LookAtGround(kFirst, asphalt), LookAtGround(second, asphalt), wrong,
+                          kFirst.rotation.conjugate() * Eigen::Vector3d::UnitZ(), {}, {});
+    ASSERT_TRUE(found) << error;
+    EXPECT_NEAR(std::log(found->ratio / step), 0.0, 0.006) << error;
+    EXPECT_LT(std::acos(found->direction.dot(motion.translation.normalized())), 0.015) << error;
+  }
+}
+
 TEST(MeasureGroundStep, ItsErrorsAreWithinItsSigma) {
   double squares = 0;
   constexpr int kCount = 12;
