@@ -113,9 +113,18 @@ TEST(MeasureGroundStep, IsEmptyWhereTheCameraRises) {
 }
 
 TEST(MeasureGroundStep, WhatTheMaskCoversDoesNotCount) {
-  // A carrier covers all below 45 degrees under the horizon and moves with the camera.
+  // A carrier covers all below 45 degrees under the horizon and moves with the camera. Its stripes
+  // look alike at multiples of their distance, which the step is not.
   const Asphalt asphalt(6);
-  const Asphalt paint(7);
+  const double step = 0.5;
+  const Rigid3 second = After(step);
+  const Eigen::Vector2d along = (kFirst.rotation.conjugate() * second.translation -
+                                 kFirst.rotation.conjugate() * kFirst.translation)
+                                    .head<2>()
+                                    .normalized();
+  const auto paint = [&](const Eigen::Vector2d& p) {
+    return 110 + 60 * std::sin(2 * std::numbers::pi * along.dot(p) / 0.3);
+  };
   const EquirectangularCamera camera(kGroundWidth, kGroundWidth / 2);
   cv::Mat mask(kGroundWidth / 2, kGroundWidth, CV_8U, cv::Scalar(255));
   mask.rowRange(3 * kGroundWidth / 8, kGroundWidth / 2).setTo(0);
@@ -132,13 +141,15 @@ TEST(MeasureGroundStep, WhatTheMaskCoversDoesNotCount) {
     BuildSpherePyramid(gray, 8, &pyramid);
     return pyramid;
   };
-  const double step = 0.5;
-  const Rigid3 second = After(step);
-  const auto found =
-      MeasureGroundStep(look(kFirst), look(second), kFirst.Inverse() * second,
-                        kFirst.rotation.conjugate() * Eigen::Vector3d::UnitZ(), mask, {});
+  const auto measure = [&](const cv::Mat& used) {
+    return MeasureGroundStep(look(kFirst), look(second), kFirst.Inverse() * second,
+                             kFirst.rotation.conjugate() * Eigen::Vector3d::UnitZ(), used, {});
+  };
+  const auto found = measure(mask);
   ASSERT_TRUE(found);
   EXPECT_NEAR(std::log(found->ratio / step), 0.0, 0.02);
+  const auto without = measure({});
+  EXPECT_TRUE(!without || std::abs(std::log(without->ratio / step)) > 0.1) << without->ratio;
 }
 
 }  // namespace
