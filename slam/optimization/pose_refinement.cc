@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "slam/geometry/cluster_weights.h"
 #include "slam/optimization/bearing_residual.h"
 
 namespace orb360 {
@@ -30,40 +31,60 @@ double HuberCost(double squared) {
              : std::sqrt(kChiSquared95) * std::sqrt(squared) - 0.5 * kChiSquared95;
 }
 
+std::vector<Eigen::Vector3d> BearingsOf(std::span<const PoseObservation> observations) {
+  std::vector<Eigen::Vector3d> bearings;
+  bearings.reserve(observations.size());
+  for (const PoseObservation& o : observations) bearings.push_back(o.bearing);
+  return bearings;
+}
+
 class Problem {
  public:
-  explicit Problem(std::span<const PoseObservation> observations) : observations_(observations) {
+  explicit Problem(std::span<const PoseObservation> observations)
+      : observations_(observations), clusters_(BearingsOf(observations)) {
     bases_.reserve(observations.size());
     for (const PoseObservation& o : observations) {
       bases_.push_back(TangentBasis(o.bearing) / o.sigma);
     }
   }
 
+  /// Makes the active observations take part in the cost, and no others.
+  void SetActive(std::span<const uint8_t> active) {
+    weights_ = clusters_.Weights(active);
+    for (size_t i = 0; i < weights_.size(); ++i) {
+      if (!active[i]) weights_[i] = 0;
+    }
+  }
+
+  double EffectiveCount(std::span<const uint8_t> active) const {
+    return clusters_.EffectiveCount(active);
+  }
+
   // Perturbation: camera_from_world <- exp(translation, rotation) * camera_from_world.
-  NormalEquations Linearize(const Rigid3& camera_from_world,
-                            const std::vector<uint8_t>& active) const {
+  NormalEquations Linearize(const Rigid3& camera_from_world) const {
     NormalEquations equations;
     for (size_t i = 0; i < observations_.size(); ++i) {
-      if (!active[i]) continue;
+      if (weights_[i] == 0) continue;
       const Eigen::Vector3d p = camera_from_world * observations_[i].point;
       Eigen::Matrix<double, 2, 3> point_jacobian;
       const Eigen::Vector2d residual = BearingResidual(p, bases_[i], &point_jacobian);
       const double squared = residual.squaredNorm();
-      const double weight = squared <= kChiSquared95 ? 1.0 : std::sqrt(kChiSquared95 / squared);
+      const double weight =
+          weights_[i] * (squared <= kChiSquared95 ? 1.0 : std::sqrt(kChiSquared95 / squared));
       Eigen::Matrix<double, 2, 6> jacobian;
       jacobian.leftCols<3>() = point_jacobian;
       jacobian.rightCols<3>() = -point_jacobian * Skew(p);
       equations.hessian.noalias() += weight * jacobian.transpose() * jacobian;
       equations.gradient.noalias() += weight * jacobian.transpose() * residual;
-      equations.cost += HuberCost(squared);
+      equations.cost += weights_[i] * HuberCost(squared);
     }
     return equations;
   }
 
-  double Cost(const Rigid3& camera_from_world, const std::vector<uint8_t>& active) const {
+  double Cost(const Rigid3& camera_from_world) const {
     double cost = 0;
     for (size_t i = 0; i < observations_.size(); ++i) {
-      if (active[i]) cost += HuberCost(Squared(camera_from_world, i));
+      if (weights_[i] > 0) cost += weights_[i] * HuberCost(Squared(camera_from_world, i));
     }
     return cost;
   }
@@ -83,29 +104,31 @@ class Problem {
 
  private:
   std::span<const PoseObservation> observations_;
-  std::vector<Basis> bases_;  // divided by sigma
+  ClusterWeights clusters_;
+  std::vector<Basis> bases_;     // divided by sigma
+  std::vector<double> weights_;  // 0: not active
 };
 
 Rigid3 Perturb(const Vector6d& delta, const Rigid3& camera_from_world) {
   return Rigid3{ExpSo3(delta.tail<3>()), delta.head<3>()} * camera_from_world;
 }
 
-Rigid3 Minimize(const Problem& problem, const std::vector<uint8_t>& active, Rigid3 pose) {
+Rigid3 Minimize(const Problem& problem, Rigid3 pose) {
   double damping = 1e-6;  // relative to the diagonal
-  NormalEquations equations = problem.Linearize(pose, active);
+  NormalEquations equations = problem.Linearize(pose);
   for (int iteration = 0; iteration < kIterationsPerRound; ++iteration) {
     Matrix6d damped = equations.hessian;
     damped.diagonal() *= 1.0 + damping;
     const Vector6d delta = damped.ldlt().solve(-equations.gradient);
     if (!delta.allFinite()) break;
     const Rigid3 candidate = Perturb(delta, pose);
-    const double cost = problem.Cost(candidate, active);
+    const double cost = problem.Cost(candidate);
     if (cost <= equations.cost) {
       const bool converged = equations.cost - cost < 1e-6 * equations.cost;
       pose = candidate;
       damping = std::max(1e-9, 0.1 * damping);
       if (converged) break;
-      equations = problem.Linearize(pose, active);
+      equations = problem.Linearize(pose);
     } else {
       damping *= 100;
     }
@@ -117,13 +140,16 @@ Rigid3 Minimize(const Problem& problem, const std::vector<uint8_t>& active, Rigi
 
 RefinedPose RefinePose(const Rigid3& initial_world_from_camera,
                        std::span<const PoseObservation> observations) {
-  const Problem problem(observations);
-  RefinedPose result{initial_world_from_camera, std::vector<uint8_t>(problem.size(), 0), 0, 0};
+  Problem problem(observations);
+  RefinedPose result{
+      initial_world_from_camera, std::vector<uint8_t>(problem.size(), 0), 0, 0, 0, 0};
   std::vector<uint8_t> active(problem.size(), 1);
+  const double support_of_all = problem.EffectiveCount(active);
   Rigid3 pose = initial_world_from_camera.Inverse();
   int num_active = 0;
   for (int round = 0; round < kRounds; ++round) {
-    pose = Minimize(problem, active, pose);
+    problem.SetActive(active);
+    pose = Minimize(problem, pose);
     num_active = 0;
     bool changed = false;
     for (size_t i = 0; i < problem.size(); ++i) {
@@ -142,6 +168,8 @@ RefinedPose RefinePose(const Rigid3& initial_world_from_camera,
   result.world_from_camera = pose.Inverse();
   result.inliers = std::move(active);
   result.num_inliers = num_active;
+  result.support = problem.EffectiveCount(result.inliers);
+  result.inlier_ratio = result.support / support_of_all;
   result.rms = std::sqrt(sum / (2.0 * num_active));
   return result;
 }

@@ -21,14 +21,20 @@ struct RefinedPose {
   Rigid3 world_from_camera;
   std::vector<uint8_t> inliers;  ///< By observation.
   int num_inliers = 0;
+  /// Number of independent observations that would weigh as much as the inliers (ClusterWeights).
+  double support = 0;
+  /// The same as a fraction of the number for all observations.
+  double inlier_ratio = 0;
   /// Root mean square of the inliers' residuals in sigmas (1 when the noise is as assumed).
   double rms = 0;
 };
 
 /// Estimates the pose of a camera from landmarks by Levenberg-Marquardt on tangent-plane residuals
-/// (bearing_residual.h) with a Huber loss, starting from `initial_world_from_camera`. It runs in
-/// rounds: after each, observations beyond the 95 % bound are left out of the next, and those
-/// within it come back. With fewer than three inliers it returns the initial pose without inliers.
+/// (bearing_residual.h) with a Huber loss, starting from `initial_world_from_camera`. Observations
+/// close to each other share their weight (ClusterWeights), so that an object with many corners
+/// that moves with the camera does not outvote the surroundings. It runs in rounds: after each,
+/// observations beyond the 95 % bound are left out of the next, and those within it come back. With
+/// fewer than three inliers it returns the initial pose without inliers.
 RefinedPose RefinePose(const Rigid3& initial_world_from_camera,
                        std::span<const PoseObservation> observations);
 

@@ -8,6 +8,9 @@
 namespace orb360 {
 namespace {
 
+// Time after a loss for which the motion before it still predicts where the camera is, seconds.
+constexpr double kPredictable = 1.0;
+
 void SampleColors(const cv::Mat& bgr, Features* features) {
   features->colors.resize(features->size());
   for (int i = 0; i < features->size(); ++i) {
@@ -116,14 +119,14 @@ void FrontEnd::UseDepth(const Keyframe& keyframe) {
 void FrontEnd::Apply(const MapUpdate& update, Map* map) {
   const LandmarkId shift = update.renumbering ? update.renumbering->landmark_shift : 0;
   const auto move = [&](Rigid3* pose) { *pose = TransformPose(update.correction, *pose); };
-  if (auto* tracking = std::get_if<Tracking>(&state_)) {
+  auto* tracking = std::get_if<Tracking>(&state_);
+  if (auto* lost = std::get_if<Lost>(&state_); lost && lost->before) tracking = &*lost->before;
+  if (tracking != nullptr) {
     move(&tracking->last.world_from_camera);
     if (tracking->before_last) move(&tracking->before_last->world_from_camera);
     for (LandmarkId& id : tracking->last.landmarks) {
       if (id != kNoId) id = map->Resolve(id + shift);
     }
-  } else if (auto* lost = std::get_if<Lost>(&state_)) {
-    move(&lost->last_world_from_camera);
   }
   counts_.Shift(shift);
   counts_.MoveTo(map);
@@ -133,7 +136,7 @@ void FrontEnd::Apply(const MapUpdate& update, Map* map) {
 // --- recovery ---------------------------------------------------------------------------------
 
 void FrontEnd::Lose(PendingFrame frame, int num_frames, const Map& map) {
-  state_ = Lost{.last_world_from_camera = std::get<Tracking>(state_).last.world_from_camera,
+  state_ = Lost{.before = std::get<Tracking>(std::move(state_)),
                 .since = num_frames,
                 .next_keyframe = map.keyframe_end() - 1};
   ++events_.num_lost;
@@ -148,6 +151,16 @@ void FrontEnd::StartLost(const Map& map) {
 
 std::optional<Relocalization> FrontEnd::Find(const PendingFrame& frame, int num_threads,
                                              Atlas* atlas) {
+  const std::optional<Tracking>& before = lost()->before;
+  if (before && frame.timestamp - before->last.timestamp < kPredictable) {
+    std::optional<TrackResult> result =
+        TrackFromPrediction(*frame.features, PredictPose(*before, frame.timestamp), before->last,
+                            local_, pixel_sigma_, options_.tracker, num_threads);
+    if (result) {
+      return Relocalization{
+          .map = atlas->present_number(), .local = local_, .result = std::move(*result)};
+    }
+  }
   return Relocalize(*frame.features, local_, pixel_sigma_, options_, num_threads, atlas,
                     &std::get<Lost>(state_).next_keyframe);
 }
@@ -213,8 +226,9 @@ std::optional<InitialMap> FrontEnd::Initialize(const PendingFrame& frame, int nu
       gauge.scale = 1.0 / initial.map.MedianRange(InitialMap::kSecond);
       if (const Lost* before = lost()) {
         gauge.scale *= local_.median_range;
-        gauge.rotation = before->last_world_from_camera.rotation;
-        gauge.translation = before->last_world_from_camera.translation;
+        const Rigid3 last = before->before ? before->before->last.world_from_camera : Rigid3{};
+        gauge.rotation = last.rotation;
+        gauge.translation = last.translation;
       }
       initial.map.Transform(gauge);
       if (!events_.initialized_at) events_.initialized_at = frame.index;

@@ -29,8 +29,8 @@ class FrontEnd {
     std::optional<TrackedFrame> before_last = {};
   };
   struct Lost {
-    /// The last pose that was known.
-    Rigid3 last_world_from_camera = {};
+    /// What was known before. Empty in a loaded map.
+    std::optional<Tracking> before = {};
     /// Number of frames that had been processed when the camera was lost.
     int since = 0;
     /// The keyframe at which Relocalize goes on.
@@ -70,7 +70,8 @@ class FrontEnd {
   /// Begins in a loaded map, in which the camera has to be relocalized. State: then lost.
   void StartLost(const Map& map);
 
-  /// Relocalizes the camera. State: lost.
+  /// Relocalizes the camera: for a moment where its motion has taken it, as after a frame in which
+  /// something covered the view, then anywhere (Relocalize). State: lost.
   std::optional<Relocalization> Find(const PendingFrame& frame, int num_threads, Atlas* atlas);
   /// Resumes tracking at the pose that was found in the present map, and tracks the remembered
   /// frames backwards from there. State: lost, then tracking.

@@ -19,6 +19,11 @@ constexpr double kSameHeight = 0.1;
 constexpr double kMinAgreement = 0.6;
 constexpr size_t kMinKeyframes = 3;
 
+// How far below the camera a landmark may lie: in heights of the camera, and beside that as a
+// fraction of its distance, because the ground slopes.
+constexpr double kMaxDepth = 2.0;
+constexpr double kMaxSlope = 0.1;
+
 // Options for the first fit, before anything is known about the ground.
 constexpr GroundPlaneOptions kFirstLook{.min_below = 0.35,
                                         .max_tilt = 0.7854,
@@ -84,6 +89,17 @@ std::optional<Eigen::Vector3d> GroundNormal(const Map& map, KeyframeId keyframe,
       FitGroundPlane(PointsAround(map, map.keyframe(keyframe)), up, {});
   if (!plane) return std::nullopt;
   return plane->normal;
+}
+
+void RemoveBelowGround(KeyframeId id, const KnownGround& ground, Map* map) {
+  const std::vector<LandmarkId> landmarks = map->keyframe(id).landmarks;
+  const Eigen::Vector3d center = map->keyframe(id).world_from_camera.translation;
+  for (const LandmarkId landmark : landmarks) {
+    if (landmark == kNoId || !map->HasLandmark(landmark)) continue;
+    const Eigen::Vector3d offset = map->landmark(landmark).position - center;
+    const double allowed = kMaxDepth * ground.camera_height + kMaxSlope * offset.norm();
+    if (-offset.dot(ground.up) > allowed) map->RemoveLandmark(landmark);
+  }
 }
 
 }  // namespace orb360

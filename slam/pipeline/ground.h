@@ -32,4 +32,9 @@ std::optional<KnownGround> EstimateGround(const Map& map, std::span<const Keyfra
 std::optional<Eigen::Vector3d> GroundNormal(const Map& map, KeyframeId keyframe,
                                             const Eigen::Vector3d& up);
 
+/// Removes the landmarks of a keyframe that lie far below the ground. There is nothing to see: they
+/// are corners of something that moves with the camera, such as a car on the next lane, which has
+/// as little parallax as something far away.
+void RemoveBelowGround(KeyframeId id, const KnownGround& ground, Map* map);
+
 }  // namespace orb360

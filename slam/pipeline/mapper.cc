@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "slam/optimization/local_bundle_adjustment.h"
+#include "slam/pipeline/ground.h"
 #include "slam/pipeline/ground_steps.h"
 #include "slam/pipeline/landmark_fusion.h"
 #include "slam/pipeline/observation_alignment.h"
@@ -94,6 +95,7 @@ KeyframeId IntegrateKeyframe(const TrackedFrame& frame, std::shared_ptr<const Sp
   if (ground) CorrectStep(id, *ground, map);
   CullRecentLandmarks(id, options, map);
   TriangulateNewLandmarks(id, options.triangulation, map);
+  if (ground) RemoveBelowGround(id, *ground, map);
   FuseWithNeighbours(id, options.max_fusion_neighbours, map);
   AlignObservations(id, ground, map);
   FindByPatches(id, options.max_fusion_neighbours, map);

@@ -79,7 +79,8 @@ Rigid3 RefineWithProvisional(const Features& features, const PoseFit& fit, const
 
 struct LocalFit {
   TrackResult result;
-  double inlier_ratio = 0;  // fraction of the matches with the local map
+  double support = 0;       // as in RefinedPose
+  double inlier_ratio = 0;  // as in RefinedPose, of the matches with the local map
 };
 
 // Tracks the whole local map, starting from a pose that is accurate to a few standard deviations.
@@ -104,8 +105,7 @@ std::optional<LocalFit> TrackLocalMap(const Features& features, const Rigid3& in
   for (size_t l = 0; l < local.landmarks.size(); ++l) {
     if (matches.expected[l]) result.expected.push_back(local.landmarks[l].id);
   }
-  return LocalFit{std::move(result),
-                  fit.pose.num_inliers / static_cast<double>(matches.num_matches)};
+  return LocalFit{std::move(result), fit.pose.support, fit.pose.inlier_ratio};
 }
 
 // Estimates the pose from the last frame's landmarks, starting from the predicted pose.
@@ -182,7 +182,7 @@ std::optional<TrackResult> TrackFromPrediction(const Features& features,
     }
     return PoseFromMotion(features, last, local, matches);
   };
-  std::optional<TrackResult> best;
+  std::optional<LocalFit> best;
   constexpr int kAttempts = 3;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const std::optional<Rigid3> start = find_start(attempt);
@@ -191,10 +191,11 @@ std::optional<TrackResult> TrackFromPrediction(const Features& features,
         TrackLocalMap(features, *start, local, pixel_sigma, options, num_threads);
     if (!fit) continue;
     const bool convinces = fit->inlier_ratio >= options.min_inlier_ratio;
-    if (!best || fit->result.num_inliers > best->num_inliers) best = std::move(fit->result);
+    if (!best || fit->support > best->support) best = std::move(fit);
     if (convinces) break;
   }
-  return best;
+  if (!best) return std::nullopt;
+  return std::move(best->result);
 }
 
 std::optional<TrackResult> TrackWithoutPrediction(const Features& features, const LocalMap& local,

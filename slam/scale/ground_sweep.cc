@@ -41,6 +41,9 @@ constexpr double kMaxTileSigmas = 3.0;
 // Standard deviation of the shift of a perfect tile, cells: interpolation and the tile's own
 // relief.
 constexpr double kTileFloor = 0.05;
+// Errors of neighbouring tiles are correlated: against the truth, the errors of ln(ratio) have
+// twice the standard deviation that independent tiles would give (docs/results/scale.md).
+constexpr double kCorrelatedTiles = 2.0;
 // Angle between the assumed normal of the ground across the motion and the one that the tiles show
 // up to which the error of the height, 1 - cos, does not matter, rad.
 constexpr double kMaxTilt = 0.035;
@@ -288,7 +291,8 @@ std::optional<GroundStep> Sweep(const SpherePyramid& image1, const SpherePyramid
   const double across = Median(tiles.across);
   GroundStep step;
   step.ratio = kCell * std::hypot(below->shift, across);
-  step.sigma = below->sigma / below->shift;
+  step.sigma = kCorrelatedTiles * below->sigma / below->shift;
+  if (!(step.sigma < options.max_sigma)) return std::nullopt;
   step.correlation = coarse->correlation;
   step.rival = coarse->rival;
   step.num_tiles = below->num_tiles;

@@ -24,6 +24,8 @@ struct GroundSweepOptions {
   /// Largest correlation of another ratio, as a fraction of the best one's. Where the ground
   /// repeats itself, several ratios look alike.
   double max_rival = 0.8;
+  /// Largest standard deviation of ln(ratio). Where the tiles scatter more, most of them are wrong.
+  double max_sigma = 0.03;
   /// Least number of tiles of the ground that must agree.
   int min_tiles = 12;
 };
@@ -33,7 +35,8 @@ struct GroundStep {
   /// Length of the step, divided by the height of the cameras over the ground: the distance of the
   /// point half-way between them from the plane.
   double ratio = 0;
-  /// Standard deviation of ln(ratio), from the scatter of the tiles.
+  /// Standard deviation of ln(ratio), from the scatter of the tiles. Uneven ground, which moves all
+  /// tiles together, is not included.
   double sigma = 0;
   /// Direction of the motion over the ground, unit, frame of camera 1. It is more exact than the
   /// one that was given where only far points have shown that.

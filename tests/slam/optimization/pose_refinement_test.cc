@@ -67,6 +67,28 @@ TEST(PoseRefinement, SetsAsideThirtyPercentOfWrongMatches) {
   }
 }
 
+// The corners of something that moves with the camera outnumber those of the surroundings, and lie
+// together.
+TEST(PoseRefinement, SurroundingsPrevailOverAnObjectWithMoreCorners) {
+  RandomGeometry random(4);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Rigid3 truth = random.Transform();
+    // What the object takes to be the camera's pose: it has not turned by one degree.
+    const Rigid3 by_object = truth * Rigid3{ExpSo3({0, 0, 0.017}), {0.2, 0, 0}};
+    std::vector<PoseObservation> observations = Observe(truth, 120, 0.002, 0.0, &random);
+    const Eigen::Vector3d direction = random.Bearing();
+    for (int i = 0; i < 150; ++i) {
+      const Eigen::Vector3d local =
+          random.Uniform(4.0, 6.0) * (random.Rotation(0.12) * direction).normalized();
+      observations.push_back({by_object * local, random.Noisy(local.normalized(), 0.002), 0.002});
+    }
+    const RefinedPose found = RefinePose(by_object, observations);
+    EXPECT_LT(found.world_from_camera.rotation.angularDistance(truth.rotation), 3e-3);
+    EXPECT_LT((found.world_from_camera.translation - truth.translation).norm(), 0.03);
+    EXPECT_GT(found.inlier_ratio, 0.6);
+  }
+}
+
 TEST(PoseRefinement, KeepsTheGuessWhereNothingFits) {
   const Rigid3 guess{ExpSo3({0.1, 0.2, 0.3}), {1, 2, 3}};
   const RefinedPose found = RefinePose(guess, {});

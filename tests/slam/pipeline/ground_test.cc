@@ -40,5 +40,29 @@ TEST(Ground, IsNotInventedWhereThereIsNone) {
   EXPECT_FALSE(GroundOf(Map()).has_value());
 }
 
+TEST(Ground, ALandmarkFarBelowItIsRemoved) {
+  SyntheticScene scene(4, 2.0, 8.0);
+  // Camera at the origin, ground at -1.5.
+  const std::vector<Eigen::Vector3d> places = {
+      {-5.0, 0.0, -1.5},     // on the ground
+      {-60.0, 0.0, -8.0},    // a valley
+      {-40.0, 0.0, -12.0},   // the lower part of a car on the next lane, without parallax
+      {-400.0, 0.0, -60.0},  // the same, with less parallax
+  };
+  for (size_t i = 0; i < places.size(); ++i) scene.points[i].position = places[i];
+  Map map = scene.MakeMap(Walk(2, {-0.1, 0.0, 0.0}), 4);
+  const std::vector<LandmarkId> landmarks = map.keyframe(0).landmarks;
+  ASSERT_EQ(landmarks.size(), 4u);
+  RemoveBelowGround(0, {.up = Eigen::Vector3d::UnitZ(), .camera_height = 1.5}, &map);
+  for (const LandmarkId id : landmarks) {
+    const bool is_kept = id != kNoId && map.HasLandmark(id);
+    if (is_kept) {
+      EXPECT_GT(map.landmark(id).position.z(), -10);
+    }
+  }
+  EXPECT_EQ(map.num_landmarks(), 2);
+  map.CheckConsistency();
+}
+
 }  // namespace
 }  // namespace orb360

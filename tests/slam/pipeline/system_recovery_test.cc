@@ -32,6 +32,31 @@ TEST(SystemSlow, FindsItselfAgainAfterAShortBlackout) {
   EXPECT_LT(error.rmse, 0.01 * error.length);
 }
 
+// After a covered frame, most of the image shows another place of the map, as a screen would. The
+// motion before tells which of both views is the true one.
+TEST(SystemSlow, GoesOnWhereTheMotionHasTakenItAfterSomethingCoveredTheView) {
+  const BoxRoom room = Hall();
+  System system(kHallCamera, SmallOptions(), {});
+  std::vector<FrameReport> reports;
+  for (int i = 0; i < 52; ++i) {
+    cv::Mat image = room.Render(kHallCamera, TruePose(i));
+    if (i == 50) image.setTo(0);
+    if (i == 51) {
+      const cv::Mat elsewhere = room.Render(kHallCamera, TruePose(20));
+      elsewhere.colRange(0, image.cols * 5 / 8).copyTo(image.colRange(0, image.cols * 5 / 8));
+    }
+    reports.push_back(system.Process(MakeFrame(i, image)));
+  }
+  EXPECT_EQ(reports[50].state, TrackingState::kLost);
+  ASSERT_EQ(reports[51].state, TrackingState::kTracking);
+  const auto distance = [&](int from, int to) {
+    return (reports[to].world_from_camera.value().translation -
+            reports[from].world_from_camera.value().translation)
+        .norm();
+  };
+  EXPECT_NEAR(distance(49, 51), 2 * distance(48, 49), 0.2 * distance(48, 49));
+}
+
 TEST(SystemSlow, BeginsANewMapElsewhereAndKeepsTheOldOne) {
   const BoxRoom first = Hall(1);
   const BoxRoom second = Hall(99);
