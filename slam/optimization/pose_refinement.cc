@@ -17,6 +17,8 @@ using Basis = Eigen::Matrix<double, 3, 2>;
 constexpr int kRounds = 4;
 constexpr int kIterationsPerRound = 6;
 constexpr int kMinInliers = 3;
+// 95 % bound of a chi-squared variable with three degrees of freedom.
+constexpr double kPriorChiSquared95 = 7.815;
 
 struct NormalEquations {
   Matrix6d hessian = Matrix6d::Zero();
@@ -24,11 +26,9 @@ struct NormalEquations {
   double cost = 0;
 };
 
-// Half of Huber's loss of a squared residual; it is linear beyond the 95 % bound.
-double HuberCost(double squared) {
-  return squared <= kChiSquared95
-             ? 0.5 * squared
-             : std::sqrt(kChiSquared95) * std::sqrt(squared) - 0.5 * kChiSquared95;
+// Half of Huber's loss of a squared residual; it is linear beyond the bound.
+double HuberCost(double squared, double bound = kChiSquared95) {
+  return squared <= bound ? 0.5 * squared : std::sqrt(bound) * std::sqrt(squared) - 0.5 * bound;
 }
 
 std::vector<Eigen::Vector3d> BearingsOf(std::span<const PoseObservation> observations) {
@@ -40,8 +40,8 @@ std::vector<Eigen::Vector3d> BearingsOf(std::span<const PoseObservation> observa
 
 class Problem {
  public:
-  explicit Problem(std::span<const PoseObservation> observations)
-      : observations_(observations), clusters_(BearingsOf(observations)) {
+  Problem(std::span<const PoseObservation> observations, const std::optional<PositionPrior>& prior)
+      : observations_(observations), prior_(prior), clusters_(BearingsOf(observations)) {
     bases_.reserve(observations.size());
     for (const PoseObservation& o : observations) {
       bases_.push_back(TangentBasis(o.bearing) / o.sigma);
@@ -78,6 +78,7 @@ class Problem {
       equations.gradient.noalias() += weight * jacobian.transpose() * residual;
       equations.cost += weights_[i] * HuberCost(squared);
     }
+    if (prior_) LinearizePrior(camera_from_world, &equations);
     return equations;
   }
 
@@ -85,6 +86,9 @@ class Problem {
     double cost = 0;
     for (size_t i = 0; i < observations_.size(); ++i) {
       if (weights_[i] > 0) cost += weights_[i] * HuberCost(Squared(camera_from_world, i));
+    }
+    if (prior_) {
+      cost += HuberCost(PriorResidual(camera_from_world).squaredNorm(), kPriorChiSquared95);
     }
     return cost;
   }
@@ -103,7 +107,25 @@ class Problem {
   size_t size() const { return observations_.size(); }
 
  private:
+  Eigen::Vector3d PriorResidual(const Rigid3& camera_from_world) const {
+    return prior_->sqrt_information * (camera_from_world.Inverse().translation - prior_->position);
+  }
+
+  void LinearizePrior(const Rigid3& camera_from_world, NormalEquations* equations) const {
+    const Eigen::Vector3d residual = PriorResidual(camera_from_world);
+    const double squared = residual.squaredNorm();
+    const double weight =
+        squared <= kPriorChiSquared95 ? 1.0 : std::sqrt(kPriorChiSquared95 / squared);
+    // A perturbation moves the camera's centre by -(world_from_camera rotation) * translation.
+    const Eigen::Matrix3d jacobian =
+        -prior_->sqrt_information * camera_from_world.rotation.conjugate().toRotationMatrix();
+    equations->hessian.topLeftCorner<3, 3>() += weight * jacobian.transpose() * jacobian;
+    equations->gradient.head<3>() += weight * jacobian.transpose() * residual;
+    equations->cost += HuberCost(squared, kPriorChiSquared95);
+  }
+
   std::span<const PoseObservation> observations_;
+  std::optional<PositionPrior> prior_;
   ClusterWeights clusters_;
   std::vector<Basis> bases_;     // divided by sigma
   std::vector<double> weights_;  // 0: not active
@@ -139,8 +161,9 @@ Rigid3 Minimize(const Problem& problem, Rigid3 pose) {
 }  // namespace
 
 RefinedPose RefinePose(const Rigid3& initial_world_from_camera,
-                       std::span<const PoseObservation> observations) {
-  Problem problem(observations);
+                       std::span<const PoseObservation> observations,
+                       const std::optional<PositionPrior>& prior) {
+  Problem problem(observations, prior);
   RefinedPose result{
       initial_world_from_camera, std::vector<uint8_t>(problem.size(), 0), 0, 0, 0, 0};
   std::vector<uint8_t> active(problem.size(), 1);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,12 @@ struct PoseObservation {
   Eigen::Vector3d point;    ///< World frame.
   Eigen::Vector3d bearing;  ///< Unit, camera frame.
   double sigma;             ///< Angular noise, rad.
+};
+
+/// What is known of the camera's position before its image is looked at.
+struct PositionPrior {
+  Eigen::Vector3d position;          ///< World frame.
+  Eigen::Matrix3d sqrt_information;  ///< Times the error of the position: of unit covariance.
 };
 
 struct RefinedPose {
@@ -36,6 +43,7 @@ struct RefinedPose {
 /// observations beyond the 95 % bound are left out of the next, and those within it come back. With
 /// fewer than three inliers it returns the initial pose without inliers.
 RefinedPose RefinePose(const Rigid3& initial_world_from_camera,
-                       std::span<const PoseObservation> observations);
+                       std::span<const PoseObservation> observations,
+                       const std::optional<PositionPrior>& prior = std::nullopt);
 
 }  // namespace orb360

@@ -8,7 +8,7 @@
 namespace orb360 {
 namespace {
 
-// Time after a loss for which the motion before it still predicts where the camera is, seconds.
+// Time for which a motion predicts where the camera is, seconds.
 constexpr double kPredictable = 1.0;
 
 void SampleColors(const cv::Mat& bgr, Features* features) {
@@ -64,9 +64,15 @@ PendingFrame FrontEnd::Extract(int index, double timestamp, const cv::Mat& image
 
 bool FrontEnd::Track(const PendingFrame& frame, int num_threads, Atlas* atlas) {
   Tracking& tracking = std::get<Tracking>(state_);
+  Rigid3 predicted = PredictPose(tracking, frame.timestamp);
+  std::optional<PositionPrior> prior;
+  if (ground_motion_ && frame.timestamp - ground_motion_->timestamp < kPredictable) {
+    prior = PredictPosition(*ground_motion_, frame.timestamp, predicted.rotation);
+    predicted.translation = prior->position;
+  }
   std::optional<TrackResult> result =
-      TrackFromPrediction(*frame.features, PredictPose(tracking, frame.timestamp), tracking.last,
-                          local_, pixel_sigma_, options_.tracker, num_threads);
+      TrackFromPrediction(*frame.features, predicted, tracking.last, local_, pixel_sigma_,
+                          options_.tracker, prior, num_threads);
   if (!result) {
     result = TrackWithoutPrediction(*frame.features, local_, pixel_sigma_, options_.tracker,
                                     num_threads);
@@ -128,6 +134,10 @@ void FrontEnd::Apply(const MapUpdate& update, Map* map) {
       if (id != kNoId) id = map->Resolve(id + shift);
     }
   }
+  if (ground_motion_) {
+    move(&ground_motion_->world_from_camera);
+    ground_motion_->velocity *= update.correction.scale;
+  }
   counts_.Shift(shift);
   counts_.MoveTo(map);
   local_ = MakeLocalMap(*map, update.reference, options_.keyframe.local_keyframes);
@@ -139,6 +149,7 @@ void FrontEnd::Lose(PendingFrame frame, int num_frames, const Map& map) {
   state_ = Lost{.before = std::get<Tracking>(std::move(state_)),
                 .since = num_frames,
                 .next_keyframe = map.keyframe_end() - 1};
+  ground_motion_.reset();
   ++events_.num_lost;
   pending_.ResetReference();
   pending_.Remember(std::move(frame));
@@ -155,7 +166,7 @@ std::optional<Relocalization> FrontEnd::Find(const PendingFrame& frame, int num_
   if (before && frame.timestamp - before->last.timestamp < kPredictable) {
     std::optional<TrackResult> result =
         TrackFromPrediction(*frame.features, PredictPose(*before, frame.timestamp), before->last,
-                            local_, pixel_sigma_, options_.tracker, num_threads);
+                            local_, pixel_sigma_, options_.tracker, std::nullopt, num_threads);
     if (result) {
       return Relocalization{
           .map = atlas->present_number(), .local = local_, .result = std::move(*result)};
@@ -187,8 +198,9 @@ void FrontEnd::TrackPendingBackwards(TrackedFrame last, int num_threads, Atlas* 
       predicted =
           last.world_from_camera * (before->world_from_camera.Inverse() * last.world_from_camera);
     }
-    std::optional<TrackResult> result = TrackFromPrediction(
-        *frame.features, predicted, last, local_, pixel_sigma_, options_.tracker, num_threads);
+    std::optional<TrackResult> result =
+        TrackFromPrediction(*frame.features, predicted, last, local_, pixel_sigma_,
+                            options_.tracker, std::nullopt, num_threads);
     if (!result) {
       result = TrackWithoutPrediction(*frame.features, local_, pixel_sigma_, options_.tracker,
                                       num_threads);

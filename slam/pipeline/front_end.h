@@ -7,6 +7,7 @@
 
 #include "slam/features/orb_extractor.h"
 #include "slam/pipeline/atlas.h"
+#include "slam/pipeline/ground_motion.h"
 #include "slam/pipeline/initial_map.h"
 #include "slam/pipeline/landmark_counts.h"
 #include "slam/pipeline/local_map.h"
@@ -91,6 +92,8 @@ class FrontEnd {
   /// another keyframe than its reference shares most landmarks with the last frame. State:
   /// tracking.
   void UpdateLocalMap(Map* map);
+  /// Uses the motion over the ground at the newest keyframe, from now on; empty: it is not known.
+  void SetGroundMotion(const std::optional<GroundMotion>& motion) { ground_motion_ = motion; }
   /// Uses the completed depth of a keyframe of the map.
   void UseDepth(const Keyframe& keyframe);
   /// Leaves the present map before tracking goes on in another one.
@@ -110,6 +113,7 @@ class FrontEnd {
   std::variant<Initializing, Tracking, Lost> state_;
   PendingFrames pending_;
   LocalMap local_;
+  std::optional<GroundMotion> ground_motion_;
   LandmarkCounts counts_;
   Events events_;
 };

@@ -41,6 +41,7 @@ MappedKeyframe MapKeyframe(KeyframeMapping job, const Options& options) {
   result.update.reference = id;
   result.update.correction =
       ToSimilarity(map.keyframe(id).world_from_camera * job.frame.world_from_camera.Inverse());
+  if (job.ground) result.ground_motion = FindGroundMotion(map, id, *job.ground);
   result.ground = LookForGround(map, job.ground, options.scale);
   if (job.completed_camera) {
     result.sparse = ProjectLandmarks(map, id, *job.completed_camera, options.depth.sparse);

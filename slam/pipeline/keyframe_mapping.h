@@ -8,6 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "slam/pipeline/atlas.h"
+#include "slam/pipeline/ground_motion.h"
 #include "slam/pipeline/mapper.h"
 #include <orb360/slam/depth/sparse_depth.h>
 #include <orb360/slam/geometry/camera.h>
@@ -39,6 +40,8 @@ struct MappedKeyframe {
   cv::Mat color = {};
   /// The ground with the new keyframe taken into account.
   std::optional<KnownGround> ground = {};
+  /// The camera's motion over the ground at the new keyframe.
+  std::optional<GroundMotion> ground_motion = {};
   /// The loop that the keyframe closes.
   std::optional<Loop> loop = {};
 };

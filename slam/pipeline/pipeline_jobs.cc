@@ -71,6 +71,7 @@ void Pipeline::Adopt(MappedKeyframe mapped) {
   atlas_.Return(std::move(mapped.active));
   CountMap();
   Apply(mapped.update);
+  front_end_.SetGroundMotion(mapped.ground_motion);
   if (!mapped.color.empty()) {
     if (dense_->pending()) AdoptDepth();
     dense_->Start(atlas_.map().keyframe(mapped.update.reference), mapped.color,

@@ -21,7 +21,8 @@ struct PoseFit {
 
 PoseFit FitPose(const Features& features, const Rigid3& initial,
                 std::span<const LocalLandmark> landmarks,
-                const std::vector<int>& landmark_of_feature) {
+                const std::vector<int>& landmark_of_feature,
+                const std::optional<PositionPrior>& prior) {
   PoseFit fit;
   std::vector<PoseObservation> observations;
   for (int f = 0; f < features.size(); ++f) {
@@ -32,7 +33,7 @@ PoseFit FitPose(const Features& features, const Rigid3& initial,
     fit.feature.push_back(f);
     fit.landmark.push_back(l);
   }
-  fit.pose = RefinePose(initial, observations);
+  fit.pose = RefinePose(initial, observations, prior);
   size_t kept = 0;
   for (size_t i = 0; i < observations.size(); ++i) {
     if (!fit.pose.inliers[i]) continue;
@@ -48,7 +49,8 @@ PoseFit FitPose(const Features& features, const Rigid3& initial,
 // Refines the pose again with the provisional points of the local map in addition (completed depth
 // of the reference keyframe). `fit` contains the inliers among the landmarks of a list.
 Rigid3 RefineWithProvisional(const Features& features, const PoseFit& fit, const LocalMap& local,
-                             const ProjectionSearchOptions& search) {
+                             const ProjectionSearchOptions& search,
+                             const std::optional<PositionPrior>& prior) {
   const Rigid3& start = fit.pose.world_from_camera;
   if (local.provisional.empty()) return start;
   std::vector<PoseObservation> observations;
@@ -74,7 +76,7 @@ Rigid3 RefineWithProvisional(const Features& features, const PoseFit& fit, const
                                     static_cast<double>(local.provisional[p].bearing_sigma), moved);
     observations.push_back({points[p].position, features.bearings[f], sigma});
   }
-  return RefinePose(start, observations).world_from_camera;
+  return RefinePose(start, observations, prior).world_from_camera;
 }
 
 struct LocalFit {
@@ -86,16 +88,18 @@ struct LocalFit {
 // Tracks the whole local map, starting from a pose that is accurate to a few standard deviations.
 std::optional<LocalFit> TrackLocalMap(const Features& features, const Rigid3& initial,
                                       const LocalMap& local, double pixel_sigma,
-                                      const TrackerOptions& options, int num_threads) {
+                                      const TrackerOptions& options,
+                                      const std::optional<PositionPrior>& prior, int num_threads) {
   const ProjectionSearchOptions search{.radius = options.local_radius_sigmas * pixel_sigma,
                                        .scale_radius = true,
                                        .ratio = 0.8,
                                        .num_threads = num_threads};
   const ProjectionMatches matches =
       SearchByProjection(features, initial, local.landmarks, {}, search);
-  const PoseFit fit = FitPose(features, initial, local.landmarks, matches.landmark_of_feature);
+  const PoseFit fit =
+      FitPose(features, initial, local.landmarks, matches.landmark_of_feature, prior);
   if (fit.pose.num_inliers < options.min_inliers) return std::nullopt;
-  TrackResult result{RefineWithProvisional(features, fit, local, search),
+  TrackResult result{RefineWithProvisional(features, fit, local, search, prior),
                      std::vector<LandmarkId>(features.size(), kNoId),
                      fit.pose.num_inliers,
                      {}};
@@ -111,7 +115,8 @@ std::optional<LocalFit> TrackLocalMap(const Features& features, const Rigid3& in
 // Estimates the pose from the last frame's landmarks, starting from the predicted pose.
 std::optional<Rigid3> FollowPrediction(const Features& features, const Rigid3& predicted,
                                        const TrackedFrame& last, const LocalMap& local,
-                                       const TrackerOptions& options, int num_threads) {
+                                       const TrackerOptions& options,
+                                       const std::optional<PositionPrior>& prior, int num_threads) {
   std::vector<LocalLandmark> recent;
   for (const LandmarkId id : last.landmarks) {
     const LocalLandmark* landmark = id == kNoId ? nullptr : local.Find(id);
@@ -121,7 +126,7 @@ std::optional<Rigid3> FollowPrediction(const Features& features, const Rigid3& p
       SearchByProjection(features, predicted, recent, {},
                          {.radius = options.motion_radius, .num_threads = num_threads});
   if (matches.num_matches < options.min_motion_inliers) return std::nullopt;
-  const PoseFit fit = FitPose(features, predicted, recent, matches.landmark_of_feature);
+  const PoseFit fit = FitPose(features, predicted, recent, matches.landmark_of_feature, prior);
   if (fit.pose.num_inliers < options.min_motion_inliers) return std::nullopt;
   return fit.pose.world_from_camera;
 }
@@ -168,11 +173,12 @@ std::optional<TrackResult> TrackFromPrediction(const Features& features,
                                                const Rigid3& predicted_world_from_camera,
                                                const TrackedFrame& last, const LocalMap& local,
                                                double pixel_sigma, const TrackerOptions& options,
+                                               const std::optional<PositionPrior>& prior,
                                                int num_threads) {
   std::vector<Match> matches;  // with the last frame, found when they are first needed
   const auto find_start = [&](int attempt) {
     if (attempt == 0) {
-      return FollowPrediction(features, predicted_world_from_camera, last, local, options,
+      return FollowPrediction(features, predicted_world_from_camera, last, local, options, prior,
                               num_threads);
     }
     if (attempt == 1) {
@@ -188,7 +194,7 @@ std::optional<TrackResult> TrackFromPrediction(const Features& features,
     const std::optional<Rigid3> start = find_start(attempt);
     if (!start) continue;
     std::optional<LocalFit> fit =
-        TrackLocalMap(features, *start, local, pixel_sigma, options, num_threads);
+        TrackLocalMap(features, *start, local, pixel_sigma, options, prior, num_threads);
     if (!fit) continue;
     const bool convinces = fit->inlier_ratio >= options.min_inlier_ratio;
     if (!best || fit->support > best->support) best = std::move(fit);
@@ -215,7 +221,7 @@ std::optional<TrackResult> TrackWithoutPrediction(const Features& features, cons
   const std::optional<Rigid3> start = EstimatePose(features, landmarks, paired, options);
   if (!start) return std::nullopt;
   std::optional<LocalFit> fit =
-      TrackLocalMap(features, *start, local, pixel_sigma, options, num_threads);
+      TrackLocalMap(features, *start, local, pixel_sigma, options, std::nullopt, num_threads);
   if (!fit) return std::nullopt;
   return std::move(fit->result);
 }

@@ -89,6 +89,34 @@ TEST(PoseRefinement, SurroundingsPrevailOverAnObjectWithMoreCorners) {
   }
 }
 
+TEST(PoseRefinement, PriorDecidesWhereAllLandmarksAreFar) {
+  RandomGeometry random(5);
+  const Rigid3 truth = random.Transform();
+  std::vector<PoseObservation> observations;
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d local = random.Point(500.0, 1000.0);
+    observations.push_back({truth * local, random.Noisy(local.normalized(), 0.002), 0.002});
+  }
+  const PositionPrior prior{.position = truth.translation,
+                            .sqrt_information = 50 * Eigen::Matrix3d::Identity()};  // 2 cm
+  const Rigid3 guess = Disturb(truth, &random);
+  const RefinedPose with = RefinePose(guess, observations, prior);
+  const RefinedPose without = RefinePose(guess, observations);
+  EXPECT_LT((with.world_from_camera.translation - truth.translation).norm(), 0.01);
+  EXPECT_GT((without.world_from_camera.translation - truth.translation).norm(), 0.05);
+  EXPECT_LT(with.world_from_camera.rotation.angularDistance(truth.rotation), 1e-3);
+}
+
+TEST(PoseRefinement, NearLandmarksOverruleAWrongPrior) {
+  RandomGeometry random(6);
+  const Rigid3 truth = random.Transform();
+  const PositionPrior prior{.position = truth.translation + Eigen::Vector3d(0.5, 0, 0),
+                            .sqrt_information = 50 * Eigen::Matrix3d::Identity()};
+  const RefinedPose found =
+      RefinePose(Disturb(truth, &random), Observe(truth, 400, 0.002, 0.0, &random), prior);
+  EXPECT_LT((found.world_from_camera.translation - truth.translation).norm(), 0.02);
+}
+
 TEST(PoseRefinement, KeepsTheGuessWhereNothingFits) {
   const Rigid3 guess{ExpSo3({0.1, 0.2, 0.3}), {1, 2, 3}};
   const RefinedPose found = RefinePose(guess, {});
