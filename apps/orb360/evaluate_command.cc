@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -6,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -16,11 +18,13 @@
 #include "slam/evaluation/depth_folder.h"
 #include "slam/evaluation/local_scale.h"
 #include "slam/evaluation/revisit.h"
+#include "slam/evaluation/scale_calibration.h"
 #include "slam/evaluation/trajectory_error.h"
 #include "slam/evaluation/trajectory_plot.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/dataset.h"
 #include "slam/io/ply.h"
+#include "slam/io/scale_file.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/slam/io/trajectory.h>
 
@@ -80,6 +84,30 @@ std::vector<double> MapChanges(const std::filesystem::path& estimate) {
   return times;
 }
 
+/// Compares the scale that the run states, of the whole and along the path, with the true one.
+void AddStatedScale(const std::filesystem::path& estimate,
+                    const std::optional<LocalScale>& local_scale, nlohmann::json* report) {
+  const nlohmann::json summary = RunSummary(estimate);
+  if (!summary.is_object() || !summary.contains("scale")) return;
+  const nlohmann::json& scale = summary["scale"];
+  if (!scale.is_object() || !scale.contains("state")) return;  // of an earlier version
+  nlohmann::json stated = {{"state", scale["state"]}, {"value", nullptr}, {"sigma", nullptr}};
+  const double value = scale["value"].is_number() ? scale["value"].get<double>() : 0;
+  const double sigma = scale["sigma"].is_number() ? scale["sigma"].get<double>() : 0;
+  if (value > 0 && sigma > 0) {
+    stated["value"] = value;
+    stated["sigma"] = sigma;
+    stated["error_sigmas"] = std::log((*report)["scale_factor"].get<double>() / value) / sigma;
+  }
+  const std::filesystem::path along_path = estimate / "scale.txt";
+  if (local_scale && std::filesystem::exists(along_path)) {
+    if (const auto calibration = CalibrateScale(*local_scale, ReadScales(along_path))) {
+      stated["local"] = ToJson(*calibration);
+    }
+  }
+  (*report)["stated_scale"] = std::move(stated);
+}
+
 /// Compares the loops that the run has closed, according to its summary, with the true ones.
 void AddLoopErrors(const EvaluateOptions& options, const std::vector<StampedPose>& truth,
                    nlohmann::json* report) {
@@ -137,6 +165,7 @@ int Evaluate(const EvaluateOptions& options) {
   report["local_scale"] = ToJson(local_scale);
   AddRunFigures(options.estimate,
                 static_cast<double>(pairs.size()) / static_cast<double>(truth.size()), &report);
+  AddStatedScale(options.estimate, local_scale, &report);
   AddLoopErrors(options, truth, &report);
   AddDepthErrors(options.groundtruth, options.estimate, &report);
   AddCloudErrors(options, truth, pairs, &report);

@@ -65,6 +65,17 @@ constexpr Row kCloudRows[] = {
     {"completeness_25cm", "  25 cm", "%", 1, 100.0},
 };
 
+constexpr Row kStatedScaleRows[] = {
+    {"value", "stated scale", "", 4},
+    {"sigma", "  its standard deviation", "%", 2, 100.0},
+    {"error_sigmas", "  its error, standard deviations", "", 2},
+};
+constexpr Row kCalibrationRows[] = {
+    {"normalized_squared_error", "  along the path: normalized squared error", "", 2},
+    {"within_1_sigma", "    within one standard deviation", "%", 1, 100.0},
+    {"within_2_sigma", "    within two", "%", 1, 100.0},
+};
+
 /// A column of the table of depth errors.
 constexpr Row kDepthColumns[] = {{"rmse", "RMSE", "m", 3},
                                  {"mae", "MAE", "m", 3},
@@ -193,6 +204,14 @@ nlohmann::json ToJson(const std::optional<LocalScale>& scale) {
           {"worst_deviation_100m", or_null(scale->worst_deviation)}};
 }
 
+nlohmann::json ToJson(const ScaleCalibration& calibration) {
+  return {{"windows", calibration.windows},
+          {"normalized_squared_error", calibration.normalized_squared_error},
+          {"within_1_sigma", calibration.within_1_sigma},
+          {"within_2_sigma", calibration.within_2_sigma},
+          {"largest_error_sigmas", calibration.largest}};
+}
+
 nlohmann::json ToJson(const LoopErrors& errors) {
   return {{"revisits", errors.revisits}, {"closed", errors.closed}, {"wrong", errors.wrong}};
 }
@@ -203,6 +222,12 @@ void PrintReport(const nlohmann::json& report, std::ostream& out) {
   if (const nlohmann::json scale = report.value("local_scale", nlohmann::json());
       !scale.is_null()) {
     PrintRows(kLocalScaleRows, scale, out);
+  }
+  if (report.contains("stated_scale")) {
+    PrintRows(kStatedScaleRows, report["stated_scale"], out);
+    if (report["stated_scale"].contains("local")) {
+      PrintRows(kCalibrationRows, report["stated_scale"]["local"], out);
+    }
   }
   if (report.contains("loops")) PrintRows(kLoopRows, report["loops"], out);
   if (report.contains("cloud")) PrintRows(kCloudRows, report["cloud"], out);

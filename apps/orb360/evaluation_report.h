@@ -9,6 +9,7 @@
 #include "slam/evaluation/depth_folder.h"
 #include "slam/evaluation/local_scale.h"
 #include "slam/evaluation/revisit.h"
+#include "slam/evaluation/scale_calibration.h"
 #include "slam/evaluation/trajectory_error.h"
 
 namespace orb360 {
@@ -27,6 +28,9 @@ nlohmann::json ToJson(const CloudErrors& errors);
 /// Returns the part under the key "local_scale". Values that the path is too short for are null,
 /// and so is the whole where there is no window.
 nlohmann::json ToJson(const std::optional<LocalScale>& scale);
+
+/// Returns the part under the key "local" of "stated_scale".
+nlohmann::json ToJson(const ScaleCalibration& calibration);
 
 /// Returns the part under the key "loops".
 nlohmann::json ToJson(const LoopErrors& errors);

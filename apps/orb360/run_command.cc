@@ -219,9 +219,9 @@ int Run(const RunOptions& options) {
   record.seconds = SecondsSince(start);
   const std::optional<DenseOutput> dense =
       FuseDepth(reconstruction, system, options, threads, output, &record);
-  const nlohmann::json summary = Summarize(reconstruction, record, dense,
-                                           {options.input, options.mask, masked_fraction,
-                                            options.weights, system_options.scale, threads});
+  const nlohmann::json summary =
+      Summarize(reconstruction, record, dense,
+                {options.input, options.mask, masked_fraction, options.weights, threads});
   const Rigid3 file_world_from_map = output.Finish(reconstruction, summary, dense);
   if (!options.map_out.empty()) {
     WriteLargestMap(options.map_out, size.width, file_world_from_map, system);

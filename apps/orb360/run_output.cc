@@ -8,6 +8,7 @@
 #include "slam/evaluation/map_plot.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/ply.h"
+#include "slam/io/scale_file.h"
 
 namespace orb360 {
 namespace {
@@ -55,6 +56,16 @@ std::string DrawMap(const Reconstruction& reconstruction, const Rigid3& file_wor
   return PlotMap(keyframes, links, landmarks);
 }
 
+/// The scale at the keyframes at which something tells it, in the order of time.
+std::vector<StampedScale> KnownScales(const Reconstruction& reconstruction) {
+  std::vector<StampedScale> scales;
+  for (const KeyframeScale& scale : reconstruction.keyframe_scales) {
+    if (scale.value > 0) scales.push_back({scale.timestamp, scale.value, scale.sigma});
+  }
+  std::ranges::sort(scales, {}, &StampedScale::timestamp);
+  return scales;
+}
+
 }  // namespace
 
 RunOutput::RunOutput(const std::filesystem::path& folder)
@@ -97,6 +108,7 @@ Rigid3 RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::j
                   file_world_from_map);
   WriteTrajectory(folder_ / "keyframes.txt", ToStamped(reconstruction.keyframes),
                   file_world_from_map);
+  WriteScales(folder_ / "scale.txt", KnownScales(reconstruction));
   WritePly(folder_ / (dense ? "landmarks.ply" : "cloud.ply"), cloud, file_world_from_map);
   std::string map_svg;
   if (!reconstruction.keyframes.empty()) {

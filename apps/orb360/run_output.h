@@ -36,9 +36,9 @@ class RunOutput {
   DenseOutput WriteDense(const Reconstruction& reconstruction, const DepthMapStore& store,
                          bool saves_depth, int num_threads) const;
 
-  /// Writes trajectory.txt, keyframes.txt, the landmarks as cloud.ply (as landmarks.ply where there
-  /// is a dense cloud), map.svg (where there is a keyframe), summary.json and the report
-  /// (WriteRunReport), then removes the journal. Returns file_world_from_map.
+  /// Writes trajectory.txt, keyframes.txt, scale.txt, the landmarks as cloud.ply (as landmarks.ply
+  /// where there is a dense cloud), map.svg (where there is a keyframe), summary.json and the
+  /// report (WriteRunReport), then removes the journal. Returns file_world_from_map.
   Rigid3 Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,
                 const std::optional<DenseOutput>& dense);
 

@@ -43,21 +43,22 @@ double PathLength(const std::vector<FramePose>& frames) {
   return length;
 }
 
-bool IsMetric(const nlohmann::json& summary) {
-  return summary.contains("scale") && summary["scale"].value("source", "none") != "none";
+/// Whether lengths are stated in metres.
+bool HasMetres(const nlohmann::json& summary) {
+  return summary.contains("scale") && summary["scale"].value("state", "unknown") != "unknown";
 }
 
 std::vector<HtmlReport::Tile> MakeTiles(const Reconstruction& reconstruction,
                                         const nlohmann::json& summary) {
   const double frames = std::max(summary.value("frames", 0.0), 1.0);
   const std::string frames_text = Grouped(summary.value("frames", 0.0));
-  const bool is_metric = IsMetric(summary);
+  const bool has_metres = HasMetres(summary);
   std::vector<HtmlReport::Tile> tiles = {
       {WithUnit(100.0 * summary.value("tracked", 0.0) / frames, 1, "%"),
        "of the " + frames_text + " frames tracked"},
       {Grouped(summary.value("lost", 0.0)), "times lost"},
-      {Decimal(PathLength(reconstruction.frames), 1) + (is_metric ? " m" : ""),
-       is_metric ? "path" : "path, in units of the map"},
+      {Decimal(PathLength(reconstruction.frames), 1) + (has_metres ? " m" : ""),
+       has_metres ? "path" : "path, in units of the map"},
       {Grouped(summary.value("keyframes", 0.0)), "keyframes"},
       {Grouped(summary.value("landmarks", 0.0)), "landmarks"},
       {Decimal(summary.value("features_per_keyframe", 0.0), 0), "features matched in a keyframe"},
@@ -67,9 +68,13 @@ std::vector<HtmlReport::Tile> MakeTiles(const Reconstruction& reconstruction,
   if (summary.contains("cloud")) {
     tiles.push_back({Grouped(summary["cloud"].value("points", 0.0)), "points in the cloud"});
   }
-  if (is_metric) {
-    tiles.push_back({WithUnit(summary["scale"].value("value", 0.0), 2, "m"),
-                     summary["scale"].value("source", "")});
+  if (has_metres) {
+    const nlohmann::json& scale = summary["scale"];
+    const bool is_assumed = scale.value("assumed_height", true);
+    tiles.push_back(
+        {WithUnit(100.0 * scale.value("sigma", 0.0), 1, "%"), "standard deviation of the metres"});
+    tiles.push_back({WithUnit(scale.value("camera_height", 0.0), 2, "m"),
+                     is_assumed ? "assumed camera height" : "camera height"});
   }
   return tiles;
 }
@@ -140,6 +145,7 @@ void WriteRunReport(const std::filesystem::path& run_folder, const Reconstructio
   report.table = {
       {"trajectory.txt", "pose of every tracked frame, TUM format, world from camera"},
       {"keyframes.txt", "the same of the keyframes"},
+      {"scale.txt", "scale along the path, with its standard deviation"},
       {"cloud.ply", "points with colour, for any viewer of point clouds"},
       {"map.svg", "the map above, as a file"},
       {"summary.json", "all figures"},

@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <iostream>
+#include <sstream>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <sys/resource.h>
@@ -19,14 +23,19 @@ double PeakMemoryMb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;  // KiB on Linux
 }
 
-/// Describes the source of the metric scale. Of several maps the first one counts, because the
-/// others continue its scale.
-nlohmann::json DescribeScale(const Reconstruction& reconstruction, const ScaleOptions& options) {
-  const bool is_metric = !reconstruction.maps.empty() && reconstruction.maps.front().is_metric;
-  if (!is_metric) return {{"source", "none"}, {"value", nullptr}};
-  return {{"source", options.camera_height > 0 ? "camera height" : "assumed camera height"},
-          {"value", options.height()},
-          {"rough", reconstruction.maps.front().is_rough}};
+nlohmann::json DescribeScale(const MetricScale& scale) {
+  nlohmann::json described = {{"state", ToString(scale.state)},
+                              {"value", nullptr},
+                              {"sigma", nullptr},
+                              {"camera_height", nullptr},
+                              {"assumed_height", scale.is_height_assumed},
+                              {"sources", scale.sources}};
+  if (scale.value > 0) {
+    described["value"] = scale.value;
+    described["sigma"] = scale.sigma;
+  }
+  if (scale.camera_height > 0) described["camera_height"] = scale.camera_height;
+  return described;
 }
 
 /// Returns pairs of the frame that came back and the frame of the place.
@@ -85,7 +94,7 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
       {"landmarks", reconstruction.landmarks.size()},
       {"features_per_keyframe", reconstruction.features_per_keyframe},
       {"landmarks_per_keyframe", reconstruction.landmarks_per_keyframe},
-      {"scale", DescribeScale(reconstruction, description.scale)},
+      {"scale", DescribeScale(reconstruction.scale)},
       {"timing_ms", record.times.Summary()},
       {"seconds", record.seconds},
       {"finishing_seconds", record.finishing_seconds},
@@ -109,15 +118,39 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
   return summary;
 }
 
+/// Says in one line how far the metres can be relied on, and what would help.
+std::string StateScale(const nlohmann::json& scale) {
+  std::ostringstream text;
+  text << std::fixed << "scale " << scale["state"].get<std::string>();
+  if (scale["sources"].empty()) {
+    text << ": no ground was seen below the camera; lengths have an arbitrary unit";
+    return text.str();
+  }
+  if (scale["sigma"].is_number()) {
+    text << std::setprecision(1) << ": standard deviation " << 100 * scale["sigma"].get<double>()
+         << " %";
+  }
+  std::string separator = ", from ";
+  for (const nlohmann::json& source : scale["sources"]) {
+    text << std::exchange(separator, " and ") << source.get<std::string>();
+  }
+  const bool is_assumed = scale["assumed_height"];
+  text << std::setprecision(2)
+       << (is_assumed ? "; an assumed camera height of " : ", camera height ")
+       << scale["camera_height"].get<double>() << " m";
+  if (is_assumed) text << " (give the true one with --camera-height)";
+  return text.str();
+}
+
 void PrintResult(const nlohmann::json& summary, const std::filesystem::path& folder) {
-  std::cout
-      << summary["tracked"] << " of " << summary["frames"] << " frames tracked in "
-      << summary["maps"] << (summary["maps"] == 1 ? " map, " : " maps, ") << summary["keyframes"]
-      << " keyframes, " << summary["landmarks"] << " landmarks, "
-      << std::lround(summary["frames_per_second"].get<double>())
-      << " frames a second\nwrote trajectory.txt, keyframes.txt, cloud.ply, map.svg, summary.json "
-         "and report/report.html to "
-      << folder.string() << std::endl;
+  std::cout << summary["tracked"] << " of " << summary["frames"] << " frames tracked in "
+            << summary["maps"] << (summary["maps"] == 1 ? " map, " : " maps, ")
+            << summary["keyframes"] << " keyframes, " << summary["landmarks"] << " landmarks, "
+            << std::lround(summary["frames_per_second"].get<double>()) << " frames a second\n"
+            << StateScale(summary["scale"])
+            << "\nwrote trajectory.txt, keyframes.txt, scale.txt, cloud.ply, map.svg, summary.json "
+               "and report/report.html to "
+            << folder.string() << std::endl;
 }
 
 }  // namespace orb360

@@ -37,7 +37,6 @@ struct RunDescription {
   std::string mask;
   double masked_fraction = 0;  ///< Fraction of the sphere's solid angle.
   std::string weights;
-  ScaleOptions scale;
   int threads = 0;
 };
 

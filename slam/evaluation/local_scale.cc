@@ -28,6 +28,7 @@ struct Node {
 struct Vertex {
   double travelled;  // true path from the first true pose, metres
   double estimated;  // estimated path from the start of the piece, in units of the estimate
+  double timestamp;  // seconds
 };
 
 /// A part of the estimate without gaps.
@@ -96,53 +97,64 @@ std::vector<Piece> MakePieces(const std::vector<Node>& nodes) {
     if (chord < LocalScale::kSpacing && !node.is_first && !node.is_last) continue;
     travelled += chord;
     if (node.is_first) {
-      pieces.push_back({{travelled, 0.0}});
+      pieces.push_back({{travelled, 0.0, node.pair->timestamp}});
     } else if (node.pair != nullptr) {
       const double estimated = (node.pair->estimate_from_camera.translation -
                                 last->pair->estimate_from_camera.translation)
                                    .norm();
-      pieces.back().push_back({travelled, pieces.back().back().estimated + estimated});
+      pieces.back().push_back(
+          {travelled, pieces.back().back().estimated + estimated, node.pair->timestamp});
     }
     last = &node;
   }
   return pieces;
 }
 
-/// Returns the estimated length up to a place of a piece of two vertices or more.
-double EstimatedAt(const Piece& piece, double travelled) {
+/// Returns the place at a length of the true path, interpolated in a piece of two vertices or more.
+Vertex VertexAt(const Piece& piece, double travelled) {
   const auto end =
       std::upper_bound(piece.begin() + 1, piece.end() - 1, travelled,
                        [](double value, const Vertex& vertex) { return value < vertex.travelled; });
   const Vertex& a = *(end - 1);
   const double chord = end->travelled - a.travelled;
-  const double fraction = chord > 0.0 ? (travelled - a.travelled) / chord : 0.0;
-  return a.estimated + std::clamp(fraction, 0.0, 1.0) * (end->estimated - a.estimated);
+  const double fraction =
+      std::clamp(chord > 0.0 ? (travelled - a.travelled) / chord : 0.0, 0.0, 1.0);
+  return {travelled, a.estimated + fraction * (end->estimated - a.estimated),
+          a.timestamp + fraction * (end->timestamp - a.timestamp)};
 }
 
-/// Returns the ratios of windows of `length` metres that do not reach beyond a piece, by the number
-/// of steps to their start.
-std::map<int64_t, double> MeasureWindows(const std::vector<Piece>& pieces, double length) {
-  std::map<int64_t, double> ratios;
+using Windows = std::map<int64_t, LocalScale::Window>;
+
+/// Returns the windows of `length` metres that do not reach beyond a piece, by the number of steps
+/// to their start.
+Windows MeasureWindows(const std::vector<Piece>& pieces, double length) {
+  Windows windows;
   for (const Piece& piece : pieces) {
     if (piece.size() < 2) continue;
     const double first = (piece.front().travelled - kRounding) / LocalScale::kStep;
     for (int64_t i = static_cast<int64_t>(std::ceil(first));; ++i) {
       const double begin = LocalScale::kStep * static_cast<double>(i);
       if (begin + length > piece.back().travelled + kRounding) break;
-      const double estimated = EstimatedAt(piece, begin + length) - EstimatedAt(piece, begin);
-      ratios[i] = length / std::max(estimated, kLeastMotion * length);
+      const Vertex from = VertexAt(piece, begin);
+      const Vertex to = VertexAt(piece, begin + length);
+      const double estimated = to.estimated - from.estimated;
+      windows[i] = {.begin = begin,
+                    .ratio = length / std::max(estimated, kLeastMotion * length),
+                    .begin_time = from.timestamp,
+                    .end_time = to.timestamp};
     }
   }
-  return ratios;
+  return windows;
 }
 
 /// Returns |difference of ln(ratio)| of all windows that are kDriftLength apart.
-std::vector<double> Drifts(const std::map<int64_t, double>& ratios) {
+std::vector<double> Drifts(const Windows& windows) {
   const int64_t apart = std::llround(LocalScale::kDriftLength / LocalScale::kStep);
   std::vector<double> drifts;
-  for (const auto& [step, ratio] : ratios) {
-    const auto other = ratios.find(step + apart);
-    if (other != ratios.end()) drifts.push_back(std::abs(std::log(other->second / ratio)));
+  for (const auto& [step, window] : windows) {
+    const auto other = windows.find(step + apart);
+    if (other == windows.end()) continue;
+    drifts.push_back(std::abs(std::log(other->second.ratio / window.ratio)));
   }
   return drifts;
 }
@@ -156,23 +168,22 @@ std::optional<LocalScale> MeasureLocalScale(std::span<const StampedPose> truth,
   const OrderedTruth ordered = OrderTruth(truth, pairs);
   const std::vector<Piece> pieces =
       MakePieces(MakeNodes(ordered, pairs, FindGaps(ordered, pairs, map_changes)));
-  const std::map<int64_t, double> ratios = MeasureWindows(pieces, LocalScale::kWindow);
-  if (ratios.empty()) return std::nullopt;
+  const Windows windows = MeasureWindows(pieces, LocalScale::kWindow);
+  if (windows.empty()) return std::nullopt;
 
   LocalScale scale;
-  for (const auto& [step, ratio] : ratios) {
-    scale.windows.push_back({LocalScale::kStep * static_cast<double>(step), ratio});
-  }
+  for (const auto& [step, window] : windows) scale.windows.push_back(window);
   const auto [min, max] = std::ranges::minmax(scale.windows, {}, &LocalScale::Window::ratio);
   scale.min = min.ratio;
   scale.max = max.ratio;
-  std::vector<double> drifts = Drifts(ratios);
+  std::vector<double> drifts = Drifts(windows);
   if (!drifts.empty()) {
     scale.drift_median = Median(drifts);
     scale.drift_worst = std::ranges::max(drifts);
   }
-  for (const auto& [step, ratio] : MeasureWindows(pieces, LocalScale::kDriftLength)) {
-    scale.worst_deviation = std::max(scale.worst_deviation.value_or(0.0), std::abs(ratio - 1.0));
+  for (const auto& [step, window] : MeasureWindows(pieces, LocalScale::kDriftLength)) {
+    scale.worst_deviation =
+        std::max(scale.worst_deviation.value_or(0.0), std::abs(window.ratio - 1.0));
   }
   return scale;
 }

@@ -43,6 +43,8 @@ struct LocalScale {
     /// True over estimated length. An estimate that does not move counts as 1e-6 of the true
     /// length, so that the ratio is finite.
     double ratio = 1.0;
+    double begin_time = 0.0;  ///< When the true path is at the start of the window, seconds.
+    double end_time = 0.0;    ///< The same for its end.
   };
   std::vector<Window> windows;  ///< Ordered by `begin`; never empty.
   double min = 1.0;             ///< Smallest ratio.

@@ -61,8 +61,8 @@ std::string DrawLocalScale(const LocalScale& scale, const Eigen::Vector2d& origi
                   "stroke=\"#000\" stroke-dasharray=\"6 4\"");
   std::vector<Eigen::Vector2d> line;
   for (size_t i = 0; i < scale.windows.size(); ++i) {
-    const auto [begin, ratio] = scale.windows[i];
-    line.emplace_back(begin + 0.5 * LocalScale::kWindow, std::log(ratio));
+    const double begin = scale.windows[i].begin;
+    line.emplace_back(begin + 0.5 * LocalScale::kWindow, std::log(scale.windows[i].ratio));
     const bool ends = i + 1 == scale.windows.size() ||
                       scale.windows[i + 1].begin > begin + 1.5 * LocalScale::kStep;
     if (!ends) continue;

@@ -83,12 +83,12 @@ std::optional<KnownGround> EstimateGround(const Map& map, std::span<const Keyfra
   return AgreeOnGround(sightings, kMinAgreement * static_cast<double>(keyframes.size()));
 }
 
-std::optional<Eigen::Vector3d> GroundNormal(const Map& map, KeyframeId keyframe,
-                                            const Eigen::Vector3d& up) {
+std::optional<GroundSighting> GroundAt(const Map& map, KeyframeId keyframe,
+                                       const Eigen::Vector3d& up) {
   const std::optional<GroundPlane> plane =
       FitGroundPlane(PointsAround(map, map.keyframe(keyframe)), up, {});
   if (!plane) return std::nullopt;
-  return plane->normal;
+  return GroundSighting{plane->normal, plane->height};
 }
 
 void RemoveBelowGround(KeyframeId id, const KnownGround& ground, Map* map) {

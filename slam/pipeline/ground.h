@@ -27,10 +27,10 @@ std::optional<KnownGround> AgreeOnGround(std::span<const GroundSighting> sightin
 /// most keyframes show no ground, or ground at another height.
 std::optional<KnownGround> EstimateGround(const Map& map, std::span<const KeyframeId> keyframes);
 
-/// Returns the normal of the ground around a keyframe, unit, world frame, within 15 degrees of
-/// `up`. Empty where no such ground is found.
-std::optional<Eigen::Vector3d> GroundNormal(const Map& map, KeyframeId keyframe,
-                                            const Eigen::Vector3d& up);
+/// Returns what the landmarks around a keyframe show of the ground, with its normal within 15
+/// degrees of `up`. Empty where no such ground is found.
+std::optional<GroundSighting> GroundAt(const Map& map, KeyframeId keyframe,
+                                       const Eigen::Vector3d& up);
 
 /// Removes the landmarks of a keyframe that lie far below the ground. There is nothing to see: they
 /// are corners of something that moves with the camera, such as a car on the next lane, which has

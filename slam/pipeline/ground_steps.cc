@@ -27,6 +27,11 @@ constexpr double kMaxSpeedChange = 1.6;
 constexpr double kMaxGap = 5.0;
 // Least fraction of the keyframes that must agree on the height of the camera.
 constexpr double kMinAgreement = 0.8;
+// Largest |ln| of the ratio of two heights that are the same.
+constexpr double kMaxHeightError = 0.15;
+// The direction of motion may be wrong by this much of the step, heights of the camera, as long as
+// nothing has told about the ground: few near landmarks have been seen by then.
+constexpr double kWideAside = 0.96;
 
 // The speed over the ground, heights of the camera per second, that the newest step up to a
 // keyframe showed, if that is not long ago.
@@ -52,6 +57,7 @@ std::optional<GroundSweepOptions> RangeOfSweep(const Map& map, const Keyframe& e
                                                const Keyframe& later,
                                                const std::optional<KnownGround>& ground) {
   GroundSweepOptions options;
+  if (!ground) options.max_aside = kWideAside;
   double expected = 0;  // ratio
   if (const std::optional<double> speed = RecentSpeed(map, earlier)) {
     expected = *speed * (later.timestamp - earlier.timestamp);
@@ -106,6 +112,20 @@ void RemoveWrongObservations(KeyframeId id, Map* map) {
   }
 }
 
+// The ground as the newest step to each of the keyframes shows it.
+std::vector<GroundSighting> SightingsOf(const Map& map, std::span<const KeyframeId> keyframes) {
+  std::vector<GroundSighting> sightings;
+  for (const KeyframeId id : keyframes) {
+    const Keyframe& keyframe = map.keyframe(id);
+    if (keyframe.ground_steps.empty()) continue;
+    const GroundStepFrom& step = keyframe.ground_steps.front();
+    const Rigid3& pose = keyframe.world_from_camera;
+    const double length = (pose.translation - map.PoseOf(step.keyframe).translation).norm();
+    sightings.push_back({pose.rotation * step.up, length / step.ratio});
+  }
+  return sightings;
+}
+
 }  // namespace
 
 void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
@@ -153,16 +173,15 @@ void CorrectStep(KeyframeId id, const KnownGround& ground, Map* map) {
 }
 
 std::optional<KnownGround> GroundFromSteps(const Map& map, std::span<const KeyframeId> keyframes) {
-  std::vector<GroundSighting> sightings;
-  for (const KeyframeId id : keyframes) {
-    const Keyframe& keyframe = map.keyframe(id);
-    if (keyframe.ground_steps.empty()) continue;
-    const GroundStepFrom& step = keyframe.ground_steps.front();
-    const Rigid3& pose = keyframe.world_from_camera;
-    const double length = (pose.translation - map.PoseOf(step.keyframe).translation).norm();
-    sightings.push_back({pose.rotation * step.up, length / step.ratio});
-  }
-  return AgreeOnGround(sightings, kMinAgreement * static_cast<double>(keyframes.size()));
+  return AgreeOnGround(SightingsOf(map, keyframes),
+                       kMinAgreement * static_cast<double>(keyframes.size()));
+}
+
+bool AgreesWithSteps(const KnownGround& ground, const Map& map,
+                     std::span<const KeyframeId> keyframes) {
+  return std::ranges::all_of(SightingsOf(map, keyframes), [&](const GroundSighting& sighting) {
+    return std::abs(std::log(sighting.height / ground.camera_height)) < kMaxHeightError;
+  });
 }
 
 std::optional<Eigen::Vector3d> GroundNormalFromSteps(const Keyframe& keyframe) {

@@ -24,6 +24,11 @@ void CorrectStep(KeyframeId id, const KnownGround& ground, Map* map);
 /// fewer than four fifths of the keyframes have steps that agree on the height of the camera.
 std::optional<KnownGround> GroundFromSteps(const Map& map, std::span<const KeyframeId> keyframes);
 
+/// Whether no step of the keyframes contradicts the height of a ground that something else shows. A
+/// plane of landmarks may be anything.
+bool AgreesWithSteps(const KnownGround& ground, const Map& map,
+                     std::span<const KeyframeId> keyframes);
+
 /// The normal of the ground that the steps of a keyframe show, unit, world frame.
 std::optional<Eigen::Vector3d> GroundNormalFromSteps(const Keyframe& keyframe);
 

@@ -19,12 +19,15 @@ std::optional<KnownGround> LookForGround(const Map& map, const std::optional<Kno
     if (keyframes.size() < kEnough) return std::nullopt;
     const std::span newest = std::span(keyframes).last(kEnough);
     if (std::optional<KnownGround> ground = GroundFromSteps(map, newest)) return ground;
-    return EstimateGround(map, newest);
+    const std::optional<KnownGround> ground = EstimateGround(map, newest);
+    return ground && AgreesWithSteps(*ground, map, newest) ? ground : std::nullopt;
   }
   // Weight of a new normal. It is small, because the slope of a road changes slowly.
   constexpr double kWeight = 0.2;
   std::optional<Eigen::Vector3d> normal = GroundNormalFromSteps(map.keyframe(keyframes.back()));
-  if (!normal) normal = GroundNormal(map, keyframes.back(), known->up);
+  if (!normal) {
+    if (const auto seen = GroundAt(map, keyframes.back(), known->up)) normal = seen->up;
+  }
   if (!normal) return known;
   return KnownGround{.up = ((1 - kWeight) * known->up + kWeight * *normal).normalized(),
                      .camera_height = known->camera_height};

@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "slam/pipeline/make_reconstruction.h"
+#include "slam/pipeline/scale_state.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
@@ -180,8 +181,10 @@ Reconstruction Pipeline::Finish() {
   const std::span<const std::optional<KnownGround>> grounds = atlas_.grounds();
   for (size_t i = 0; i < result.maps.size(); ++i) {
     result.maps[i].is_metric = grounds[i].has_value();
-    result.maps[i].is_rough = grounds[i] && grounds[i]->is_rough;
   }
+  EstimatedScale scale = EstimateScale(atlas_.maps(), grounds, options_.scale);
+  result.scale = std::move(scale.whole);
+  result.keyframe_scales = std::move(scale.keyframes);
   // The ground of another place is better than none.
   if (!result.up && !grounds.empty() && grounds.front()) result.up = grounds.front()->up;
   if (dense_) {

@@ -25,8 +25,6 @@ constexpr int kTilesAlong = kAlong / kTile;
 constexpr int kTilesAcross = kAcross / kTile;
 // The first sweep joins this many cells in each direction.
 constexpr int kCoarse = 2;
-// Largest shift across the direction of motion, cells: an error of the direction.
-constexpr int kMaxAside = 12;
 // Cells around the result of the first sweep in which the second one searches, and around that in
 // which the shift of a tile may lie.
 constexpr int kFineReach = 3;
@@ -47,6 +45,11 @@ constexpr double kCorrelatedTiles = 2.0;
 // Angle between the assumed normal of the ground across the motion and the one that the tiles show
 // up to which the error of the height, 1 - cos, does not matter, rad.
 constexpr double kMaxTilt = 0.035;
+
+/// Largest shift across the direction of motion, cells.
+int Aside(const GroundSweepOptions& options) {
+  return static_cast<int>(options.max_aside / kCell + 0.5);
+}
 
 /// Mean product of a square of both views.
 template <int kSide>
@@ -107,7 +110,7 @@ struct CoarseShift {
 std::optional<CoarseShift> SweepCoarsely(const BirdsEyeView& view1, const BirdsEyeView& view2,
                                          const GroundSweepOptions& options) {
   constexpr int kSide = kTile / kCoarse;
-  constexpr int kAside = kMaxAside / kCoarse;
+  const int aside = Aside(options) / kCoarse;
   const int first = std::max(1, static_cast<int>(options.min_ratio / (kCoarse * kCell)));
   const int last = static_cast<int>(options.max_ratio / (kCoarse * kCell));
   std::vector<Shift> best;    // by shift along the motion, from `first`
@@ -115,7 +118,7 @@ std::optional<CoarseShift> SweepCoarsely(const BirdsEyeView& view1, const BirdsE
   for (int along = first; along <= last; ++along) {
     best.push_back({along, 0});
     values.push_back(-1);
-    for (int across = -kAside; across <= kAside; ++across) {
+    for (int across = -aside; across <= aside; ++across) {
       const float value = MeanCorrelation<kSide>(view1, view2, {along, across});
       if (value <= values.back()) continue;
       values.back() = value;
@@ -124,7 +127,7 @@ std::optional<CoarseShift> SweepCoarsely(const BirdsEyeView& view1, const BirdsE
   }
   const auto size = static_cast<int>(values.size());
   const auto top = static_cast<int>(std::ranges::max_element(values) - values.begin());
-  if (top == 0 || top + 1 == size || std::abs(best[top].across) == kAside) return std::nullopt;
+  if (top == 0 || top + 1 == size || std::abs(best[top].across) == aside) return std::nullopt;
   CoarseShift result{best[top], values[top], 0};
   for (int i = 1; i + 1 < size; ++i) {
     if (i == top || values[i] < values[i - 1] || values[i] < values[i + 1]) continue;
@@ -259,7 +262,7 @@ std::optional<GroundStep> Sweep(const SpherePyramid& image1, const SpherePyramid
   // The cells lie ahead of the first camera and behind the second one. All numbers are even.
   const int near = kAlong / 2 + kMargin;
   const int far = near + farthest / 4 * 2 + 2;
-  const int half_width = (kAcross + kMaxAside) / 4 * 2 + 2 + kMargin;
+  const int half_width = (kAcross + Aside(options)) / 4 * 2 + 2 + kMargin;
   BirdsEyeView view1 = LookDown(image1, axes, mask, kCell, -near, far, half_width);
   BirdsEyeView view2 =
       LookDown(image2, camera2_from_camera1 * axes, mask, kCell, -far, near, half_width);

@@ -55,7 +55,7 @@ class Scripts(unittest.TestCase):
         self.assertEqual([(r["sequence"], r["variant"], r["tracked"]) for r in results],
                          [(town.name, "tri", 60), (town.name, "dc", 60)])
         for result in results:
-            self.assertEqual(result["scale"]["source"], "camera height")
+            self.assertFalse(result["scale"]["assumed_height"])
             self.assertGreater(result["frame_ms_p95"], 0.0)
             local = result["local_scale"]  # 60 frames are about 30 m.
             self.assertGreater(local["windows"], 0)

@@ -112,7 +112,7 @@ TEST(LocalScale, AnExponentialDriftIsItsRate) {
   const double first = 20.0 * kRate / (1.0 - std::exp(-20.0 * kRate));
   EXPECT_NEAR(scale->min, first, 1e-9);
   EXPECT_NEAR(scale->max, first * std::exp(980.0 * kRate), 1e-9);
-  for (const auto& [begin, ratio] : scale->windows) {
+  for (const auto& [begin, ratio, begin_time, end_time] : scale->windows) {
     EXPECT_NEAR(std::log(ratio / first), kRate * begin, 1e-6);  // of interpolation
   }
   // The scale of 100 m is worst in the last ones.
@@ -127,7 +127,7 @@ TEST(LocalScale, AJumpIsFoundAtItsPlaceAndOnlyThere) {
       Line(1001, [](int i) { return i <= 400 ? i : 400.0 + (i - 400) / 1.5; });
   const auto scale = Measure(Line(1001, 1.0), estimate);
   ASSERT_TRUE(scale);
-  for (const auto& [begin, ratio] : scale->windows) {
+  for (const auto& [begin, ratio, begin_time, end_time] : scale->windows) {
     if (begin <= 380.0) {
       EXPECT_NEAR(ratio, 1.0, 1e-9) << begin;
     } else if (begin >= 400.0) {
@@ -150,7 +150,7 @@ TEST(LocalScale, NoiseOfEachFrameDoesNotLengthenThePath) {
   const auto scale = Measure(truth, estimate);
   ASSERT_TRUE(scale);
   double mean = 0.0;
-  for (const auto& [begin, ratio] : scale->windows) {
+  for (const auto& [begin, ratio, begin_time, end_time] : scale->windows) {
     mean += ratio / static_cast<double>(scale->windows.size());
   }
   EXPECT_NEAR(mean, 1.0, 1e-4);
@@ -169,7 +169,7 @@ TEST(LocalScale, NoiseOfTheTruthDoesNotEither) {
   const auto scale = Measure(truth, path);
   ASSERT_TRUE(scale);
   double mean = 0.0;
-  for (const auto& [begin, ratio] : scale->windows) {
+  for (const auto& [begin, ratio, begin_time, end_time] : scale->windows) {
     mean += ratio / static_cast<double>(scale->windows.size());
   }
   EXPECT_NEAR(mean, 1.0, 0.002);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/geometry/bearing.h"
 #include "tests/slam/scale/ground_scene.h"
 #include <orb360/slam/geometry/so3.h>
 
@@ -150,6 +151,33 @@ TEST(GroundFromSteps, IsEmptyWhereTheHeightsDisagree) {
   map.keyframe(2).ground_steps.front().ratio *= 1.3;
   const std::vector<KeyframeId> all = {1, 2, 3, 4, 5};
   EXPECT_FALSE(GroundFromSteps(map, all));
+}
+
+TEST(MeasureGroundSteps, FindsAStepInAnotherDirectionThanTrackedWhileNoGroundIsKnown) {
+  Map map = Drive(2, 1.0, Scaled(Asphalt(9)));
+  // With few landmarks nearby, tracking is off by 30 degrees.
+  Eigen::Vector3d& to = map.keyframe(1).world_from_camera.translation;
+  const Eigen::Vector3d from = map.keyframe(0).world_from_camera.translation;
+  const Eigen::Vector3d truth = to;
+  to = from + ExpSo3({0, 0, 0.5}) * (truth - from);
+  MeasureGroundSteps(1, std::nullopt, {}, &map);
+  ASSERT_EQ(map.keyframe(1).ground_steps.size(), 1u);
+  const GroundStepFrom& step = map.keyframe(1).ground_steps.front();
+  EXPECT_NEAR(step.ratio, kStep / kHeight, 0.01);
+  EXPECT_LT(AngleBetween(map.keyframe(1).world_from_camera.rotation * step.direction, truth - from),
+            0.03);
+}
+
+TEST(AgreesWithSteps, RefusesAPlaneAtAnotherHeight) {
+  Map map = Drive(4, 0.3, Scaled(Asphalt(10)));
+  for (const KeyframeId id : {1, 2, 3}) MeasureGroundSteps(id, std::nullopt, {}, &map);
+  const std::vector<KeyframeId> all = map.KeyframeIds();
+  const KnownGround right{.up = Eigen::Vector3d::UnitZ(), .camera_height = 0.3 * kHeight};
+  const KnownGround wrong{.up = Eigen::Vector3d::UnitZ(), .camera_height = kHeight};
+  EXPECT_TRUE(AgreesWithSteps(right, map, all));
+  EXPECT_FALSE(AgreesWithSteps(wrong, map, all));
+  for (const KeyframeId id : all) map.keyframe(id).ground_steps.clear();
+  EXPECT_TRUE(AgreesWithSteps(wrong, map, all));
 }
 
 }  // namespace

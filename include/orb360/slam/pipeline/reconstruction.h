@@ -8,6 +8,7 @@
 
 #include <orb360/slam/features/features.h>
 #include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/pipeline/metric_scale.h>
 
 namespace orb360 {
 
@@ -43,7 +44,6 @@ struct MapSummary {
   int keyframes = 0;       ///< Number of keyframes.
   int landmarks = 0;       ///< Number of landmarks.
   bool is_metric = false;  ///< Whether the unit of length is the metre.
-  bool is_rough = false;   ///< Whether metres come from completed depth only.
 };
 
 /// A return of the camera to a place that it had seen before.
@@ -60,6 +60,9 @@ struct Reconstruction {
   std::vector<CovisibleFrames> covisibility;
   std::vector<CloudPoint> landmarks;  ///< Ordered by map.
   std::vector<MapSummary> maps;       ///< In the order of their start.
+  MetricScale scale;                  ///< Of the whole result.
+  /// The scale along the path, by map and keyframe.
+  std::vector<KeyframeScale> keyframe_scales;
   /// Index of the frame at which the first map was made, or at which the camera was first localized
   /// in a loaded map. None where neither happened.
   std::optional<int> initialized_at;

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace orb360 {
+
+/// How far the unit of length of a result can be relied on.
+enum class ScaleState {
+  kUnknown,  ///< The unit is arbitrary, or its standard deviation is larger than 30 %.
+  kRough,    ///< Metres with a standard deviation of up to 30 %.
+  kMetric    ///< Metres with a standard deviation of up to 3 %, from a height that the user gave.
+};
+
+/// Name of a state as summary.json has it: "unknown", "rough" or "metric".
+const char* ToString(ScaleState state);
+
+/// The scale of a result and what is known of its error.
+struct MetricScale {
+  ScaleState state = ScaleState::kUnknown;
+  /// Estimated metres in a unit of the result; 0 where nothing tells.
+  double value = 0;
+  /// Standard deviation of ln(value): of the measurements, their conflicts, and the height of the
+  /// camera, which all of them share; 0 where nothing tells.
+  double sigma = 0;
+  /// Height of the camera over the ground that was used, metres.
+  double camera_height = 0;
+  /// Whether nobody gave that height.
+  bool is_height_assumed = false;
+  /// What the scale was measured with, in the order of their weight.
+  std::vector<std::string> sources;
+};
+
+/// The scale of the path near a keyframe.
+struct KeyframeScale {
+  int frame = 0;         ///< Index of the keyframe's frame.
+  double timestamp = 0;  ///< Seconds.
+  int map = 0;           ///< Index into Reconstruction::maps.
+  double value = 0;      ///< Estimated metres in a unit of the result; 0 where nothing tells.
+  double sigma = 0;      ///< Standard deviation of ln(value); 0 where nothing tells.
+};
+
+}  // namespace orb360

@@ -1,0 +1,199 @@
+#include "slam/pipeline/scale_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "slam/geometry/bearing.h"
+#include "slam/geometry/cluster_weights.h"
+#include "slam/pipeline/ground.h"
+#include "slam/scale/scale_smoother.h"
+
+namespace orb360 {
+namespace {
+
+// All standard deviations are relative to the length.
+
+// Of a carrier's height over the road where nobody gave it: between the roof of a small car (1.4 m)
+// and a stick over the head (2.4 m).
+constexpr double kAssumedHeightSigma = 0.25;
+// Of a step over the ground, beside that of the sweep: the camera bobs and the road is uneven.
+constexpr double kReliefSigma = 0.01;
+// Of the height over the plane of one keyframe's landmarks. Neighbouring keyframes see the same
+// ones.
+constexpr double kPlaneSigma = 0.05;
+// Of a scale that only landmarks or only completed depth have shown: no image of the ground says
+// that their plane is the ground. Completed depth has been wrong by a factor of four where the
+// landmarks around it were far.
+constexpr double kUnconfirmedSigma = 0.1;
+constexpr double kCompletedSigma = 0.5;
+
+// Largest standard deviations of the states.
+constexpr double kMaxMetric = 0.03;
+constexpr double kMaxRough = 0.3;
+
+constexpr double kLeastDrift = 1e-6;   // variance between keyframes
+constexpr double kLargestDrift = 1.0;  // where nothing passes the scale on
+
+// Variance with which landmarks pass the scale on from the step between two keyframes to the next
+// step: a landmark whose range the first step has shown tells the length of the second one.
+double DriftVariance(const Map& map, KeyframeId first, KeyframeId second, KeyframeId third) {
+  const Keyframe& newest = map.keyframe(third);
+  const Eigen::Vector3d& center1 = map.keyframe(first).world_from_camera.translation;
+  const Eigen::Vector3d& center2 = map.keyframe(second).world_from_camera.translation;
+  const Eigen::Vector3d& center3 = newest.world_from_camera.translation;
+  std::vector<Eigen::Vector3d> bearings;
+  std::vector<double> informations;
+  for (size_t f = 0; f < newest.landmarks.size(); ++f) {
+    if (newest.landmarks[f] == kNoId) continue;
+    const Landmark& landmark = map.landmark(newest.landmarks[f]);
+    if (landmark.FindObservation(first) == nullptr || landmark.FindObservation(second) == nullptr) {
+      continue;
+    }
+    const double parallax1 = AngleBetween(landmark.position - center1, landmark.position - center2);
+    const double parallax2 = AngleBetween(landmark.position - center2, landmark.position - center3);
+    const double noise = newest.features->keypoints[f].sigma;
+    const double product = parallax1 * parallax2;
+    informations.push_back(product * product /
+                           (noise * noise * (parallax1 * parallax1 + parallax2 * parallax2)));
+    bearings.push_back(newest.features->bearings[f]);
+  }
+  const std::vector<double> weights =
+      ClusterWeights(bearings).Weights(std::vector<uint8_t>(bearings.size(), 1));
+  double information = 0;
+  for (size_t i = 0; i < weights.size(); ++i) {
+    if (std::isfinite(informations[i])) information += weights[i] * informations[i];
+  }
+  return std::clamp(1 / std::max(information, 1e-12), kLeastDrift, kLargestDrift);
+}
+
+struct MapScale {
+  double log_scale = 0;
+  double sigma = 0;
+  double length = 0;    // of the path, in the map's unit
+  int num_steps = 0;    // keyframes whose images show the ground
+  int num_planes = 0;   // keyframes whose landmarks show it
+  std::vector<KeyframeScale> keyframes;
+};
+
+// The measurement of a keyframe by its own images of the ground, or else by its landmarks.
+void Measure(const Map& map, const Keyframe& keyframe, const KnownGround& ground, ScaleNode* node,
+             MapScale* scale) {
+  for (const GroundStepFrom& step : keyframe.ground_steps) {
+    if (!map.HasKeyframe(step.keyframe)) continue;
+    const double distance = (keyframe.world_from_camera.translation -
+                             map.keyframe(step.keyframe).world_from_camera.translation)
+                                .norm();
+    if (!(distance > 0)) continue;
+    node->measured = std::log(step.ratio * ground.camera_height / distance);
+    node->sigma = std::hypot(step.sigma, kReliefSigma);
+    ++scale->num_steps;
+    return;
+  }
+  if (const std::optional<GroundSighting> seen = GroundAt(map, keyframe.id, ground.up)) {
+    node->measured = std::log(ground.camera_height / seen->height);
+    node->sigma = kPlaneSigma;
+    ++scale->num_planes;
+  }
+}
+
+MapScale ScaleOf(const Map& map, int number, const std::optional<KnownGround>& ground,
+                 double height_sigma) {
+  MapScale result;
+  const std::vector<KeyframeId> ids = map.KeyframeIds();
+  std::vector<ScaleNode> nodes(ids.size());
+  for (size_t i = 0; i < ids.size(); ++i) {
+    const Keyframe& keyframe = map.keyframe(ids[i]);
+    result.keyframes.push_back(
+        {.frame = keyframe.frame_index, .timestamp = keyframe.timestamp, .map = number});
+    nodes[i].drift_variance =
+        i < 2 ? kLeastDrift : DriftVariance(map, ids[i - 2], ids[i - 1], ids[i]);
+    if (i > 0) {
+      nodes[i].path_length = (keyframe.world_from_camera.translation -
+                              map.keyframe(ids[i - 1]).world_from_camera.translation)
+                                 .norm();
+    }
+    result.length += nodes[i].path_length;
+    if (ground && !ground->is_rough) Measure(map, keyframe, *ground, &nodes[i], &result);
+  }
+  const std::optional<SmoothedScale> smoothed = SmoothScale(nodes);
+  if (!smoothed) {
+    if (ground) result.sigma = std::hypot(kCompletedSigma, height_sigma);
+    return result;
+  }
+  const double common =
+      std::hypot(height_sigma, result.num_steps == 0 ? kUnconfirmedSigma : 0.0);
+  result.log_scale = smoothed->mean;
+  result.sigma = std::hypot(smoothed->mean_sigma, common);
+  for (size_t i = 0; i < ids.size(); ++i) {
+    result.keyframes[i].value = std::exp(smoothed->log_scale[i]);
+    result.keyframes[i].sigma = std::hypot(smoothed->sigma[i], common);
+  }
+  return result;
+}
+
+std::vector<std::string> Sources(int num_steps, int num_planes) {
+  std::vector<std::string> sources;
+  if (num_steps > 0) sources.emplace_back("images of the ground");
+  if (num_planes > 0) sources.emplace_back("landmarks on the ground");
+  if (num_planes > num_steps && num_steps > 0) std::swap(sources[0], sources[1]);
+  return sources;
+}
+
+}  // namespace
+
+EstimatedScale EstimateScale(std::span<const Map> maps,
+                             std::span<const std::optional<KnownGround>> grounds,
+                             const ScaleOptions& options) {
+  EstimatedScale result;
+  MetricScale& whole = result.whole;
+  whole.is_height_assumed = options.camera_height == 0;
+  const double height_sigma =
+      whole.is_height_assumed ? kAssumedHeightSigma : options.camera_height_sigma;
+  int num_steps = 0;
+  int num_planes = 0;
+  double length = 0;
+  double sum_of_logs = 0;
+  bool is_known = !maps.empty();
+  bool is_completed = false;
+  for (size_t m = 0; m < maps.size(); ++m) {
+    MapScale scale = ScaleOf(maps[m], static_cast<int>(m), grounds[m], height_sigma);
+    result.keyframes.insert(result.keyframes.end(), scale.keyframes.begin(),
+                            scale.keyframes.end());
+    num_steps += scale.num_steps;
+    num_planes += scale.num_planes;
+    length += scale.length;
+    sum_of_logs += scale.length * scale.log_scale;
+    whole.sigma = std::max(whole.sigma, scale.sigma);
+    is_known = is_known && scale.sigma > 0;
+    is_completed = is_completed || (grounds[m] && grounds[m]->is_rough);
+  }
+  whole.sources = Sources(num_steps, num_planes);
+  if (is_completed) whole.sources.emplace_back("completed depth");
+  if (!whole.sources.empty()) whole.camera_height = options.height();
+  if (!is_known) {
+    whole.sigma = 0;
+    return result;
+  }
+  whole.value = length > 0 ? std::exp(sum_of_logs / length) : 1.0;
+  if (whole.sigma <= kMaxMetric && !whole.is_height_assumed) {
+    whole.state = ScaleState::kMetric;
+  } else if (whole.sigma <= kMaxRough) {
+    whole.state = ScaleState::kRough;
+  }
+  return result;
+}
+
+const char* ToString(ScaleState state) {
+  switch (state) {
+    case ScaleState::kMetric:
+      return "metric";
+    case ScaleState::kRough:
+      return "rough";
+    case ScaleState::kUnknown:
+      break;
+  }
+  return "unknown";
+}
+
+}  // namespace orb360

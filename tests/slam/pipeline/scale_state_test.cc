@@ -1,0 +1,105 @@
+#include "slam/pipeline/scale_state.h"
+
+#include <cmath>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "tests/slam/pipeline/synthetic_scene.h"
+
+namespace orb360 {
+namespace {
+
+using Grounds = std::vector<std::optional<KnownGround>>;
+
+constexpr double kHeight = 1.5;
+const KnownGround kGround{.up = Eigen::Vector3d::UnitZ(), .camera_height = kHeight};
+
+// A walk whose poses are `factors` times as long as the steps over the ground say, by keyframe; 0:
+// no step was measured.
+Map WalkOver(const std::vector<double>& factors) {
+  SyntheticScene scene(300, 3.0, 12.0);
+  Map map = scene.MakeMap(Walk(static_cast<int>(factors.size()), {-1.0, 0.0, 0.0}), 300);
+  for (size_t i = 1; i < factors.size(); ++i) {
+    if (factors[i] == 0) continue;
+    const auto id = static_cast<KeyframeId>(i);
+    const double distance = (map.PoseOf(id).translation - map.PoseOf(id - 1).translation).norm();
+    map.keyframe(id).ground_steps.push_back(
+        {.keyframe = id - 1, .ratio = distance / factors[i] / kHeight, .sigma = 0.002});
+  }
+  return map;
+}
+
+EstimatedScale Estimate(const Map& map, const std::optional<KnownGround>& ground,
+                        double camera_height = kHeight) {
+  ScaleOptions options;
+  options.camera_height = camera_height;
+  const Grounds grounds = {ground};
+  return EstimateScale(std::span(&map, 1), grounds, options);
+}
+
+TEST(ScaleState, IsMetricWhereStepsHoldAGivenHeight) {
+  const EstimatedScale scale = Estimate(WalkOver(std::vector<double>(12, 1.0)), kGround);
+  EXPECT_EQ(scale.whole.state, ScaleState::kMetric);
+  EXPECT_NEAR(scale.whole.value, 1.0, 1e-3);
+  // The height's own standard deviation is what all steps share.
+  EXPECT_GE(scale.whole.sigma, ScaleOptions{}.camera_height_sigma);
+  EXPECT_LT(scale.whole.sigma, 0.025);
+  EXPECT_FALSE(scale.whole.is_height_assumed);
+  EXPECT_EQ(scale.whole.sources.front(), "images of the ground");
+  ASSERT_EQ(scale.keyframes.size(), 12u);
+  for (const KeyframeScale& keyframe : scale.keyframes) {
+    EXPECT_NEAR(keyframe.value, 1.0, 1e-3);
+    EXPECT_GE(keyframe.sigma, ScaleOptions{}.camera_height_sigma);
+  }
+}
+
+TEST(ScaleState, AnAssumedHeightIsNeverMetric) {
+  const EstimatedScale scale = Estimate(WalkOver(std::vector<double>(12, 1.0)), kGround, 0.0);
+  EXPECT_EQ(scale.whole.state, ScaleState::kRough);
+  EXPECT_TRUE(scale.whole.is_height_assumed);
+  EXPECT_GT(scale.whole.sigma, 0.2);
+}
+
+TEST(ScaleState, SaysByHowMuchThePathContradictsTheSteps) {
+  const EstimatedScale scale = Estimate(WalkOver(std::vector<double>(12, 1.1)), kGround);
+  EXPECT_NEAR(scale.whole.value, 1 / 1.1, 2e-3);
+}
+
+TEST(ScaleState, IsUnknownWhereNothingShowsTheGround) {
+  const Map map = WalkOver(std::vector<double>(8, 0.0));
+  const EstimatedScale without = Estimate(map, std::nullopt);
+  EXPECT_EQ(without.whole.state, ScaleState::kUnknown);
+  EXPECT_EQ(without.whole.value, 0);
+  EXPECT_TRUE(without.whole.sources.empty());
+  EXPECT_EQ(without.keyframes.front().value, 0);
+  // Completed depth alone has been wrong by a factor.
+  KnownGround completed = kGround;
+  completed.is_rough = true;
+  const EstimatedScale by_depth = Estimate(map, completed);
+  EXPECT_EQ(by_depth.whole.state, ScaleState::kUnknown);
+  EXPECT_GT(by_depth.whole.sigma, 0.3);
+  EXPECT_EQ(by_depth.whole.sources, std::vector<std::string>{"completed depth"});
+  EXPECT_EQ(EstimateScale({}, {}, {}).whole.state, ScaleState::kUnknown);
+}
+
+TEST(ScaleState, TheLeastCertainMapTellsTheStateOfTheWhole) {
+  std::vector<Map> maps;
+  maps.push_back(WalkOver(std::vector<double>(12, 1.0)));
+  maps.push_back(WalkOver(std::vector<double>(8, 0.0)));
+  ScaleOptions options;
+  options.camera_height = kHeight;
+  EXPECT_EQ(EstimateScale(maps, Grounds{kGround, std::nullopt}, options).whole.state,
+            ScaleState::kUnknown);
+}
+
+TEST(ScaleState, TheStandardDeviationGrowsAwayFromTheLastStep) {
+  std::vector<double> factors(14, 0.0);
+  for (int i = 1; i < 6; ++i) factors[i] = 1.0;
+  const EstimatedScale scale = Estimate(WalkOver(factors), kGround);
+  EXPECT_GT(scale.keyframes[13].sigma, scale.keyframes[8].sigma);
+  EXPECT_GT(scale.keyframes[8].sigma, scale.keyframes[4].sigma);
+}
+
+}  // namespace
+}  // namespace orb360
