@@ -67,7 +67,7 @@ class Scripts(unittest.TestCase):
         # The table has the same runs, which are not made again.
         table = self.run_script(*short)
         for variant in ("tri", "dc"):
-            self.assertRegex(table, rf"town \| +{variant} \| +60/60 \| +0 \|.* camera height")
+            self.assertRegex(table, rf"town \| +{variant} \| +60/60 \| +0 \|.* metric ± 2")
         short_form = json.loads(self.run_script(*short, "--json", "--variants", "tri",
                                                 "--max-frames", 20))
         self.assertEqual([r["tracked"] for r in short_form], [20])

@@ -48,6 +48,27 @@ TEST(LoopDetector, FindsTheLoopAndWhatHasDrifted) {
   }
 }
 
+TEST(LoopDetector, FindsTheLoopWhereTheScaleHasDriftedByAFactorOfThree) {
+  for (const double drift : {std::log(3.0), -std::log(3.0)}) {
+    RingStreet street(2000);
+    RingStreet::Drive drive;
+    LoopDetector detector = MakeDetector();
+    std::optional<Loop> loop;
+    for (int k = 0; k < kLap + 15 && !loop; ++k) {
+      const Similarity3 step{std::exp(drift / kLap), Eigen::Quaterniond::Identity(), {0, 0, 0}};
+      const KeyframeId id = street.DriveOn(RingStreet::PoseAt(ArcOf(k)), step, &drive);
+      loop = detector.Observe(drive.map, id, {});
+    }
+    ASSERT_TRUE(loop.has_value()) << drift;
+    for (const Revisit& revisit : loop->revisits) {
+      EXPECT_LT((drive.truth[revisit.keyframe].translation - drive.truth[revisit.place].translation)
+                    .norm(),
+                RingStreet::kSight);
+      EXPECT_NEAR(std::log(revisit.place_from_keyframe.scale), -drift, 0.1);
+    }
+  }
+}
+
 // On the second lap, the places on the first one that are far enough back lie behind the camera.
 TEST(LoopDetector, ALoopIsNoShorterThanAsked) {
   RingStreet street(2000);
