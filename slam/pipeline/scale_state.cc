@@ -70,9 +70,9 @@ double DriftVariance(const Map& map, KeyframeId first, KeyframeId second, Keyfra
 struct MapScale {
   double log_scale = 0;
   double sigma = 0;
-  double length = 0;    // of the path, in the map's unit
-  int num_steps = 0;    // keyframes whose images show the ground
-  int num_planes = 0;   // keyframes whose landmarks show it
+  double length = 0;   // of the path, in the map's unit
+  int num_steps = 0;   // keyframes whose images show the ground
+  int num_planes = 0;  // keyframes whose landmarks show it
   std::vector<KeyframeScale> keyframes;
 };
 
@@ -121,8 +121,7 @@ MapScale ScaleOf(const Map& map, int number, const std::optional<KnownGround>& g
     if (ground) result.sigma = std::hypot(kCompletedSigma, height_sigma);
     return result;
   }
-  const double common =
-      std::hypot(height_sigma, result.num_steps == 0 ? kUnconfirmedSigma : 0.0);
+  const double common = std::hypot(height_sigma, result.num_steps == 0 ? kUnconfirmedSigma : 0.0);
   result.log_scale = smoothed->mean;
   result.sigma = std::hypot(smoothed->mean_sigma, common);
   for (size_t i = 0; i < ids.size(); ++i) {
@@ -158,8 +157,7 @@ EstimatedScale EstimateScale(std::span<const Map> maps,
   bool is_completed = false;
   for (size_t m = 0; m < maps.size(); ++m) {
     MapScale scale = ScaleOf(maps[m], static_cast<int>(m), grounds[m], height_sigma);
-    result.keyframes.insert(result.keyframes.end(), scale.keyframes.begin(),
-                            scale.keyframes.end());
+    result.keyframes.insert(result.keyframes.end(), scale.keyframes.begin(), scale.keyframes.end());
     num_steps += scale.num_steps;
     num_planes += scale.num_planes;
     length += scale.length;

@@ -19,8 +19,8 @@ struct GroundSweepOptions {
   /// Least and largest ratio of the step to the camera's height that are looked at.
   double min_ratio = 0.1;
   double max_ratio = 4.4;
-  /// Largest shift across the given direction of motion, heights of the camera: what its error makes
-  /// of the step.
+  /// Largest shift across the given direction of motion, heights of the camera: what its error
+  /// makes of the step.
   double max_aside = 0.24;
   /// Least mean correlation of the two images of the ground.
   double min_correlation = 0.2;

@@ -28,12 +28,13 @@ struct LoopOptions {
   /// Least length of a loop along the path, multiples of the median range.
   double min_length = 5.0;
   /// Largest drift of the position that a loop may correct beside what the drift of its scale
-  /// explains, as a fraction of the length of the loop. A street that looks like another one is farther away than that.
+  /// explains, as a fraction of the length of the loop. A street that looks like another one is
+  /// farther away than that.
   double max_drift = 0.1;
   /// Largest drift of the direction that a loop may correct, radians.
   double max_turn = 0.3;
-  /// Largest drift of the scale that a loop may correct, as a factor of at least 1. Where the ground
-  /// is not seen, the scale drifts by a factor in a kilometre.
+  /// Largest drift of the scale that a loop may correct, as a factor of at least 1. Where the
+  /// ground is not seen, the scale drifts by a factor in a kilometre.
   double max_scale = 4.0;
   /// Number of frames after which a correction is adopted. It is computed beside tracking
   /// meanwhile.

@@ -17,7 +17,7 @@ const char* ToString(ScaleState state);
 
 /// The scale of a result and what is known of its error.
 struct MetricScale {
-  ScaleState state = ScaleState::kUnknown;
+  ScaleState state = ScaleState::kUnknown;  ///< How far metres can be relied on.
   /// Estimated metres in a unit of the result; 0 where nothing tells.
   double value = 0;
   /// Standard deviation of ln(value): of the measurements, their conflicts, and the height of the
