@@ -92,8 +92,12 @@ void AddStatedScale(const std::filesystem::path& estimate,
   const nlohmann::json& scale = summary["scale"];
   if (!scale.is_object() || !scale.contains("state")) return;  // of an earlier version
   nlohmann::json stated = {{"state", scale["state"]}, {"value", nullptr}, {"sigma", nullptr}};
-  const double value = scale["value"].is_number() ? scale["value"].get<double>() : 0;
-  const double sigma = scale["sigma"].is_number() ? scale["sigma"].get<double>() : 0;
+  const auto number = [&](const char* key) {
+    const auto found = scale.find(key);
+    return found != scale.end() && found->is_number() ? found->get<double>() : 0.0;
+  };
+  const double value = number("value");
+  const double sigma = number("sigma");
   if (value > 0 && sigma > 0) {
     stated["value"] = value;
     stated["sigma"] = sigma;

@@ -68,7 +68,7 @@ bool FrontEnd::Track(const PendingFrame& frame, int num_threads, Atlas* atlas) {
   std::optional<PositionPrior> prior;
   if (ground_motion_ && frame.timestamp - ground_motion_->timestamp < kPredictable) {
     prior = PredictPosition(*ground_motion_, frame.timestamp, predicted.rotation);
-    predicted.translation = prior->position;
+    if (prior) predicted.translation = prior->position;
   }
   std::optional<TrackResult> result =
       TrackFromPrediction(*frame.features, predicted, tracking.last, local_, pixel_sigma_,

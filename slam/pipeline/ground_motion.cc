@@ -63,9 +63,10 @@ std::optional<GroundMotion> FindGroundMotion(const Map& map, KeyframeId newest,
                       .angle_variance = angle_changes / elapsed};
 }
 
-PositionPrior PredictPosition(const GroundMotion& motion, double timestamp,
-                              const Eigen::Quaterniond& rotation) {
+std::optional<PositionPrior> PredictPosition(const GroundMotion& motion, double timestamp,
+                                             const Eigen::Quaterniond& rotation) {
   const double elapsed = timestamp - motion.timestamp;
+  if (!(elapsed > 0)) return std::nullopt;
   const Rigid3& from = motion.world_from_camera;
   // Along an arc the chord has the direction that the camera has half-way.
   const Eigen::Vector3d turn = LogSo3(from.rotation.conjugate() * rotation);
@@ -77,7 +78,7 @@ PositionPrior PredictPosition(const GroundMotion& motion, double timestamp,
       length * std::hypot(kLeastChange, std::sqrt(motion.angle_variance * elapsed));
   const Eigen::Vector3d direction = step / length;
   const Eigen::Matrix3d projection = direction * direction.transpose();
-  return {
+  return PositionPrior{
       .position = from.translation + step,
       .sqrt_information = projection / along + (Eigen::Matrix3d::Identity() - projection) / across};
 }

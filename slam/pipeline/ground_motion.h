@@ -29,8 +29,8 @@ std::optional<GroundMotion> FindGroundMotion(const Map& map, KeyframeId newest,
                                              const KnownGround& ground);
 
 /// Predicts the camera's position at a later time, seconds, while it turns to `rotation`
-/// (world_from_camera).
-PositionPrior PredictPosition(const GroundMotion& motion, double timestamp,
-                              const Eigen::Quaterniond& rotation);
+/// (world_from_camera). Empty at a time that is not later: recordings repeat time stamps.
+std::optional<PositionPrior> PredictPosition(const GroundMotion& motion, double timestamp,
+                                             const Eigen::Quaterniond& rotation);
 
 }  // namespace orb360

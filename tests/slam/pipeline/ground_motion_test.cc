@@ -52,7 +52,7 @@ TEST(GroundMotion, PredictsAnArc) {
   ASSERT_TRUE(motion.has_value());
   EXPECT_NEAR(motion->velocity.norm(), kTurn * kRadius / kPeriod, 0.01);
   const Rigid3 truth = OnArc(kTurn * 8);
-  const PositionPrior prior = PredictPosition(*motion, 0.8, truth.rotation);
+  const PositionPrior prior = PredictPosition(*motion, 0.8, truth.rotation).value();
   const double distance = 3 * kTurn * kRadius;
   EXPECT_LT((prior.position - truth.translation).norm(), 0.03 * distance);
   EXPECT_LT(Sigmas(prior, truth.translation), 1.5);
@@ -67,8 +67,15 @@ TEST(GroundMotion, IsUncertainWhereTheSpeedChanges) {
   ASSERT_TRUE(motion.has_value());
   // ln(1.2 / 0.8) from step to step.
   EXPECT_NEAR(std::sqrt(motion->speed_variance * kPeriod), std::log(1.5), 0.01);
-  const PositionPrior prior = PredictPosition(*motion, 0.7, OnArc(0.14).rotation);
+  const PositionPrior prior = PredictPosition(*motion, 0.7, OnArc(0.14).rotation).value();
   EXPECT_LT(Sigmas(prior, OnArc(0.14).translation), 1.0);
+}
+
+TEST(GroundMotion, PredictsNothingForATimeThatIsNotLater) {
+  const auto motion = FindGroundMotion(Drive(0.02, std::vector<double>(6, 1.0)), 5, kGround);
+  ASSERT_TRUE(motion.has_value());
+  EXPECT_FALSE(PredictPosition(*motion, motion->timestamp, OnArc(0.1).rotation));
+  EXPECT_FALSE(PredictPosition(*motion, motion->timestamp - 1, OnArc(0.1).rotation));
 }
 
 TEST(GroundMotion, IsEmptyWithoutEnoughSteps) {

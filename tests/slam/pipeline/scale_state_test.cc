@@ -16,9 +16,9 @@ constexpr double kHeight = 1.5;
 const KnownGround kGround{.up = Eigen::Vector3d::UnitZ(), .camera_height = kHeight};
 
 // A walk whose poses are `factors` times as long as the steps over the ground say, by keyframe; 0:
-// no step was measured.
-Map WalkOver(const std::vector<double>& factors) {
-  SyntheticScene scene(300, 3.0, 12.0);
+// no step was measured. Landmarks lie within these ranges of the first camera.
+Map WalkOver(const std::vector<double>& factors, double nearest = 3.0, double farthest = 12.0) {
+  SyntheticScene scene(300, nearest, farthest);
   Map map = scene.MakeMap(Walk(static_cast<int>(factors.size()), {-1.0, 0.0, 0.0}), 300);
   for (size_t i = 1; i < factors.size(); ++i) {
     if (factors[i] == 0) continue;
@@ -99,6 +99,15 @@ TEST(ScaleState, TheStandardDeviationGrowsAwayFromTheLastStep) {
   const EstimatedScale scale = Estimate(WalkOver(factors), kGround);
   EXPECT_GT(scale.keyframes[13].sigma, scale.keyframes[8].sigma);
   EXPECT_GT(scale.keyframes[8].sigma, scale.keyframes[4].sigma);
+}
+
+TEST(ScaleState, NearLandmarksPassTheScaleOnBetterThanFarOnes) {
+  std::vector<double> factors(12, 0.0);
+  for (int i = 1; i < 5; ++i) factors[i] = 1.0;
+  const auto sigma_at_end = [&](double nearest, double farthest) {
+    return Estimate(WalkOver(factors, nearest, farthest), kGround).keyframes.back().sigma;
+  };
+  EXPECT_GT(sigma_at_end(100.0, 200.0), 3 * sigma_at_end(3.0, 12.0));
 }
 
 }  // namespace
