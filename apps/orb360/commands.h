@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cmath>
 #include <functional>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
@@ -9,6 +11,16 @@ namespace orb360 {
 /// The work of a subcommand after the command line has been parsed. Returns the exit status of the
 /// program.
 using Command = std::function<int()>;
+
+/// Refuses an option's value `nan`, which lies within every CLI::Range because no comparison with
+/// it is true.
+inline const CLI::Validator kIsNumber(
+    [](const std::string& text) -> std::string {
+      double value = 0;
+      const bool is_nan = CLI::detail::lexical_cast(text, value) && std::isnan(value);
+      return is_nan ? "Value " + text + " is not a number" : "";
+    },
+    "");
 
 /// Each of these adds a subcommand with its options to `app`. When the user chooses the subcommand,
 /// `*chosen` receives the command to run.

@@ -202,6 +202,7 @@ void AddEvaluateCommand(CLI::App* app, Command* chosen) {
       ->add_option("--max-difference", options->max_difference,
                    "Largest difference of two times that belong together, seconds")
       ->check(CLI::Range(0.0, 1e6))
+      ->check(kIsNumber)
       ->type_name("S")
       ->capture_default_str();
   command->callback([options, chosen] { *chosen = [options] { return Evaluate(*options); }; });

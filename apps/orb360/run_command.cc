@@ -284,6 +284,7 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
       ->add_option("--fps", sequence.fps,
                    "Frames a second, instead of what the input says (image folders: 30)")
       ->check(CLI::Range(1e-3, 1e6))
+      ->check(kIsNumber)
       ->type_name("RATE");
   command->add_option("--stride", sequence.stride, "Use every N-th frame")
       ->check(CLI::Range(1, 1 << 30))
@@ -296,6 +297,7 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
                    "Height of the camera over the ground, metres (default: as the configuration or "
                    "the input says, or 1.6)")
       ->check(CLI::Range(0.01, 100.0))
+      ->check(kIsNumber)
       ->type_name("M");
   command->add_option("--resize", options->resize, "Scale every image first")->type_name("WxH");
   CLI::Option* map_in =

@@ -313,6 +313,14 @@ TEST_F(RunTest, AConfigurationIsRefusedByKeyAndLine) {
   EXPECT_THAT(Refusal({"--config", folder_ / "absent.yaml"}), HasSubstr("absent.yaml"));
 }
 
+TEST_F(RunTest, ANumberThatIsNoneIsRefused) {
+  for (const char* option : {"--camera-height", "--fps"}) {
+    const ProgramResult run = Run({option, "nan"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_THAT(run.err, AllOf(IsOneLine(), HasSubstr(std::string(option) + ": Value nan")));
+  }
+}
+
 TEST_F(RunTest, ACameraHeightOfTheInputThatIsOutOfRangeIsRefused) {
   const std::filesystem::path input = folder_ / "input";
   WriteFolder(input / "rgb", std::vector<cv::Mat>(3, cv::Mat(kSize, CV_8UC1, cv::Scalar(99))));
