@@ -198,6 +198,7 @@ std::vector<Pair> Select(const std::vector<Patch>& first, const std::vector<Patc
       std::fprintf(stderr, "correlation below %.2f, quality from %.2f to %.2f\n", limit,
                    taken.front()->quality, taken.back()->quality);
       std::vector<Pair> pairs;
+      pairs.reserve(taken.size());
       for (const Candidate* t : taken) pairs.push_back(t->pair);
       return pairs;
     }

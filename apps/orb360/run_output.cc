@@ -98,7 +98,7 @@ DenseOutput RunOutput::WriteDense(const Reconstruction& reconstruction, const De
 
 Rigid3 RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,
                          const std::optional<DenseOutput>& dense) {
-  const Rigid3 file_world_from_map = WorldOf(reconstruction);
+  Rigid3 file_world_from_map = WorldOf(reconstruction);
   std::vector<ColoredPoint> cloud;
   cloud.reserve(reconstruction.landmarks.size());
   for (const CloudPoint& point : reconstruction.landmarks) {

@@ -165,13 +165,13 @@ void MeasureVocabulary(const std::vector<View>& views, const std::vector<std::st
 }  // namespace orb360
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures how well places are recognised on sequences with ground truth.");
-  std::vector<std::string> sequences;
-  std::vector<std::string> training;
-  app.add_option("sequences", sequences, "Folders of sequences")->required();
-  app.add_option("--vocabulary", training, "Other sequences, to train a vocabulary on");
-  CLI11_PARSE(app, argc, argv);
   try {
+    CLI::App app("Measures how well places are recognised on sequences with ground truth.");
+    std::vector<std::string> sequences;
+    std::vector<std::string> training;
+    app.add_option("sequences", sequences, "Folders of sequences")->required();
+    app.add_option("--vocabulary", training, "Other sequences, to train a vocabulary on");
+    CLI11_PARSE(app, argc, argv);
     const std::vector<orb360::View> views = orb360::ReadSequences(sequences);
     orb360::Measure(views, orb360::PlaceIndex());
     if (!training.empty()) orb360::MeasureVocabulary(views, training);

@@ -85,10 +85,10 @@ std::string TextOf(Number value) {
 }
 
 /// Returns the key that the user most likely meant, or "" if none is near. A key with the same name
-/// in another section is near; otherwise up to a third of the characters may differ.
+/// in another section is near; otherwise up to a third of the name's characters may differ.
 std::string NearestKey(const OptionSchema& schema, const std::string& key) {
   std::string nearest;
-  size_t least = std::max<size_t>(2, key.size() / 3) + 1;
+  size_t least = std::max<size_t>(2, LastPart(key).size() / 3) + 1;
   for (const OptionSchema::Option& option : schema.options()) {
     const size_t distance =
         LastPart(option.key) == LastPart(key) ? 1 : EditDistance(option.key, key);

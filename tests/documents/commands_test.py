@@ -112,8 +112,10 @@ class Commands(unittest.TestCase):
                 if entry.name not in (".git", "build", "out"):
                     (folder / entry.name).symlink_to(entry)
             (folder / "build").symlink_to(BUILD)
+            done = set()  # several documents may show the same commands
             for block in blocks():
-                if block.is_run:
+                if block.is_run and block.text not in done:
+                    done.add(block.text)
                     with self.subTest(block.where):
                         self.run_in(folder, block)
 

@@ -13,6 +13,12 @@ BUILD = Path(os.environ.get("ORB360_BINARY_DIR", ROOT / "build"))
 
 
 class Scripts(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cache = tempfile.TemporaryDirectory(dir=BUILD)  # towns, which are rendered once
+        cls.addClassCleanup(cache.cleanup)
+        cls.cache = Path(cache.name)
+
     def setUp(self) -> None:
         folder = tempfile.TemporaryDirectory(dir=BUILD)
         self.addCleanup(folder.cleanup)
@@ -34,14 +40,14 @@ class Scripts(unittest.TestCase):
     def test_evaluate_prints_json_and_nothing_else(self) -> None:
         results = json.loads(self.run_script(
             "evaluate", "--json", "--skip-build", "--towns", "Loop", "--frames", 60, "--width", 512,
-            "--variants", "tri", "--cache", self.folder, "--out", self.folder / "out"))
+            "--variants", "tri", "--cache", self.cache, "--out", self.folder / "out"))
         self.assertEqual([r["tracked"] for r in results], [60])
         self.assertAlmostEqual(results[0]["scale_factor"], 1.0, delta=0.05)
 
     def test_evaluate_prints_a_table_with_a_row_for_each_run(self) -> None:
         table = self.run_script(
             "evaluate", "--skip-build", "--towns", "Loop", "--frames", 60, "--width", 512,
-            "--cache", self.folder, "--out", self.folder / "out")
+            "--cache", self.cache, "--out", self.folder / "out")
         for variant in ("mono", "tri", "dc"):
             self.assertRegex(table, rf"Loop \| +{variant} \| +60/60 \| +0 \|")
 
@@ -91,7 +97,7 @@ class Scripts(unittest.TestCase):
 
     def test_digests_of_two_runs_agree(self) -> None:
         short = ("--build", BUILD, "--towns", "Loop", "--variants", "sparse", "--frames", 60,
-                 "--cache", self.folder)
+                 "--cache", self.cache)
         digests = self.folder / "digests.json"
         self.run_script("digests", *short, "--out", digests)
         self.run_script("digests", *short, "--compare", digests)

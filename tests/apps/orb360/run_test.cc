@@ -1,10 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <csignal>
-#include <cstdio>
 #include <filesystem>
 #include <iterator>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,12 +11,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "slam/io/atomic_file.h"
 #include "slam/io/ply.h"
 #include "slam/io/sparse_file.h"
 #include "tests/apps/orb360/program.h"
+#include "tests/apps/orb360/run_fixture.h"
 #include "tests/apps/orb360/textured_room.h"
-#include "tests/nn/graph/network_builder.h"
 #include <orb360/slam/io/map_file.h>
 #include <orb360/slam/io/trajectory.h>
 
@@ -30,60 +26,6 @@ using ::testing::AllOf;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::StartsWith;
-
-const cv::Size kSize(384, 192);
-constexpr int kFrames = 24;
-
-/// A text of exactly one line.
-MATCHER(IsOneLine, "") {
-  return !arg.empty() && arg.back() == '\n' && std::ranges::count(arg, '\n') == 1;
-}
-
-class RunTest : public testing::Test {
- protected:
-  std::string Input() const { return folder_ / "input"; }
-  std::string Out() const { return folder_ / "out"; }
-
-  /// Without a network, which takes its time, unless one is asked for.
-  ProgramResult Run(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = {"run", Input(), "--out", Out(), "--threads", "1"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    if (std::ranges::find(more, "--weights") == more.end()) {
-      arguments.insert(arguments.end(), {"--weights", "none"});
-    }
-    return RunOrb360(arguments);
-  }
-
-  /// Exit status 1 and one line on standard error, which is returned.
-  std::string Refusal(const std::vector<std::string>& more = {}) const {
-    const ProgramResult result = Run(more);
-    EXPECT_EQ(result.status, 1);
-    EXPECT_THAT(result.err, AllOf(IsOneLine(), StartsWith("orb360: ")));
-    EXPECT_FALSE(std::filesystem::exists(Out())) << "nothing was done, so nothing is there";
-    return result.err;
-  }
-
-  std::filesystem::path OutFile(const std::string& name) const { return folder_ / "out" / name; }
-  nlohmann::json Summary() const {
-    return nlohmann::json::parse(ReadText(OutFile("summary.json")), nullptr, false);
-  }
-  size_t PosesIn(const std::string& name) const { return ReadTrajectory(OutFile(name)).size(); }
-
-  std::filesystem::path Image(int i) const {
-    char name[32];
-    std::snprintf(name, sizeof name, "%06d.png", i);
-    return folder_ / "input" / name;
-  }
-
-  /// For what is refused before an image is looked at.
-  void WriteBlanks() const {
-    WriteFolder(Input(), std::vector<cv::Mat>(3, cv::Mat(kSize, CV_8UC1, cv::Scalar(99))));
-  }
-  void WriteRoom() const { WriteFolder(Input(), TexturedRoom(kSize).DrawAll(kFrames)); }
-
-  TempFolder folder_;
-};
 
 TEST_F(RunTest, AFolderOfGreyImagesIsTrackedAndEverythingIsWritten) {
   WriteRoom();
@@ -134,21 +76,6 @@ TEST_F(RunTest, TheSameInputGivesTheSameBytesWithOneAndTwoThreads) {
   }
 }
 
-/// A network that gives every pixel the mean of the points around it, or of all, and is sure of it.
-void WriteMeanNetwork(const std::filesystem::path& path) {
-  nn::NetworkBuilder net(8);
-  net.Input("depth", 1);
-  net.Input("confidence", 1);
-  net.Node("points", "median_log", {"depth", "confidence"}, nlohmann::json::object(), 3);
-  net.NormalizedConvolution("mean", "points", "points.1", 1, 1, 15);
-  net.weights.back().values = {0};
-  net.Node("sure", "affine", {"mean.1"}, {{"scale", 0.0}, {"offset", 0.97}});
-  net.Output("log_depth", "mean");
-  net.Output("confidence", "sure");
-  net.Output("scale", "points.2");
-  net.Write(path);
-}
-
 TEST_F(RunTest, WithANetworkTheCloudIsDenseAndTheSameForAnyNumberOfThreads) {
   WriteRoom();
   WriteMeanNetwork(folder_ / "net.h5");
@@ -188,27 +115,11 @@ TEST_F(RunTest, TheNetworkThatComesWithItIsUsedUnlessNoneIsWanted) {
   EXPECT_TRUE(std::filesystem::exists(OutFile("landmarks.ply")));
 }
 
-TEST_F(RunTest, DepthThatIsNotMadeCannotBeSaved) {
-  WriteBlanks();
-  EXPECT_THAT(Refusal({"--save-depth", "--weights", "none"}), HasSubstr("--save-depth"));
-}
-
-TEST_F(RunTest, AMapThatCannotBeWrittenIsRefusedBeforeAnyWork) {
-  WriteBlanks();
-  const std::string path = folder_ / "absent" / "room.map";
-  EXPECT_THAT(Refusal({"--map-out", path}), AllOf(HasSubstr(path), HasSubstr("cannot be written")));
-}
-
 TEST_F(RunTest, AMapMayLieInTheFolderOfTheResults) {
   WriteRoom();
   const ProgramResult result = Run({"--map-out", OutFile("room.map")});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_GT(ReadMap(OutFile("room.map")).map.num_keyframes(), 1);
-}
-
-TEST_F(RunTest, RefusesWhatIsNoNetwork) {
-  WriteRoom();
-  EXPECT_THAT(Refusal({"--weights", Image(0)}), HasSubstr("is not a network of orb360"));
 }
 
 TEST_F(RunTest, TheReportIsOnePageOfEverything) {
@@ -258,14 +169,6 @@ TEST_F(RunTest, AZeroByteFrameCostsThatFrameOnly) {
   EXPECT_NEAR(poses[12].timestamp, 13 / 30.0, 1e-9);
 }
 
-TEST_F(RunTest, ImagesOfMixedSizesAreRefused) {
-  WriteBlanks();
-  WriteFolder(folder_ / "small", {cv::Mat(128, 256, CV_8UC1, cv::Scalar(9))});
-  std::filesystem::rename(folder_ / "small" / "000000.png", folder_ / "input" / "000002.png");
-  EXPECT_THAT(Refusal(),
-              AllOf(HasSubstr("000002.png"), HasSubstr("256x128"), HasSubstr("384x192")));
-}
-
 TEST_F(RunTest, AnotherSizeThatShowsOnlyInTheMiddleKeepsWhatWasDone) {
   std::vector<cv::Mat> images = TexturedRoom(kSize).DrawAll(kFrames);
   cv::resize(images[20], images[20], kSize / 2);
@@ -275,20 +178,6 @@ TEST_F(RunTest, AnotherSizeThatShowsOnlyInTheMiddleKeepsWhatWasDone) {
   EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("000020.bmp"), HasSubstr("192x96")));
   EXPECT_EQ(PosesIn("trajectory.txt"), 20u);
   EXPECT_EQ(Summary()["interrupted"], true);
-}
-
-TEST_F(RunTest, PerspectiveVideoIsRefusedWithTheReason) {
-  WriteVideo(folder_ / "input.avi",
-             std::vector<cv::Mat>(2, cv::Mat(288, 512, CV_8UC1, cv::Scalar(99))));
-  std::filesystem::rename(folder_ / "input.avi", Input());
-  EXPECT_THAT(Refusal(), AllOf(HasSubstr(Input() + ": 512x288 is not a full sphere"),
-                               HasSubstr("equirectangular")));
-}
-
-TEST_F(RunTest, InputThatIsNotThereOrEmptyIsRefused) {
-  EXPECT_THAT(Refusal(), HasSubstr(Input() + ": no such file or folder"));
-  std::filesystem::create_directory(Input());
-  EXPECT_THAT(Refusal(), HasSubstr(Input() + ": contains no images"));
 }
 
 TEST_F(RunTest, AFolderThatCannotBeWrittenIsRefusedBeforeAnyWork) {
@@ -302,31 +191,12 @@ TEST_F(RunTest, AFolderThatCannotBeWrittenIsRefusedBeforeAnyWork) {
   }
 }
 
-TEST_F(RunTest, AConfigurationIsRefusedByKeyAndLine) {
-  WriteBlanks();
-  WriteText(folder_ / "c.yaml", "features:\n  count: 1000\n  colour: 3\n");
-  EXPECT_THAT(Refusal({"--config", folder_ / "c.yaml"}),
-              HasSubstr("c.yaml:3: unknown key features.colour"));
-  WriteText(folder_ / "c.yaml", "\nfeatures:\n  count: plenty\n");
-  EXPECT_THAT(Refusal({"--config", folder_ / "c.yaml"}),
-              HasSubstr("c.yaml:3: features.count must be a whole number"));
-  EXPECT_THAT(Refusal({"--config", folder_ / "absent.yaml"}), HasSubstr("absent.yaml"));
-}
-
 TEST_F(RunTest, ANumberThatIsNoneIsRefused) {
   for (const char* option : {"--camera-height", "--fps"}) {
     const ProgramResult run = Run({option, "nan"});
     EXPECT_EQ(run.status, 2);
     EXPECT_THAT(run.err, AllOf(IsOneLine(), HasSubstr(std::string(option) + ": Value nan")));
   }
-}
-
-TEST_F(RunTest, ACameraHeightOfTheInputThatIsOutOfRangeIsRefused) {
-  const std::filesystem::path input = folder_ / "input";
-  WriteFolder(input / "rgb", std::vector<cv::Mat>(3, cv::Mat(kSize, CV_8UC1, cv::Scalar(99))));
-  WriteText(input / "sequence.yaml",
-            "camera: {model: equirectangular}\nfps: 20\ncamera_height: 150\n");
-  EXPECT_THAT(Refusal(), HasSubstr(Input() + ": camera.height_m must be 0 to 100, not 150"));
 }
 
 TEST_F(RunTest, AConfigurationIsUsed) {
@@ -362,11 +232,6 @@ TEST_F(RunTest, AMaskKeepsLandmarksOutOfWhatItCovers) {
   }
   EXPECT_GT(cloud.size(), 100u);
   EXPECT_LT(below, cloud.size() / 50);
-}
-
-TEST_F(RunTest, AMaskThatIsNotThereIsRefused) {
-  WriteBlanks();
-  EXPECT_THAT(Refusal({"--mask", folder_ / "absent.png"}), HasSubstr("absent.png: no such mask"));
 }
 
 TEST_F(RunTest, ByDefaultWhatMovesWithTheCameraIsMasked) {
@@ -438,26 +303,6 @@ TEST_F(RunTest, TheSummaryTellsWhenAnotherMapBegins) {
   EXPECT_EQ(PosesIn("trajectory.txt"), images.size());
 }
 
-TEST_F(RunTest, AMapThatDoesNotFitIsRefused) {
-  WriteBlanks();
-  const std::string path = folder_ / "room.map";
-  WriteFileAtomically(path, "an image");
-  EXPECT_THAT(Refusal({"--map-in", path}), HasSubstr("is not a map of orb360"));
-  Map map;
-  map.AddKeyframe(0, 0.0, {}, std::make_shared<Features>());
-  WriteMap(path, {512, {}, {}, map});
-  EXPECT_THAT(Refusal({"--map-in", path}),
-              AllOf(HasSubstr("512 pixels wide"), HasSubstr("--resize 512x256")));
-}
-
-TEST_F(RunTest, ResizeGivesASmallerSphereAndOnlyASphere) {
-  WriteRoom();
-  EXPECT_THAT(Refusal({"--resize", "300x300"}), HasSubstr("`300x300` is not WIDTHxHEIGHT"));
-  EXPECT_THAT(Refusal({"--resize", "300"}), HasSubstr("`300` is not WIDTHxHEIGHT"));
-  EXPECT_EQ(Run({"--resize", "320x160"}).status, 0);
-  EXPECT_EQ(Summary()["tracked"], kFrames);
-}
-
 TEST_F(RunTest, ACameraThatStandsStillEndsWithTheReason) {
   WriteFolder(Input(), std::vector<cv::Mat>(6, TexturedRoom(kSize).Draw(0)));
   const ProgramResult result = Run();
@@ -473,81 +318,6 @@ TEST_F(RunTest, QuietShowsNothing) {
   EXPECT_EQ(result.status, 0);
   EXPECT_THAT(result.out, IsEmpty());
   EXPECT_THAT(result.err, IsEmpty());
-}
-
-TEST_F(RunTest, AFullDiskEndsInOneLineAndKeepsWhatFits) {
-  WriteRoom();
-  const ProgramResult result =
-      Program({"run", Input(), "--out", Out(), "--threads", "1", "--weights", "none"}, 8000).Wait();
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("cloud.ply"), HasSubstr("free some space")));
-  EXPECT_EQ(PosesIn("trajectory.txt"), static_cast<size_t>(kFrames));
-  EXPECT_FALSE(std::filesystem::exists(OutFile("cloud.ply.tmp")));
-}
-
-TEST_F(RunTest, AFullDiskTakesTheCloudAndNotTheTrajectory) {
-  WriteRoom();
-  WriteMeanNetwork(folder_ / "net.h5");
-  const ProgramResult result =
-      Program({"run", Input(), "--out", Out(), "--threads", "1", "--weights", folder_ / "net.h5"},
-              8000)
-          .Wait();
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("free some space")));
-  EXPECT_EQ(PosesIn("trajectory.txt"), static_cast<size_t>(kFrames));
-  EXPECT_FALSE(std::filesystem::exists(OutFile("depth.tmp")));
-}
-
-/// A run long enough to be disturbed: the same walk to and fro.
-class InterruptedRunTest : public RunTest {
- protected:
-  static constexpr int kLongRun = 2000;
-
-  InterruptedRunTest() {
-    WriteRoom();
-    constexpr int kPeriod = 2 * kFrames - 2;
-    for (int i = kFrames; i < kLongRun; ++i) {
-      const int phase = i % kPeriod;
-      std::filesystem::create_hard_link(Image(std::min(phase, kPeriod - phase)), Image(i));
-    }
-  }
-
-  /// Starts a run and returns once the first pose is known.
-  std::unique_ptr<Program> Start() const {
-    auto program = std::make_unique<Program>(std::vector<std::string>{
-        "run", Input(), "--out", Out(), "--threads", "1", "--weights", "none"});
-    EXPECT_TRUE(program->WaitForOutput("first map made"));
-    return program;
-  }
-};
-
-TEST_F(InterruptedRunTest, CtrlCWritesWhatWasDone) {
-  const std::unique_ptr<Program> program = Start();
-  program->Signal(SIGINT);
-  const ProgramResult result = program->Wait();
-  EXPECT_EQ(result.status, 130);
-  EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("interrupted"), HasSubstr(Out())));
-  const nlohmann::json summary = Summary();
-  EXPECT_EQ(summary["interrupted"], true);
-  EXPECT_LT(summary["frames"], kLongRun);
-  EXPECT_EQ(PosesIn("trajectory.txt"), summary["tracked"]);
-  EXPECT_GE(summary["tracked"], 2);
-  EXPECT_FALSE(std::filesystem::exists(OutFile("trajectory.journal")));
-}
-
-TEST_F(InterruptedRunTest, TerminationWritesWhatWasDoneToo) {
-  const std::unique_ptr<Program> program = Start();
-  program->Signal(SIGTERM);
-  EXPECT_EQ(program->Wait().status, 143);
-  EXPECT_EQ(PosesIn("trajectory.txt"), Summary()["tracked"]);
-}
-
-TEST_F(InterruptedRunTest, AKilledRunLeavesTheJournal) {
-  const std::unique_ptr<Program> program = Start();
-  program->Signal(SIGKILL);
-  EXPECT_EQ(program->Wait().status, 128 + SIGKILL);
-  EXPECT_GE(PosesIn("trajectory.journal"), 1u);
-  EXPECT_FALSE(std::filesystem::exists(OutFile("trajectory.txt")));
 }
 
 }  // namespace

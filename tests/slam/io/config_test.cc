@@ -86,6 +86,8 @@ TEST_F(ConfigTest, AnUnknownKeyIsNamedWithItsLineAndTheNearestKnownOne) {
             "3: unknown key loop_closing; `orb360 config` lists all keys");
   EXPECT_EQ(ErrorOf("feature:\n  count: 1\n"),
             "2: unknown key feature.count; did you mean features.count?");
+  EXPECT_EQ(ErrorOf("mapping:\n  min_likeness: 1\n"),  // as far from min_parallax as from any word
+            "2: unknown key mapping.min_likeness; `orb360 config` lists all keys");
 }
 
 TEST_F(ConfigTest, AWrongTypeIsNamedWithItsLine) {
