@@ -1,7 +1,5 @@
 #include "slam/pipeline/frame_refinement.h"
 
-#include "slam/optimization/pose_refinement.h"
-
 namespace orb360 {
 
 std::vector<Sighting> SightingsOf(const TrackedFrame& frame) {
@@ -15,7 +13,7 @@ std::vector<Sighting> SightingsOf(const TrackedFrame& frame) {
 }
 
 Rigid3 RefineFrame(const Map& map, const Rigid3& world_from_camera,
-                   std::span<const Sighting> sightings) {
+                   std::span<const Sighting> sightings, const std::optional<PositionPrior>& prior) {
   std::vector<PoseObservation> observations;
   for (const Sighting& sighting : sightings) {
     const LandmarkId id = map.Resolve(sighting.landmark);
@@ -23,7 +21,7 @@ Rigid3 RefineFrame(const Map& map, const Rigid3& world_from_camera,
     observations.push_back(
         {map.landmark(id).position, sighting.bearing.cast<double>(), sighting.sigma});
   }
-  const RefinedPose refined = RefinePose(world_from_camera, observations);
+  const RefinedPose refined = RefinePose(world_from_camera, observations, prior);
   // A few landmarks, or the smaller part of them, may agree on a wrong pose. The refined pose needs
   // as many inliers as tracking does (TrackerOptions::min_motion_inliers), and half of the
   // sightings.

@@ -4,6 +4,7 @@
 
 #include "slam/map/covisibility.h"
 #include "slam/pipeline/ground.h"
+#include "slam/pipeline/trajectory_interpolation.h"
 
 namespace orb360 {
 
@@ -19,12 +20,14 @@ Reconstruction MakeReconstruction(std::span<const Map> maps, const FrameAnchors&
     if (summary.tracked++ == 0) summary.first_frame = index;
     summary.last_frame = index;
   }
+  const std::vector<TrajectoryInterpolation> paths(maps.begin(), maps.end());
 #pragma omp parallel for schedule(dynamic, 16) num_threads(num_threads)
   for (size_t i = 0; i < ordered.size(); ++i) {
     const FrameAnchor& anchor = *ordered[i];
     const Map& map = maps[anchor.map];
-    result.frames[i].world_from_camera = RefineFrame(
-        map, map.PoseOf(anchor.reference) * anchor.reference_from_camera, anchor.sightings);
+    result.frames[i].world_from_camera =
+        RefineFrame(map, map.PoseOf(anchor.reference) * anchor.reference_from_camera,
+                    anchor.sightings, paths[anchor.map].PositionAt(anchor.timestamp));
   }
   int64_t num_matched = 0;
   int64_t num_seen = 0;

@@ -56,5 +56,19 @@ TEST(FrameRefinement, LeavesAPoseWhoseLandmarksAreGone) {
   ExpectNear(RefineFrame(sight.map, kNear, {}), kNear, 1e-12);
 }
 
+TEST(FrameRefinement, TakesThePositionFromItsPriorWhereAllLandmarksAreFar) {
+  Sight sight(1.0);
+  for (LandmarkId id = 0; id < 200; ++id) sight.map.landmark(id).position *= 1e4;
+  TrackedFrame frame;
+  frame.features = sight.scene.See({kTruth.rotation, Eigen::Vector3d::Zero()}, 1.0);
+  // Points that are 10,000 times as far are seen as if from the middle.
+  frame.landmarks = sight.map.keyframe(0).landmarks;
+  const PositionPrior prior{.position = kTruth.translation + Eigen::Vector3d(0.01, 0, 0),
+                            .sqrt_information = Eigen::Matrix3d::Identity() / 0.02};
+  const Rigid3 refined = RefineFrame(sight.map, kNear, SightingsOf(frame), prior);
+  ExpectNear({refined.rotation, prior.position}, kTruth, 0.0101);
+  EXPECT_LT((refined.translation - prior.position).norm(), 1e-3);
+}
+
 }  // namespace
 }  // namespace orb360
