@@ -5,7 +5,8 @@
 //
 // For each frame of a sequence folder with true depth and the frame GAP after it [1]: the true
 // ratio of the step to the height over the ground, the measured one, the error of its logarithm and
-// that in standard deviations; at the end their summary.
+// that in standard deviations, and the error of the rotation about the vertical; at the end their
+// summary.
 
 #include <cmath>
 #include <cstdio>
@@ -62,16 +63,35 @@ double TrueHeight(const cv::Mat& range, const Eigen::Vector3d& step, const Eigen
   return heights.empty() ? 0.0 : orb360::Median(heights);
 }
 
+/// The absolute errors of one quantity, and the same in standard deviations.
+struct Errors {
+  std::vector<double> absolute;
+  std::vector<double> normalized;
+
+  void Add(double error, double sigma) {
+    absolute.push_back(std::abs(error));
+    normalized.push_back(std::abs(error) / sigma);
+  }
+
+  void Print(const char* name) {  // Reorders them.
+    using orb360::NearestRankQuantile;
+    std::printf(
+        "%s: |error| median %.4f, 90 %% %.4f, largest %.4f; in sigmas 68 %% %.2f, 95 %% %.2f\n",
+        name, orb360::Median(absolute), NearestRankQuantile(absolute, 0.9),
+        NearestRankQuantile(absolute, 1.0), NearestRankQuantile(normalized, 0.68),
+        NearestRankQuantile(normalized, 0.95));
+  }
+};
+
 /// Prints the table of one sequence folder.
 void Measure(const fs::path& sequence, int gap) {
   const std::vector<orb360::StampedPose> poses =
       orb360::ReadTrajectory(sequence / "groundtruth.txt");
-  std::vector<double> errors;
-  std::vector<double> normalized;
+  Errors lengths;
+  Errors turns;
   int num_frames = 0;
-  int num_measured = 0;
-  std::printf("%6s %7s %8s %7s %7s %6s %6s %6s %6s\n", "frame", "true", "measured", "error",
-              "sigma", "error/", "corr.", "rival", "tiles");
+  std::printf("%6s %7s %8s %7s %7s %6s %7s %7s %6s %6s %6s\n", "frame", "true", "measured", "error",
+              "sigma", "error/", "turn", "sigma", "corr.", "rival", "tiles");
   for (int i = 0; i + gap < static_cast<int>(poses.size()); ++i) {
     const fs::path depth = sequence / "depth" / NameOf(i, "png");
     if (!fs::exists(depth)) continue;
@@ -87,20 +107,17 @@ void Measure(const fs::path& sequence, int gap) {
       std::printf("%6d %7.4f %8s\n", i, truth, "-");
       continue;
     }
-    ++num_measured;
     const double error = std::log(step->ratio / truth);
-    errors.push_back(std::abs(error));
-    normalized.push_back(std::abs(error) / step->sigma);
-    std::printf("%6d %7.4f %8.4f %7.4f %7.4f %6.1f %6.2f %6.2f %6d\n", i, truth, step->ratio, error,
-                step->sigma, error / step->sigma, step->correlation, step->rival, step->num_tiles);
+    lengths.Add(error, step->sigma);
+    turns.Add(step->turn, step->turn_sigma);  // The rotation given is the true one.
+    std::printf("%6d %7.4f %8.4f %7.4f %7.4f %6.1f %7.4f %7.4f %6.2f %6.2f %6d\n", i, truth,
+                step->ratio, error, step->sigma, error / step->sigma, step->turn, step->turn_sigma,
+                step->correlation, step->rival, step->num_tiles);
   }
-  if (errors.empty()) return;
-  std::printf(
-      "measured %d of %d; |error|: median %.4f, 90 %% %.4f, largest %.4f; in sigmas: 68 %% "
-      "%.2f, 95 %% %.2f\n",
-      num_measured, num_frames, orb360::Median(errors), orb360::NearestRankQuantile(errors, 0.9),
-      orb360::NearestRankQuantile(errors, 1.0), orb360::NearestRankQuantile(normalized, 0.68),
-      orb360::NearestRankQuantile(normalized, 0.95));
+  if (lengths.absolute.empty()) return;
+  std::printf("measured %zu of %d\n", lengths.absolute.size(), num_frames);
+  lengths.Print("ln(step)");
+  turns.Print("turn, rad");
 }
 
 }  // namespace

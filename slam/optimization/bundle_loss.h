@@ -20,8 +20,8 @@ constexpr RobustLoss HeightLoss() { return {}; }
 /// are, and a range that is wrong by far should not count at all.
 constexpr RobustLoss RangeLoss() { return {RobustLoss::kCauchy, 1.0}; }
 
-/// The loss of distances between cameras. Each is the agreement of many places of the ground, so it
-/// overrules landmarks that contradict it, as those on a car beside the camera do.
-constexpr RobustLoss DistanceLoss() { return {}; }
+/// The loss of points that two cameras see. Each is the agreement of many tiles of the ground, so
+/// it overrules landmarks that contradict it, as those on a car beside the camera do.
+constexpr RobustLoss SharedPointLoss() { return {}; }
 
 }  // namespace orb360

@@ -35,12 +35,15 @@ struct BundleProblem {
     double range;  ///< World units.
     double sigma;  ///< Standard deviation of ln(range).
   };
-  /// The distance between two cameras is known. Its residual is that of RangeResidual.
-  struct Distance {
+  /// Two cameras see the same point, whose position relative to each of them is known in some
+  /// directions. See SharedPointResidual.
+  struct SharedPoint {
     int pose1;
     int pose2;
-    double distance;  ///< World units.
-    double sigma;     ///< Standard deviation of ln(distance).
+    Eigen::Vector3d point1;  ///< The point in the frame of camera 1, world units.
+    Eigen::Vector3d point2;  ///< The same in the frame of camera 2.
+    /// Times the difference of both, frame of camera 2: two values of unit variance.
+    Eigen::Matrix<double, 2, 3> sqrt_information;
   };
   std::vector<Rigid3> world_from_camera;
   /// By pose. At least one pose is fixed, since the gauge is free otherwise.
@@ -49,7 +52,7 @@ struct BundleProblem {
   std::vector<Observation> observations;
   std::vector<Height> heights;
   std::vector<Range> ranges;
-  std::vector<Distance> distances;
+  std::vector<SharedPoint> shared_points;
 };
 
 }  // namespace orb360

@@ -31,6 +31,10 @@ constexpr double kGroundReach = 8.0;
 // an uneven road must not bend the path.
 constexpr double kLocalReliefSigma = 0.005;
 constexpr double kGlobalReliefSigma = 0.03;
+// Where the points lie that show a turn, heights of the camera, and the standard deviation of the
+// turn beside that of the tiles, rad.
+constexpr double kAhead = 0.5;
+constexpr double kTurnSigma = 0.006;
 
 // Adds the heights of the camera with index `pose` over the points of the ground around it.
 void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem* problem) {
@@ -60,17 +64,29 @@ void AddHeights(int pose, const KnownGround& ground, double sigma, BundleProblem
   }
 }
 
-// Adds the lengths of the steps to a keyframe that were measured on the ground. `pose_of`: by
-// keyframe, -1 for those that do not take part.
-void AddDistances(const Keyframe& keyframe, const std::vector<int>& pose_of, double camera_height,
-                  double relief_sigma, BundleProblem* problem) {
+// Adds the steps to a keyframe that were measured on the ground. `pose_of`: by keyframe, -1 for
+// those that do not take part. Along the motion the point half-way counts, where an error of the
+// ground's normal cancels. Across it, where relief shifts nothing, one point ahead and one behind
+// tell the direction of the motion and the rotation about the normal.
+void AddSteps(const Keyframe& keyframe, const std::vector<int>& pose_of, double camera_height,
+              double relief_sigma, BundleProblem* problem) {
   for (const GroundStepFrom& step : keyframe.ground_steps) {
     const int from = pose_of[step.keyframe];
     if (from < 0) continue;
-    problem->distances.push_back({.pose1 = from,
-                                  .pose2 = pose_of[keyframe.id],
-                                  .distance = step.ratio * camera_height,
-                                  .sigma = std::hypot(step.sigma, relief_sigma)});
+    const auto add = [&](double ahead, const Eigen::Vector3d& direction, double sigma) {
+      problem->shared_points.push_back(
+          {.pose1 = from,
+           .pose2 = pose_of[keyframe.id],
+           .point1 = camera_height * (step.point1 + ahead * step.direction1),
+           .point2 = camera_height * (step.point2 + ahead * step.direction2),
+           .sqrt_information = Eigen::Vector2d::UnitX() * direction.transpose() / sigma});
+    };
+    add(0, step.direction2, step.ratio * camera_height * std::hypot(step.sigma, relief_sigma));
+    const Eigen::Vector3d across = step.up.cross(step.direction2).normalized();
+    const double sigma =
+        std::sqrt(2.0) * kAhead * camera_height * std::hypot(step.turn_sigma, kTurnSigma);
+    add(kAhead, across, sigma);
+    add(-kAhead, across, sigma);
   }
 }
 
@@ -188,10 +204,10 @@ void Adjust(std::span<const KeyframeId> moving, std::span<const KeyframeId> fixe
   if (ground) {
     const double relief_sigma = free_scale ? kGlobalReliefSigma : kLocalReliefSigma;
     for (const KeyframeId id : moving) {
-      AddDistances(map->keyframe(id), pose_of, ground->camera_height, relief_sigma, &problem);
+      AddSteps(map->keyframe(id), pose_of, ground->camera_height, relief_sigma, &problem);
     }
     for (const KeyframeId id : fixed) {
-      AddDistances(map->keyframe(id), pose_of, ground->camera_height, relief_sigma, &problem);
+      AddSteps(map->keyframe(id), pose_of, ground->camera_height, relief_sigma, &problem);
     }
   }
   if (free_scale) RestoreMeanHeight(&problem);
@@ -247,8 +263,13 @@ void AdjustLocally(KeyframeId center, const LocalBundleOptions& options,
       fixed.push_back(observer.keyframe);
     }
   }
-  // At least two fixed poses hold the gauge, scale included; in a small map these are its oldest.
-  while (fixed.size() < 2 && moving.size() > 1) {
+  // Fixed poses hold the gauge; in a small map these are its oldest. Steps over the ground hold the
+  // scale, or else it takes a second one.
+  const bool has_scale = ground && std::ranges::any_of(moving, [&](KeyframeId id) {
+                           return !map->keyframe(id).ground_steps.empty();
+                         });
+  const size_t min_fixed = has_scale ? 1 : 2;
+  while (fixed.size() < min_fixed && moving.size() > 1) {
     const auto oldest = std::min_element(moving.begin(), moving.end());
     fixed.push_back(*oldest);
     moving.erase(oldest);

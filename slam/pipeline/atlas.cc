@@ -40,7 +40,7 @@ void Atlas::Return(ActiveMap active) {
 void Atlas::Apply(const MapUpdate& update) {
   ORB360_CHECK(!is_lent());
   if (!update.corrections.empty()) {
-    ScaleAnchors(update.corrections);
+    ScaleAnchors(present_number(), update.corrections);
     if (found_loop) Rescale(update.corrections, &*found_loop);
   }
   if (update.renumbering) RenumberMaps(*update.renumbering);
@@ -76,6 +76,11 @@ void Atlas::Finish() {
   grounds_.pop_back();
 }
 
+void Atlas::ChangeUnit(int number, double factor) {
+  Map& map = maps_[number];
+  ScaleAnchors(number, RescaleMap(factor, map.KeyframeIds().front(), &map).corrections);
+}
+
 std::optional<KnownGround> Atlas::ReliableGround() const {
   return ground() && !ground()->is_rough ? ground() : std::nullopt;
 }
@@ -84,9 +89,9 @@ void Atlas::Anchor(int frame_index, FrameAnchor anchor) {
   anchors_[frame_index] = std::move(anchor);
 }
 
-void Atlas::ScaleAnchors(std::span<const Similarity3> corrections) {
+void Atlas::ScaleAnchors(int number, std::span<const Similarity3> corrections) {
   for (auto& [index, anchor] : anchors_) {
-    if (anchor.map != present_number()) continue;
+    if (anchor.map != number) continue;
     const double scale = corrections[anchor.reference].scale;
     anchor.reference_from_camera.translation *= scale;
     anchor.unit_scale *= scale;

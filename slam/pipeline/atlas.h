@@ -53,6 +53,9 @@ class Atlas {
   /// Finishes the present map at the end of a run. The map is dropped, with everything that is
   /// anchored to it, where it is empty or was lost because its job threw an exception.
   void Finish();
+  /// Changes the unit of length of a map at the end of a run, and of all that is anchored to it:
+  /// the new one is 1 / `factor` of the old one.
+  void ChangeUnit(int number, double factor);
 
   /// The ground under each map, by number. Where it is known, the map is in metres.
   std::span<const std::optional<KnownGround>> grounds() const { return grounds_; }
@@ -71,7 +74,8 @@ class Atlas {
   std::vector<ClosedLoop> merges;  ///< Loops by which a map was merged into an older one.
 
  private:
-  void ScaleAnchors(std::span<const Similarity3> corrections);
+  /// Scales the anchors of a map by the corrections of their keyframes.
+  void ScaleAnchors(int number, std::span<const Similarity3> corrections);
   void RenumberMaps(const MapRenumbering& renumbering);
 
   /// The last one is the present map. It is empty while it is lent.

@@ -224,7 +224,8 @@ void FrontEnd::TrackPendingBackwards(TrackedFrame last, int num_threads, Atlas* 
 
 // --- initialization -----------------------------------------------------------------------------
 
-std::optional<InitialMap> FrontEnd::Initialize(const PendingFrame& frame, int num_threads) {
+std::optional<InitialMap> FrontEnd::Initialize(PendingFrame frame, int num_threads) {
+  frame.image = std::make_shared<const SpherePyramid>(TakePyramid());
   constexpr int kAttempts = 2;  // with the reference, then with the frame before this one
   for (int attempt = 0; attempt < kAttempts && !pending_.empty(); ++attempt) {
     const PendingFrame& reference = pending_.Reference();

@@ -82,7 +82,7 @@ class FrontEnd {
   /// Makes a map from the frame and an earlier one if there is enough motion between them;
   /// otherwise the frame is remembered. After a loss the new map begins at the last known pose and
   /// with the scale of the map before. State: initializing or lost.
-  std::optional<InitialMap> Initialize(const PendingFrame& frame, int num_threads);
+  std::optional<InitialMap> Initialize(PendingFrame frame, int num_threads);
   /// Starts tracking in the map just made, which is the present one. State: then tracking.
   void StartTracking(const InitialMap& initial, int num_threads, Atlas* atlas);
 

@@ -29,7 +29,7 @@ std::optional<Velocity> VelocityAt(const Map& map, KeyframeId id, const KnownGro
     const double elapsed = keyframe.timestamp - map.keyframe(step.keyframe).timestamp;
     if (!(elapsed > 0)) continue;
     return Velocity{keyframe.timestamp,
-                    step.ratio * ground.camera_height / elapsed * step.direction};
+                    step.ratio * ground.camera_height / elapsed * step.direction2};
   }
   return std::nullopt;
 }

@@ -18,6 +18,8 @@ constexpr int kSources = 2;
 // deviations from which the ground overrules it.
 constexpr double kTrackedSigma = 0.01;
 constexpr double kMaxSigmas = 3.0;
+// Standard deviation of the turn of a tracked pose about the vertical in good conditions, rad.
+constexpr double kTrackedTurnSigma = 0.002;
 // Standard deviations of a bearing beyond which it contradicts the pose that the ground has
 // corrected. The landmark's own error is unknown, so it is more than the 95 % bound.
 constexpr double kMaxBearingSigmas = 5.0;
@@ -91,7 +93,7 @@ std::vector<Assumption> Assume(const Keyframe& earlier, const Rigid3& motion,
   if (earlier.ground_steps.empty()) return {{motion.translation, known_up}};
   const GroundStepFrom& before = earlier.ground_steps.front();
   return {{motion.translation, before.up},
-          {before.direction, before.up},
+          {before.direction2, before.up},
           {motion.translation, known_up}};
 }
 
@@ -149,11 +151,20 @@ void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
       if (step) break;
     }
     if (!step) continue;
+    const Eigen::Vector3d half = 0.5 * step->ratio * step->direction;
+    const Eigen::Vector3d up =
+        (step->up - step->up.dot(step->direction) * step->direction).normalized();
+    const Eigen::Quaterniond later_from_earlier = motion.rotation.conjugate();
+    const Eigen::Quaterniond turned = later_from_earlier * ExpSo3(-step->turn * up);
     keyframe.ground_steps.push_back({.keyframe = other,
                                      .ratio = step->ratio,
                                      .sigma = step->sigma,
-                                     .direction = motion.rotation.conjugate() * step->direction,
-                                     .up = motion.rotation.conjugate() * step->up});
+                                     .point1 = half - up,
+                                     .point2 = later_from_earlier * (-half - up),
+                                     .direction1 = step->direction,
+                                     .direction2 = turned * step->direction,
+                                     .turn_sigma = step->turn_sigma,
+                                     .up = later_from_earlier * step->up});
   }
 }
 
@@ -161,14 +172,22 @@ void CorrectStep(KeyframeId id, const KnownGround& ground, Map* map) {
   Keyframe& keyframe = map->keyframe(id);
   if (keyframe.ground_steps.empty()) return;
   const GroundStepFrom& measured = keyframe.ground_steps.front();
-  const Eigen::Vector3d& from = map->keyframe(measured.keyframe).world_from_camera.translation;
-  Eigen::Vector3d& to = keyframe.world_from_camera.translation;
-  const double factor = measured.ratio * ground.camera_height / (to - from).norm();
-  if (!(std::abs(std::log(factor)) > kMaxSigmas * std::hypot(measured.sigma, kTrackedSigma))) {
-    return;
-  }
-  to = from + measured.ratio * ground.camera_height *
-                  (keyframe.world_from_camera.rotation * measured.direction);
+  const Rigid3& from = map->keyframe(measured.keyframe).world_from_camera;
+  Rigid3& to = keyframe.world_from_camera;
+  const Eigen::Vector3d direction = from.rotation * measured.direction1;
+  const Eigen::Vector3d up = to.rotation * measured.up;
+  const Eigen::Vector3d tracked_direction = to.rotation * measured.direction2;
+  const double turn =
+      std::atan2(up.dot(tracked_direction.cross(direction)), tracked_direction.dot(direction));
+  const double length = measured.ratio * ground.camera_height;
+  const double factor = length / (to.translation - from.translation).norm();
+  const bool is_turned =
+      std::abs(turn) > kMaxSigmas * std::hypot(measured.turn_sigma, kTrackedTurnSigma);
+  const bool is_right =
+      std::abs(std::log(factor)) <= kMaxSigmas * std::hypot(measured.sigma, kTrackedSigma);
+  if (is_right && !is_turned) return;
+  if (is_turned) to.rotation = (ExpSo3(turn * up) * to.rotation).normalized();
+  to.translation = from.translation + length * direction;
   RemoveWrongObservations(id, map);
 }
 

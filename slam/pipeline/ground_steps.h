@@ -16,8 +16,8 @@ namespace orb360 {
 void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
                         const cv::Mat& mask, Map* map);
 
-/// Moves a keyframe so that the step from the keyframe before it is the one that the ground shows.
-/// Does nothing where the lengths agree within their error.
+/// Moves and turns a keyframe so that the step from the keyframe before it is the one that the
+/// ground shows. Does nothing where length and turn agree with it within their errors.
 void CorrectStep(KeyframeId id, const KnownGround& ground, Map* map);
 
 /// The ground as the steps of some keyframes show it, in the map's unit of length. Empty where

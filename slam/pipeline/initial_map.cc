@@ -14,6 +14,8 @@ InitialMap MakeInitialMap(const PendingFrame& first, const PendingFrame& second,
   Map& map = result.map;
   map.AddKeyframe(first.index, first.timestamp, Rigid3(), first.features);
   map.AddKeyframe(second.index, second.timestamp, views.world_from_camera2, second.features);
+  map.keyframe(InitialMap::kFirst).image = first.image;
+  map.keyframe(InitialMap::kSecond).image = second.image;
   for (const TwoViewMap::Point& point : views.points) {
     const LandmarkId landmark =
         map.AddLandmark(point.position, second.features->colors[point.feature2]);

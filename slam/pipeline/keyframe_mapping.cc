@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "slam/optimization/local_bundle_adjustment.h"
 #include "slam/pipeline/ground.h"
 #include "slam/pipeline/ground_steps.h"
 
@@ -33,6 +34,14 @@ std::optional<KnownGround> LookForGround(const Map& map, const std::optional<Kno
                      .camera_height = known->camera_height};
 }
 
+// Measures the steps that the first keyframes lack. Before the ground was known, their directions
+// of motion may have been too uncertain to find them.
+void MeasureMissingSteps(const KnownGround& ground, const cv::Mat& mask, Map* map) {
+  for (const KeyframeId id : map->KeyframeIds()) {
+    if (map->keyframe(id).ground_steps.empty()) MeasureGroundSteps(id, ground, mask, map);
+  }
+}
+
 }  // namespace
 
 MappedKeyframe MapKeyframe(KeyframeMapping job, const Options& options) {
@@ -41,11 +50,15 @@ MappedKeyframe MapKeyframe(KeyframeMapping job, const Options& options) {
   const KeyframeId id =
       IntegrateKeyframe(job.frame, std::move(job.pyramid), options.mapper, job.ground,
                         options.scale.from_ground ? std::optional(job.mask) : std::nullopt, &map);
+  result.ground = LookForGround(map, job.ground, options.scale);
+  if (result.ground && !job.ground) {
+    MeasureMissingSteps(*result.ground, job.mask, &map);
+    AdjustLocally(id, options.mapper.bundle, result.ground, &map);
+  }
   result.update.reference = id;
   result.update.correction =
       ToSimilarity(map.keyframe(id).world_from_camera * job.frame.world_from_camera.Inverse());
   if (job.ground) result.ground_motion = FindGroundMotion(map, id, *job.ground);
-  result.ground = LookForGround(map, job.ground, options.scale);
   if (job.completed_camera) {
     result.sparse = ProjectLandmarks(map, id, *job.completed_camera, options.depth.sparse);
   }

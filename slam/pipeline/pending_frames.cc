@@ -9,6 +9,7 @@
 namespace orb360 {
 
 void PendingFrames::Remember(PendingFrame frame) {
+  if (!frames_.empty() && frames_.back().index != reference_) frames_.back().image.reset();
   frames_.push_back(std::move(frame));
   const auto is_kept = [](const PendingFrame& f) { return f.features != nullptr; };
   if (std::ranges::count_if(frames_, is_kept) <= max_frames_) return;

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include <orb360/slam/features/features.h>
+#include <orb360/slam/map/map.h>
 
 namespace orb360 {
 
@@ -17,6 +18,8 @@ struct PendingFrame {
   double timestamp = 0;  ///< Seconds.
   /// Null where the frame's features have been dropped.
   std::shared_ptr<const Features> features = {};
+  /// Pyramid of the image, kept for the reference and the newest frame only; else null.
+  std::shared_ptr<const SpherePyramid> image = {};
   /// The rotation of the camera relative to an earlier frame, from which it has hardly moved.
   struct Turn {
     int reference;  ///< Index of that frame.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <thread>
@@ -51,6 +52,7 @@ void Pipeline::LoadMap(const StoredMap& stored, bool keeps_map) {
   atlas_.SetGround(stored.ground);
   if (options_.loop.enabled) atlas_.places().Learn(atlas_.map(), atlas_.present_number());
   keeps_map_ = keeps_map;
+  is_map_loaded_ = true;
   front_end_.StartLost(atlas_.map());
   CountMap();
 }
@@ -171,12 +173,23 @@ void Pipeline::FinishMap() {
   AdoptAdjustment();
 }
 
+// Bundle adjustment weighs heights over planes of landmarks, which may be kerbs, as much as steps
+// over the ground. All that the images show of the ground, together, knows the scale better.
+void Pipeline::CorrectScale() {
+  if (is_map_loaded_) return;  // Its unit of length is kept.
+  const EstimatedScale scale = EstimateScale(atlas_.maps(), atlas_.grounds(), options_.scale);
+  for (size_t i = 0; i < scale.map_log_scales.size(); ++i) {
+    atlas_.ChangeUnit(static_cast<int>(i), std::exp(scale.map_log_scales[i]));
+  }
+}
+
 Reconstruction Pipeline::Finish() {
   if (back_end_.has_map()) AdoptMap();
   if (!atlas_.is_lent()) FinishMap();  // Otherwise a job has thrown, and its map is lost.
   atlas_.Finish();
   if (dense_) dense_->Flush();
 
+  CorrectScale();
   Reconstruction result = MakeReconstruction(atlas_.maps(), atlas_.anchors(), num_threads_);
   const std::span<const std::optional<KnownGround>> grounds = atlas_.grounds();
   for (size_t i = 0; i < result.maps.size(); ++i) {

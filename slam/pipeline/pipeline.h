@@ -53,6 +53,7 @@ class Pipeline {
   void AdoptDepth();
   /// Adopts all pending results, and adjusts the map once more where loops were closed.
   void FinishMap();
+  void CorrectScale();
 
   /// Adapts everything that refers to the present map to a change of the map.
   void Apply(const MapUpdate& update);
@@ -72,6 +73,7 @@ class Pipeline {
   BackEnd back_end_;
   /// Whether frames are only localized in a loaded map, which stays as it is.
   bool keeps_map_ = false;
+  bool is_map_loaded_ = false;
   int num_frames_ = 0;    ///< Number of frames processed.
   int free_threads_ = 1;  ///< Number of OpenMP threads for the present frame.
   /// Counts of the present map when it was last not lent to a job.

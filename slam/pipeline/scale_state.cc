@@ -160,6 +160,7 @@ EstimatedScale EstimateScale(std::span<const Map> maps,
     result.keyframes.insert(result.keyframes.end(), scale.keyframes.begin(), scale.keyframes.end());
     num_steps += scale.num_steps;
     num_planes += scale.num_planes;
+    result.map_log_scales.push_back(scale.log_scale);
     length += scale.length;
     sum_of_logs += scale.length * scale.log_scale;
     whole.sigma = std::max(whole.sigma, scale.sigma);

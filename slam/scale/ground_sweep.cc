@@ -145,8 +145,9 @@ struct TileShift {
 /// The shift at the point half-way between the cameras.
 struct ShiftBelow {
   double shift;              // cells
-  Eigen::Vector2d gradient;  // of its logarithm, along and across
-  double sigma;              // standard deviation, cells
+  Eigen::Vector2d gradient;  // along and across, cells per height
+  double sigma;              // standard deviation of the shift, cells
+  double gradient_sigma;     // and of its gradient along, cells per height
   int num_tiles;
 };
 
@@ -185,10 +186,14 @@ std::optional<ShiftBelow> FitShifts(std::vector<TileShift> tiles, int min_tiles)
     if (is_last) {
       const double scatter = std::hypot(
           residuals.norm() / std::sqrt(static_cast<double>(count - kParameters)), kTileFloor);
-      const Eigen::VectorXd unit = Eigen::VectorXd::Unit(kParameters, 0);
+      const auto sigma_of = [&](int parameter) {
+        const Eigen::VectorXd unit = Eigen::VectorXd::Unit(kParameters, parameter);
+        return kCorrelatedTiles * scatter * std::sqrt(normal.solve(unit)[parameter]);
+      };
       return ShiftBelow{.shift = solution[0],
-                        .gradient = solution.segment<2>(1) / solution[0],
-                        .sigma = scatter * std::sqrt(normal.solve(unit)[0]),
+                        .gradient = solution.segment<2>(1),
+                        .sigma = sigma_of(0),
+                        .gradient_sigma = sigma_of(1),
                         .num_tiles = static_cast<int>(count)};
     }
     std::vector<TileShift> kept;
@@ -216,7 +221,7 @@ std::optional<Eigen::Matrix3d> GroundAxes(const Eigen::Vector3d& step, const Eig
 /// The shifts of the tiles around a common one, along the motion and across it, cells.
 struct TileShifts {
   std::vector<TileShift> along;
-  std::vector<double> across;
+  std::vector<TileShift> across;
 };
 
 TileShifts ShiftsOfTiles(const BirdsEyeView& view1, const BirdsEyeView& view2,
@@ -247,8 +252,9 @@ TileShifts ShiftsOfTiles(const BirdsEyeView& view1, const BirdsEyeView& view2,
     shifts.along.push_back({CenterOf(tile), common.along + along +
                                                 ParabolaPeak(value(along - 1, across), best,
                                                              value(along + 1, across))});
-    shifts.across.push_back(common.across + across +
-                            ParabolaPeak(value(along, across - 1), best, value(along, across + 1)));
+    shifts.across.push_back({CenterOf(tile), common.across + across +
+                                                 ParabolaPeak(value(along, across - 1), best,
+                                                              value(along, across + 1))});
   }
   return shifts;
 }
@@ -290,19 +296,22 @@ std::optional<GroundStep> Sweep(const SpherePyramid& image1, const SpherePyramid
   }
   TileShifts tiles = ShiftsOfTiles(view1, view2, common);
   const std::optional<ShiftBelow> below = FitShifts(std::move(tiles.along), options.min_tiles);
-  if (!below) return std::nullopt;
-  const double across = Median(tiles.across);
+  const std::optional<ShiftBelow> aside = FitShifts(std::move(tiles.across), options.min_tiles);
+  if (!below || !aside) return std::nullopt;
   GroundStep step;
-  step.ratio = kCell * std::hypot(below->shift, across);
-  step.sigma = kCorrelatedTiles * below->sigma / below->shift;
+  step.ratio = kCell * std::hypot(below->shift, aside->shift);
+  step.sigma = below->sigma / below->shift;
   if (!(step.sigma < options.max_sigma)) return std::nullopt;
   step.correlation = coarse->correlation;
   step.rival = coarse->rival;
   step.num_tiles = below->num_tiles;
-  step.direction = axes * Eigen::Vector3d(below->shift, across, 0).normalized();
+  step.direction = axes * Eigen::Vector3d(below->shift, aside->shift, 0).normalized();
+  // Relief shifts a tile along the motion only, a turn shifts it across in proportion to its place.
+  step.turn = kCell * aside->gradient.x();
+  step.turn_sigma = kCell * aside->gradient_sigma;
   // The shift is inversely proportional to the height of the camera over a piece of the ground,
   // which is thus 1 - gradient . place.
-  const Eigen::Vector2d slope = below->gradient;
+  const Eigen::Vector2d slope = below->gradient / below->shift;
   step.up = (axes * Eigen::Vector3d(-slope.x(), -slope.y(), 1.0)).normalized();
   return step;
 }

@@ -44,6 +44,10 @@ struct GroundStep {
   /// Direction of the motion over the ground, unit, frame of camera 1. It is more exact than the
   /// one that was given where only far points have shown that.
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  /// Angle about `up` by which the given camera1_from_camera2 must be turned on, rad, and its
+  /// standard deviation.
+  double turn = 0;
+  double turn_sigma = 0;
   /// Normal of the ground below the point half-way, unit, frame of camera 1.
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
   double correlation = 0;  ///< Mean correlation of the tiles at the best ratio.
@@ -56,13 +60,13 @@ struct GroundStep {
 /// to the ground plane. In this bird's-eye view the step is a shift along the direction of motion,
 /// so that a sweep over the shift finds it without corners or descriptors, even on asphalt.
 ///
-/// `camera1_from_camera2` gives the rotation and the approximate direction of the motion; its
-/// length is not used. `up` is the approximate normal of the ground, unit, frame of camera 1; the
-/// ground is taken to be parallel to the motion, or where that shows nothing, to have this normal.
-/// An error of the normal cancels to first order, because the tiles lie symmetrically about the
-/// point half-way; where the tiles show that the normal is wrong by more than that allows, the
-/// measurement is repeated with the one that they show. `mask` (CV_8U, size of level 0, 0: not
-/// used; may be empty) removes what moves with the camera.
+/// `camera1_from_camera2` gives the approximate rotation and direction of the motion; its length is
+/// not used. The ground also shows the rotation about its normal. `up` is the approximate normal of
+/// the ground, unit, frame of camera 1; the ground is taken to be parallel to the motion, or where
+/// that shows nothing, to have this normal. An error of the normal cancels to first order, because
+/// the tiles lie symmetrically about the point half-way; where the tiles show that the normal is
+/// wrong by more than that allows, the measurement is repeated with the one that they show. `mask`
+/// (CV_8U, size of level 0, 0: not used; may be empty) removes what moves with the camera.
 ///
 /// Empty where the camera moves along the normal, and where no ratio passes the options.
 std::optional<GroundStep> MeasureGroundStep(const SpherePyramid& image1,

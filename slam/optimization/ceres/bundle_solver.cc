@@ -9,8 +9,8 @@
 #include <ceres/ceres.h>
 
 #include "slam/optimization/bundle_loss.h"
-#include "slam/optimization/ceres/distance_cost.h"
 #include "slam/optimization/ceres/point_cost.h"
+#include "slam/optimization/ceres/shared_point_cost.h"
 #include "slam/optimization/ceres/solver_options.h"
 
 namespace orb360 {
@@ -38,7 +38,7 @@ class CeresBundle {
       : direction_loss_(MakeCeresLoss(DirectionLoss(loss))),
         height_loss_(MakeCeresLoss(HeightLoss())),
         range_loss_(MakeCeresLoss(RangeLoss())),
-        distance_loss_(MakeCeresLoss(DistanceLoss())),
+        shared_point_loss_(MakeCeresLoss(SharedPointLoss())),
         poses_(bundle.world_from_camera.size()),
         points_(bundle.points),
         ordering_(std::make_shared<ceres::ParameterBlockOrdering>()),
@@ -54,7 +54,7 @@ class CeresBundle {
     // The more numerous variables are eliminated. Those are the points, except where a long track
     // follows a few of them: their elimination would make the reduced system large and full. Poses
     // with a residual in common cannot be eliminated one by one.
-    const bool eliminates_points = points_.size() >= poses_.size() || !bundle.distances.empty();
+    const bool eliminates_points = points_.size() >= poses_.size() || !bundle.shared_points.empty();
     for (auto& pose : poses_) ordering_->AddElementToGroup(pose.data(), eliminates_points ? 1 : 0);
     for (Eigen::Vector3d& point : points_) {
       ordering_->AddElementToGroup(point.data(), eliminates_points ? 0 : 1);
@@ -71,10 +71,10 @@ class CeresBundle {
       ranges_.emplace_back(RangeResidual(r.range, r.sigma));
       AddBlock(&ranges_.back(), range_loss_.get(), r.pose, r.point);
     }
-    for (const BundleProblem::Distance& d : bundle.distances) {
-      distances_.emplace_back(RangeResidual(d.distance, d.sigma));
-      problem_.AddResidualBlock(&distances_.back(), distance_loss_.get(), poses_[d.pose1].data(),
-                                poses_[d.pose2].data());
+    for (const BundleProblem::SharedPoint& shared : bundle.shared_points) {
+      shared_points_.emplace_back(shared);
+      problem_.AddResidualBlock(&shared_points_.back(), shared_point_loss_.get(),
+                                poses_[shared.pose1].data(), poses_[shared.pose2].data());
     }
   }
   CeresBundle(const CeresBundle&) = delete;
@@ -118,13 +118,13 @@ class CeresBundle {
   std::unique_ptr<ceres::LossFunction> direction_loss_;
   std::unique_ptr<ceres::LossFunction> height_loss_;
   std::unique_ptr<ceres::LossFunction> range_loss_;
-  std::unique_ptr<ceres::LossFunction> distance_loss_;
+  std::unique_ptr<ceres::LossFunction> shared_point_loss_;
   std::vector<std::array<double, 7>> poses_;
   std::vector<Eigen::Vector3d> points_;
   std::deque<PointCost<DirectionResidual>> directions_;  // cost functions cannot move
   std::deque<PointCost<HeightResidual>> heights_;
   std::deque<PointCost<RangeResidual>> ranges_;
-  std::deque<DistanceCost> distances_;
+  std::deque<SharedPointCost> shared_points_;
   std::shared_ptr<ceres::ParameterBlockOrdering> ordering_;
   ceres::Problem problem_;
 };

@@ -8,6 +8,7 @@
 #include "slam/optimization/bundle_loss.h"
 #include "slam/optimization/point_residual.h"
 #include "slam/optimization/schur/block_structure.h"
+#include "slam/optimization/shared_point_residual.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/slam/geometry/so3.h>
 
@@ -64,7 +65,7 @@ PosePair SortedPair(int a, int b) { return {std::max(a, b), std::min(a, b)}; }
 }  // namespace
 
 BundleEvaluator::BundleEvaluator(BundleLoss loss, const BundleProblem& problem)
-    : blocks_(MakeResidualBlocks(problem)), distances_(problem.distances) {
+    : blocks_(MakeResidualBlocks(problem)), shared_points_(problem.shared_points) {
   losses_[ResidualBlocks::kDirection] = DirectionLoss(loss);
   losses_[ResidualBlocks::kHeight] = HeightLoss();
   losses_[ResidualBlocks::kRange] = RangeLoss();
@@ -72,10 +73,10 @@ BundleEvaluator::BundleEvaluator(BundleLoss loss, const BundleProblem& problem)
     free_index_.push_back(is_fixed ? -1 : num_free_poses_++);
   }
   pairs_ = FindPairs(free_index_, problem.points.size(), &blocks_);
-  for (const BundleProblem::Distance& distance : distances_) {
-    const int free1 = free_index_[distance.pose1];
-    const int free2 = free_index_[distance.pose2];
-    ORB360_CHECK(distance.pose1 != distance.pose2, distance.pose1);
+  for (const BundleProblem::SharedPoint& shared : shared_points_) {
+    const int free1 = free_index_[shared.pose1];
+    const int free2 = free_index_[shared.pose2];
+    ORB360_CHECK(shared.pose1 != shared.pose2, shared.pose1);
     if (free1 >= 0 && free2 >= 0) pose_pairs_.push_back(SortedPair(free1, free2));
   }
   SortUnique(&pose_pairs_);
@@ -108,45 +109,40 @@ double BundleEvaluator::Evaluate(const BundleState& state, NormalEquations* equa
       }
     }
   }
-  return cost + EvaluateDistances(state, equations);
+  return cost + EvaluateSharedPoints(state, equations);
 }
 
-double BundleEvaluator::EvaluateDistances(const BundleState& state,
-                                          NormalEquations* equations) const {
+double BundleEvaluator::EvaluateSharedPoints(const BundleState& state,
+                                             NormalEquations* equations) const {
   double cost = 0;
-  for (const BundleProblem::Distance& distance : distances_) {
-    const Rigid3& pose1 = state.camera_from_world[distance.pose1];
-    const Rigid3& pose2 = state.camera_from_world[distance.pose2];
-    const Eigen::Vector3d between = pose2.Inverse().translation - pose1.Inverse().translation;
-    PointJacobian by_between;
-    const double residual =
-        RangeResidual(distance.distance, distance.sigma)(between, &by_between).x();
-    if (!std::isfinite(residual)) return std::numeric_limits<double>::infinity();
-    const RobustLoss::Value loss = DistanceLoss()(residual * residual);
+  for (const BundleProblem::SharedPoint& shared : shared_points_) {
+    SharedPointJacobian by_pose1;
+    SharedPointJacobian by_pose2;
+    const bool is_linearized = equations != nullptr;
+    const Eigen::Vector2d residual = SharedPointResidual(
+        shared, state.camera_from_world[shared.pose1], state.camera_from_world[shared.pose2],
+        is_linearized ? &by_pose1 : nullptr, is_linearized ? &by_pose2 : nullptr);
+    if (!residual.allFinite()) return std::numeric_limits<double>::infinity();
+    const RobustLoss::Value loss = SharedPointLoss()(residual.squaredNorm());
     cost += 0.5 * loss.rho;
-    if (equations == nullptr) continue;
-    // A rotation leaves the camera's centre where it is; a translation d of camera_from_world moves
-    // it by -R^T d.
-    const Eigen::Vector3d across = by_between.row(0).transpose();
-    PaddedVector by_pose1 = PaddedVector::Zero();
-    PaddedVector by_pose2 = PaddedVector::Zero();
-    by_pose1.segment<3>(3) = pose1.rotation * across;
-    by_pose2.segment<3>(3) = -(pose2.rotation * across);
-    const int free1 = free_index_[distance.pose1];
-    const int free2 = free_index_[distance.pose2];
-    const auto add = [&](int free, const PaddedVector& by_pose) {
+    if (!is_linearized) continue;
+    const int free1 = free_index_[shared.pose1];
+    const int free2 = free_index_[shared.pose2];
+    const auto add = [&](int free, const SharedPointJacobian& by_pose) {
       if (free < 0) return;
-      equations->pose_hessian[free] += loss.slope * by_pose * by_pose.head<kPoseSize>().transpose();
-      equations->pose_gradient[free] += loss.slope * residual * by_pose;
+      equations->pose_hessian[free].topRows<kPoseSize>() +=
+          loss.slope * by_pose.transpose() * by_pose;
+      equations->pose_gradient[free].head<kPoseSize>() +=
+          loss.slope * by_pose.transpose() * residual;
     };
     add(free1, by_pose1);
     add(free2, by_pose2);
     if (free1 < 0 || free2 < 0) continue;
     const auto pair = std::ranges::lower_bound(pose_pairs_, SortedPair(free1, free2));
     const bool is_first_row = free1 > free2;
-    equations->pose_pair_hessian[pair - pose_pairs_.begin()] +=
-        loss.slope * (is_first_row ? by_pose1 : by_pose2) *
-        (is_first_row ? by_pose2 : by_pose1).head<kPoseSize>().transpose();
+    equations->pose_pair_hessian[pair - pose_pairs_.begin()].topRows<kPoseSize>() +=
+        loss.slope * (is_first_row ? by_pose1 : by_pose2).transpose() *
+        (is_first_row ? by_pose2 : by_pose1);
   }
   return cost;
 }

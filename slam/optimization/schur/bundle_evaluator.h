@@ -46,11 +46,11 @@ class BundleEvaluator {
  private:
   double Evaluate(const BundleState& state, NormalEquations* equations) const;
 
-  double EvaluateDistances(const BundleState& state, NormalEquations* equations) const;
+  double EvaluateSharedPoints(const BundleState& state, NormalEquations* equations) const;
 
   std::array<ResidualBlocks, 3> blocks_;  ///< By kind.
   std::array<RobustLoss, 3> losses_;      ///< By kind.
-  std::vector<BundleProblem::Distance> distances_;
+  std::vector<BundleProblem::SharedPoint> shared_points_;
   PosePointPairs pairs_;
   std::vector<PosePair> pose_pairs_;  ///< Sorted.
   std::vector<int> free_index_;       ///< By pose: its index among those that are not fixed, or -1.

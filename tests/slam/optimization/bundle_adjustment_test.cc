@@ -4,6 +4,7 @@
 
 #include "nn/base/statistics.h"
 #include "slam/optimization/local_bundle_adjustment.h"
+#include "tests/slam/map/true_ground_step.h"
 #include "tests/slam/pipeline/synthetic_scene.h"
 
 namespace orb360 {
@@ -172,22 +173,25 @@ TEST(LocalBundleAdjustment, RoughRangesHelpWithPointsOfLittleParallax) {
   EXPECT_LT(median_error(&with_ranges), 0.8 * without);
 }
 
-TEST(LocalBundleAdjustment, StepsOverTheGroundHoldTheLengthThatFarPointsDoNot) {
+TEST(LocalBundleAdjustment, StepsOverTheGroundHoldTheMotionThatFarPointsDoNot) {
   SyntheticScene scene(300, 200.0, 400.0);
   const std::vector<Rigid3> poses = Walk(6, {-1.2, 0.1, 0.0});
   Map map = scene.MakeMap(poses, 300);
-  const double step = (poses[5].translation - poses[4].translation).norm();
-  Eigen::Vector3d& last = map.keyframe(5).world_from_camera.translation;
-  last = poses[4].translation + 0.8 * (poses[5].translation - poses[4].translation);
-  const auto length_after = [&](Map adjusted) {
+  const Eigen::Vector3d step = poses[5].translation - poses[4].translation;
+  const auto error_after = [&](const Eigen::Vector3d& tracked, Map adjusted) {
+    Eigen::Vector3d& last = adjusted.keyframe(5).world_from_camera.translation;
+    last = poses[4].translation + tracked;
     AdjustLocally(5, {.max_iterations = 10}, KnownGround{Eigen::Vector3d::UnitZ(), 1.6}, &adjusted);
-    return (adjusted.keyframe(5).world_from_camera.translation -
-            adjusted.keyframe(4).world_from_camera.translation)
-        .norm();
+    return (last - adjusted.keyframe(4).world_from_camera.translation - step).head<2>().norm() /
+           step.norm();
   };
-  EXPECT_GT(std::abs(length_after(map) / step - 1), 0.03) << "or there is nothing to hold";
-  map.keyframe(5).ground_steps.push_back({.keyframe = 4, .ratio = step / 1.6, .sigma = 0.002});
-  EXPECT_NEAR(length_after(map) / step, 1.0, 0.01);
+  const Eigen::Vector3d too_short = 0.8 * step;
+  const Eigen::Vector3d aside = ExpSo3({0, 0, 0.2}) * step;
+  EXPECT_GT(error_after(too_short, map), 0.03) << "or there is nothing to hold";
+  EXPECT_GT(error_after(aside, map), 0.03) << "or there is nothing to hold";
+  map.keyframe(5).ground_steps.push_back(TrueGroundStep(4, poses[4], poses[5], 1.6));
+  EXPECT_LT(error_after(too_short, map), 0.01);
+  EXPECT_LT(error_after(aside, map), 0.01);
 }
 
 TEST(LocalBundleAdjustment, GlobalAdjustmentBringsTheWholeMapToRest) {

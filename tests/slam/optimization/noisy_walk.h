@@ -7,9 +7,9 @@
 
 namespace orb360 {
 
-/// A walk that sees points from a few poses each, over a ground and with ranges and distances, all
-/// with noise, and every twentieth observation wrong altogether. Three of its
-/// twelve poses are fixed.
+/// A walk that sees points from a few poses each, over a ground and with ranges and points that two
+/// poses see, all with noise, and every twentieth observation wrong altogether. Three of its twelve
+/// poses are fixed.
 inline BundleProblem NoisyWalk(int seed) {
   RandomGeometry random(seed);
   BundleProblem problem;
@@ -37,16 +37,20 @@ inline BundleProblem NoisyWalk(int seed) {
       }
     }
   }
-  RandomGeometry random_distances(seed + 1000);
+  RandomGeometry random_shared(seed + 1000);
   for (int i = 0; i < 12; ++i) {
     for (int j = i + 1; j < std::min(12, i + 3); ++j) {
-      const double distance =
-          (problem.world_from_camera[j].translation - problem.world_from_camera[i].translation)
-              .norm();
-      problem.distances.push_back({.pose1 = i,
-                                   .pose2 = j,
-                                   .distance = distance * random_distances.Uniform(0.98, 1.02),
-                                   .sigma = 0.02});
+      const Eigen::Vector3d point = random_shared.Point(0.5, 3.0);
+      BundleProblem::SharedPoint seen{
+          .pose1 = i,
+          .pose2 = j,
+          .point1 = problem.world_from_camera[i].Inverse() * point + random_shared.Point(0.0, 0.02),
+          .point2 = problem.world_from_camera[j].Inverse() * point,
+          .sqrt_information = {}};
+      for (double& value : seen.sqrt_information.reshaped()) {
+        value = random_shared.Uniform(-50.0, 50.0);
+      }
+      problem.shared_points.push_back(seen);
     }
   }
   for (size_t i = 0; i < problem.world_from_camera.size(); ++i) {

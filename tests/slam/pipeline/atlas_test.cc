@@ -54,6 +54,22 @@ TEST(Atlas, AnAnchoredFrameFollowsARescaledMap) {
   EXPECT_EQ(atlas.anchors().at(7).unit_scale, 2.5);
 }
 
+TEST(Atlas, AFinishedMapChangesItsUnitWithItsFrames) {
+  Atlas atlas = EmptyAtlas();
+  atlas.Begin(SmallMap(4));
+  atlas.Anchor(7, AnchorAt(0, 2, {0.1, 0.2, 0.3}));
+  atlas.Begin(SmallMap(3));
+  atlas.Anchor(9, AnchorAt(1, 1, {0.3, 0.2, 0.1}));
+  const Eigen::Vector3d center = atlas.maps()[0].PoseOf(0).translation;
+  const Eigen::Vector3d before = PositionOf(atlas, 7);
+  const Eigen::Vector3d other = PositionOf(atlas, 9);
+  atlas.ChangeUnit(0, 0.5);
+  EXPECT_LT((PositionOf(atlas, 7) - (center + 0.5 * (before - center))).norm(), 1e-12);
+  EXPECT_EQ(atlas.anchors().at(7).unit_scale, 0.5);
+  EXPECT_EQ(PositionOf(atlas, 9), other);
+  EXPECT_EQ(atlas.anchors().at(9).unit_scale, 1.0);
+}
+
 TEST(Atlas, AFrameOfAFinishedMapStaysWhenThePresentOneIsRescaled) {
   Atlas atlas = EmptyAtlas();
   atlas.Begin(SmallMap(4));

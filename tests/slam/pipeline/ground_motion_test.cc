@@ -34,7 +34,7 @@ Map Drive(double turn, const std::vector<double>& factors) {
         {.keyframe = id - 1,
          .ratio = factors[i] * step.norm() / kGround.camera_height,
          .sigma = 0.003,
-         .direction = step.normalized(),
+         .direction2 = step.normalized(),
          .up = Eigen::Vector3d::UnitZ()});
   }
   return map;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "slam/geometry/bearing.h"
+#include "tests/slam/map/true_ground_step.h"
 #include "tests/slam/scale/ground_scene.h"
 #include <orb360/slam/geometry/so3.h>
 
@@ -47,9 +48,29 @@ TEST(MeasureGroundSteps, MeasuresFromTheLastTwoKeyframes) {
     const GroundStepFrom& step = steps[static_cast<size_t>(gap) - 1];
     EXPECT_EQ(step.keyframe, 3 - gap);
     EXPECT_NEAR(std::log(step.ratio / (gap * kStep / kHeight)), 0.0, 0.005) << gap;
+    // Both cameras see one point of the ground.
+    const Eigen::Vector3d seen1 = TruePose(3 - gap) * (kHeight * step.point1);
+    const Eigen::Vector3d seen2 = TruePose(3) * (kHeight * step.point2);
+    EXPECT_LT((seen1 - seen2).norm(), 0.01) << gap;
+    EXPECT_NEAR(seen1.z(), 0.0, 0.01) << gap;
+    const Eigen::Vector3d direction = TruePose(3).rotation * step.direction2;
+    EXPECT_LT(AngleBetween(direction, Eigen::Vector3d::UnitX()), 0.01) << gap;
+    EXPECT_LT(AngleBetween(TruePose(3 - gap).rotation * step.direction1, direction), 0.003) << gap;
     const Eigen::Vector3d up = TruePose(3).rotation * step.up;
     EXPECT_LT(std::acos(up.z()), 0.02) << gap;
   }
+}
+
+TEST(MeasureGroundSteps, TellsTheRotationThatTrackingHasMissed) {
+  Map map = Drive(2, 1.0, Scaled(Asphalt(11)));
+  Eigen::Quaterniond& tracked = map.keyframe(1).world_from_camera.rotation;
+  tracked = ExpSo3({0, 0, 0.02}) * tracked;
+  MeasureGroundSteps(1, std::nullopt, {}, &map);
+  ASSERT_EQ(map.keyframe(1).ground_steps.size(), 1u);
+  const GroundStepFrom& step = map.keyframe(1).ground_steps.front();
+  EXPECT_LT(
+      AngleBetween(TruePose(0).rotation * step.direction1, TruePose(1).rotation * step.direction2),
+      0.003);
 }
 
 TEST(MeasureGroundSteps, SeeksTheStepAroundTheLastSpeed) {
@@ -58,7 +79,7 @@ TEST(MeasureGroundSteps, SeeksTheStepAroundTheLastSpeed) {
     map.keyframe(1).ground_steps.push_back({.keyframe = 0,
                                             .ratio = last_ratio * kStep / kHeight,
                                             .sigma = 0.002,
-                                            .direction = Eigen::Vector3d(-1, 0, 0)});
+                                            .direction2 = Eigen::Vector3d(-1, 0, 0)});
     MeasureGroundSteps(2, std::nullopt, {}, &map);
     const std::vector<GroundStepFrom>& steps = map.keyframe(2).ground_steps;
     const bool is_measured = !steps.empty() && steps.front().keyframe == 1;
@@ -114,20 +135,18 @@ TEST(CorrectStep, RemovesWhatMovesWithTheCamera) {
     map.AddObservation(on_wall, id, 0);
     map.AddObservation(on_car, id, 1);
   }
-  // By the car, the camera stands still.
-  Eigen::Vector3d& to = map.keyframe(1).world_from_camera.translation;
-  to = map.keyframe(0).world_from_camera.translation + Eigen::Vector3d(0.05, 0, 0);
+  // By the car, the camera stands still and does not turn.
+  Rigid3& pose = map.keyframe(1).world_from_camera;
+  pose.translation = TruePose(0).translation + Eigen::Vector3d(0.05, 0, 0);
+  pose.rotation = ExpSo3({0, 0, -0.05}) * TruePose(1).rotation;
   const KnownGround known{Eigen::Vector3d::UnitZ(), kHeight};
   MeasureGroundSteps(1, known, {}, &map);
   // Tracking lets expect a step that is too short to be measured.
   ASSERT_TRUE(map.keyframe(1).ground_steps.empty());
-  map.keyframe(1).ground_steps.push_back(
-      {.keyframe = 0,
-       .ratio = kStep / kHeight,
-       .sigma = 0.002,
-       .direction = TruePose(1).rotation.conjugate() * Eigen::Vector3d::UnitX()});
+  map.keyframe(1).ground_steps.push_back(TrueGroundStep(0, TruePose(0), TruePose(1), kHeight));
   CorrectStep(1, known, &map);
-  EXPECT_LT((to - TruePose(1).translation).norm(), 0.01);
+  EXPECT_LT((pose.translation - TruePose(1).translation).norm(), 0.01);
+  EXPECT_LT(pose.rotation.angularDistance(TruePose(1).rotation), 1e-3);
   EXPECT_TRUE(map.HasLandmark(on_wall));
   EXPECT_FALSE(map.HasLandmark(on_car));
   map.CheckConsistency();
@@ -164,8 +183,9 @@ TEST(MeasureGroundSteps, FindsAStepInAnotherDirectionThanTrackedWhileNoGroundIsK
   ASSERT_EQ(map.keyframe(1).ground_steps.size(), 1u);
   const GroundStepFrom& step = map.keyframe(1).ground_steps.front();
   EXPECT_NEAR(step.ratio, kStep / kHeight, 0.01);
-  EXPECT_LT(AngleBetween(map.keyframe(1).world_from_camera.rotation * step.direction, truth - from),
-            0.03);
+  EXPECT_LT(
+      AngleBetween(map.keyframe(1).world_from_camera.rotation * step.direction2, truth - from),
+      0.03);
 }
 
 TEST(AgreesWithSteps, RefusesAPlaneAtAnotherHeight) {

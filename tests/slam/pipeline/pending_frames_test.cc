@@ -1,7 +1,12 @@
 #include "slam/pipeline/pending_frames.h"
 
+#include <memory>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
+#include "slam/features/sphere_pyramid.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
@@ -24,6 +29,23 @@ TEST(PendingFrames, TheNewestIsTheReferenceUntilItIsReplaced) {
   frames.Remember(FrameAt(5));
   frames.ResetReference();
   EXPECT_EQ(frames.Reference().index, 5);
+}
+
+TEST(PendingFrames, KeepsTheImagesOfTheReferenceAndOfTheNewest) {
+  PendingFrames frames(10);
+  const auto remember = [&](int index) {
+    PendingFrame frame = FrameAt(index);
+    frame.image = std::make_shared<const SpherePyramid>();
+    frames.Remember(std::move(frame));
+  };
+  remember(1);
+  EXPECT_EQ(frames.Reference().index, 1);
+  for (const int index : {2, 3, 4}) remember(index);
+  std::vector<int> with_image;
+  for (const PendingFrame& frame : frames.TakeNewestFirst()) {
+    if (frame.image) with_image.push_back(frame.index);
+  }
+  EXPECT_EQ(with_image, (std::vector<int>{4, 1}));
 }
 
 TEST(PendingFrames, ForgetsTheOldestButNeverTheReference) {

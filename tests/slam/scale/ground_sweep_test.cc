@@ -71,6 +71,24 @@ TEST(MeasureGroundStep, FindsTheDirectionOfTheMotionToo) {
   }
 }
 
+TEST(MeasureGroundStep, FindsTheRotationAboutTheVerticalToo) {
+  const Asphalt asphalt(9);
+  const double step = 0.9;
+  const Rigid3 second = After(step);
+  const Rigid3 motion = kFirst.Inverse() * second;
+  const Eigen::Vector3d up = kFirst.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  for (const double error : {0.0, 0.012, -0.02}) {  // rad
+    Rigid3 wrong = motion;
+    wrong.rotation = ExpSo3(error * up) * motion.rotation;
+    const auto found = MeasureGroundStep(LookAtGround(kFirst, asphalt),
+                                         LookAtGround(second, asphalt), wrong, up, {}, {});
+    ASSERT_TRUE(found) << error;
+    EXPECT_NEAR(found->turn, -error, 0.001) << error;
+    EXPECT_LT(std::abs(found->turn + error), 4 * found->turn_sigma) << error;
+    EXPECT_LT(found->turn_sigma, 0.0015) << error;
+  }
+}
+
 TEST(MeasureGroundStep, ItsErrorsAreWithinItsSigma) {
   double squares = 0;
   constexpr int kCount = 12;

@@ -54,14 +54,23 @@ struct RangePrior {
   float sigma = 0;  ///< Standard deviation of ln(range); 0 where nothing is known.
 };
 
-/// The length of the motion from another keyframe, measured on the ground.
+/// The motion from another keyframe, measured on the ground. Frame 1 is that of the other keyframe,
+/// frame 2 that of the keyframe that has this step.
 struct GroundStepFrom {
   KeyframeId keyframe = kNoId;  ///< The other keyframe. It may have been removed since.
   double ratio = 0;             ///< Length, divided by the camera's height over the ground.
   double sigma = 0;             ///< Standard deviation of ln(ratio).
-  /// Direction of the motion, unit, frame of the keyframe that has this step.
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
-  /// Normal of the ground below the point half-way, unit, frame of the keyframe that has this step.
+  /// The point of the ground below the point half-way, heights of the camera, frame 1.
+  Eigen::Vector3d point1 = Eigen::Vector3d::Zero();
+  /// The same point in frame 2.
+  Eigen::Vector3d point2 = Eigen::Vector3d::Zero();
+  /// Direction of the motion, unit, frame 1.
+  Eigen::Vector3d direction1 = Eigen::Vector3d::Zero();
+  /// The same direction in frame 2.
+  Eigen::Vector3d direction2 = Eigen::Vector3d::Zero();
+  /// Standard deviation of the rotation about the ground's normal between the frames, rad.
+  double turn_sigma = 0;
+  /// Normal of the ground below the point half-way, unit, frame 2.
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 };
 
