@@ -15,7 +15,7 @@ std::filesystem::path DefaultWeights() {
        {program.parent_path().parent_path() / ORB360_DATA_FOLDER / "weights",
         std::filesystem::path(ORB360_SOURCE_WEIGHTS),
         std::filesystem::path(ORB360_INSTALL_PREFIX) / ORB360_DATA_FOLDER / "weights"}) {
-    const std::filesystem::path path = folder / kName;
+    std::filesystem::path path = folder / kName;
     if (std::filesystem::is_regular_file(path, error)) return path;
     places += places.empty() ? "" : ", ";
     places += folder.string();

@@ -21,7 +21,7 @@ constexpr const char* kMovingName = "moving";
 /// Reads the mask of moving objects, CV_8UC1; empty if there is none.
 cv::Mat ReadMoving(const std::filesystem::path& path, cv::Size size) {
   if (!std::filesystem::is_regular_file(path)) return {};
-  const cv::Mat moving = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
+  cv::Mat moving = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
   if (moving.size() != size) {
     throw UserError(path.string() + ": is not a mask of " + ToString(size) + " pixels");
   }

@@ -92,9 +92,8 @@ cv::Mat LargeRegions(const cv::Mat& region) {
 
 void StaticRegionDetector::Add(const cv::Mat& image) {
   ORB360_CHECK(image.type() == CV_8UC1 || image.type() == CV_8UC3, image.type());
-  cv::Mat gray = image;
   cv::Mat small;
-  cv::resize(gray, small, {kWidth, kHeight}, 0, 0, cv::INTER_AREA);
+  cv::resize(image, small, {kWidth, kHeight}, 0, 0, cv::INTER_AREA);
   if (small.channels() == 3) cv::cvtColor(small, small, cv::COLOR_BGR2GRAY);
   small.convertTo(small, CV_32F);
   if (previous_.empty()) {

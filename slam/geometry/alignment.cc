@@ -1,5 +1,7 @@
 #include "slam/geometry/alignment.h"
 
+#include <numeric>
+
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 
@@ -28,14 +30,18 @@ struct Centered {
 };
 
 std::optional<Centered> AlignCentered(std::span<const Vector3d> source,
-                                      std::span<const Vector3d> target) {
+                                      std::span<const Vector3d> target,
+                                      std::span<const double> weights) {
   ORB360_CHECK(source.size() == target.size(), source.size(), target.size());
+  ORB360_CHECK(weights.empty() || weights.size() == source.size(), weights.size(), source.size());
   if (source.empty()) return std::nullopt;
-  const double fraction = 1.0 / static_cast<double>(source.size());
+  const double total = weights.empty() ? static_cast<double>(source.size())
+                                       : std::accumulate(weights.begin(), weights.end(), 0.0);
+  const auto fraction_of = [&](size_t i) { return (weights.empty() ? 1.0 : weights[i]) / total; };
   Centered result{Vector3d::Zero(), Vector3d::Zero()};
   for (size_t i = 0; i < source.size(); ++i) {
-    result.source_mean += fraction * source[i];
-    result.target_mean += fraction * target[i];
+    result.source_mean += fraction_of(i) * source[i];
+    result.target_mean += fraction_of(i) * target[i];
   }
   if (!result.source_mean.allFinite() || !result.target_mean.allFinite()) return std::nullopt;
 
@@ -43,6 +49,7 @@ std::optional<Centered> AlignCentered(std::span<const Vector3d> source,
   for (size_t i = 0; i < source.size(); ++i) {
     const Vector3d s = source[i] - result.source_mean;
     const Vector3d t = target[i] - result.target_mean;
+    const double fraction = fraction_of(i);
     result.source_variance += fraction * s.squaredNorm();
     result.target_variance += fraction * t.squaredNorm();
     covariance += fraction * t * s.transpose();
@@ -75,15 +82,16 @@ std::optional<Centered> AlignCentered(std::span<const Vector3d> source,
 
 std::optional<Rigid3> AlignRigid(std::span<const Vector3d> source,
                                  std::span<const Vector3d> target) {
-  const auto centered = AlignCentered(source, target);
+  const auto centered = AlignCentered(source, target, {});
   if (!centered) return std::nullopt;
   return Rigid3{Eigen::Quaterniond(centered->rotation).normalized(),
                 centered->target_mean - centered->rotation * centered->source_mean};
 }
 
 std::optional<Similarity3> AlignSimilarity(std::span<const Vector3d> source,
-                                           std::span<const Vector3d> target) {
-  const auto centered = AlignCentered(source, target);
+                                           std::span<const Vector3d> target,
+                                           std::span<const double> weights) {
+  const auto centered = AlignCentered(source, target, weights);
   if (!centered || !(centered->correlation > 0.0)) return std::nullopt;
   const double scale = centered->correlation / centered->source_variance;
   return Similarity3{scale, Eigen::Quaterniond(centered->rotation).normalized(),

@@ -21,9 +21,11 @@ namespace orb360 {
 std::optional<Rigid3> AlignRigid(std::span<const Eigen::Vector3d> source,
                                  std::span<const Eigen::Vector3d> target);
 
-/// As AlignRigid, with a scale. Also returns nullopt if there is no positive scale because the
-/// source or the target is a single place.
+/// As AlignRigid, with a scale, and with a positive weight for each squared distance unless
+/// `weights` is empty. Also returns nullopt if there is no positive scale because the source or the
+/// target is a single place.
 std::optional<Similarity3> AlignSimilarity(std::span<const Eigen::Vector3d> source,
-                                           std::span<const Eigen::Vector3d> target);
+                                           std::span<const Eigen::Vector3d> target,
+                                           std::span<const double> weights = {});
 
 }  // namespace orb360

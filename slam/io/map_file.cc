@@ -87,7 +87,7 @@ constexpr double kUnit = 1e-6;  // how far from 1 the length of a unit vector ma
 
 Rigid3 WorldOf(const std::vector<double>& pose) {
   Require(pose.size() == 7, "it has no world");
-  const Rigid3 world{Eigen::Quaterniond(pose.data() + 3), Eigen::Vector3d(pose.data())};
+  Rigid3 world{Eigen::Quaterniond(pose.data() + 3), Eigen::Vector3d(pose.data())};
   Require(world.translation.allFinite() && std::abs(world.rotation.norm() - 1.0) < kUnit,
           "its world is out of range");
   return world;

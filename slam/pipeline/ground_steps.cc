@@ -35,17 +35,25 @@ constexpr double kMaxHeightError = 0.15;
 // nothing has told about the ground: few near landmarks have been seen by then.
 constexpr double kWideAside = 0.96;
 
-// The speed over the ground, heights of the camera per second, that the newest step up to a
-// keyframe showed, if that is not long ago.
-std::optional<double> RecentSpeed(const Map& map, const Keyframe& keyframe) {
-  for (KeyframeId id = keyframe.id; id >= 0; --id) {
-    if (!map.HasKeyframe(id)) continue;
-    const Keyframe& recent = map.keyframe(id);
-    if (!(std::abs(keyframe.timestamp - recent.timestamp) < kMaxGap)) break;
-    for (const GroundStepFrom& step : recent.ground_steps) {
-      if (!map.HasKeyframe(step.keyframe)) continue;
-      const double elapsed = recent.timestamp - map.keyframe(step.keyframe).timestamp;
-      if (elapsed > 0) return step.ratio / elapsed;
+// A measured step, and the time that it took, seconds.
+struct TimedStep {
+  const GroundStepFrom* step;
+  double elapsed;
+};
+
+// The newest step up to a keyframe, or else the first one after it, if that is not long before or
+// after.
+std::optional<TimedStep> StepNear(const Map& map, const Keyframe& keyframe) {
+  for (const int direction : {-1, 1}) {
+    for (KeyframeId id = keyframe.id; id >= 0 && id < map.keyframe_end(); id += direction) {
+      if (!map.HasKeyframe(id)) continue;
+      const Keyframe& other = map.keyframe(id);
+      if (!(std::abs(keyframe.timestamp - other.timestamp) < kMaxGap)) break;
+      for (const GroundStepFrom& step : other.ground_steps) {
+        if (!map.HasKeyframe(step.keyframe)) continue;
+        const double elapsed = other.timestamp - map.keyframe(step.keyframe).timestamp;
+        if (elapsed > 0) return TimedStep{&step, elapsed};
+      }
     }
   }
   return std::nullopt;
@@ -61,8 +69,8 @@ std::optional<GroundSweepOptions> RangeOfSweep(const Map& map, const Keyframe& e
   GroundSweepOptions options;
   if (!ground) options.max_aside = kWideAside;
   double expected = 0;  // ratio
-  if (const std::optional<double> speed = RecentSpeed(map, earlier)) {
-    expected = *speed * (later.timestamp - earlier.timestamp);
+  if (const std::optional<TimedStep> near = StepNear(map, earlier)) {
+    expected = near->step->ratio / near->elapsed * (later.timestamp - earlier.timestamp);
   } else if (ground) {
     expected =
         (later.world_from_camera.translation - earlier.world_from_camera.translation).norm() /
@@ -85,16 +93,16 @@ struct Assumption {
 // A carrier stands on the ground and drives ahead, so that both directions change little in the
 // frame of the camera. They are tried where tracking may be wrong about the motion, as it is beside
 // another car, and about the ground.
-std::vector<Assumption> Assume(const Keyframe& earlier, const Rigid3& motion,
+std::vector<Assumption> Assume(const Map& map, const Keyframe& earlier, const Rigid3& motion,
                                const std::optional<KnownGround>& ground) {
   const Eigen::Vector3d known_up = ground
                                        ? earlier.world_from_camera.rotation.conjugate() * ground->up
                                        : Eigen::Vector3d::UnitZ();
-  if (earlier.ground_steps.empty()) return {{motion.translation, known_up}};
-  const GroundStepFrom& before = earlier.ground_steps.front();
-  return {{motion.translation, before.up},
-          {before.direction2, before.up},
-          {motion.translation, known_up}};
+  const std::optional<TimedStep> near = StepNear(map, earlier);
+  if (!near) return {{motion.translation, known_up}};
+  const GroundStepFrom& step = *near->step;
+  return {
+      {motion.translation, step.up}, {step.direction2, step.up}, {motion.translation, known_up}};
 }
 
 // Removes a keyframe's observations that its pose contradicts: those of landmarks that move with
@@ -145,7 +153,7 @@ void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
     const std::optional<GroundSweepOptions> options = RangeOfSweep(*map, earlier, keyframe, ground);
     if (!options) continue;
     std::optional<GroundStep> step;
-    for (const Assumption& assumed : Assume(earlier, motion, ground)) {
+    for (const Assumption& assumed : Assume(*map, earlier, motion, ground)) {
       step = MeasureGroundStep(*earlier.image, *keyframe.image,
                                {motion.rotation, assumed.direction}, assumed.up, mask, *options);
       if (step) break;
@@ -165,6 +173,27 @@ void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
                                      .direction2 = turned * step->direction,
                                      .turn_sigma = step->turn_sigma,
                                      .up = later_from_earlier * step->up});
+  }
+}
+
+void MeasureFirstSteps(const KnownGround& ground, const cv::Mat& mask, Map* map) {
+  const std::vector<KeyframeId> ids = map->KeyframeIds();
+  for (size_t i = ids.size(); i-- > 1;) {
+    const Keyframe& later = map->keyframe(ids[i]);
+    if (!later.ground_steps.empty()) continue;
+    MeasureGroundSteps(later.id, ground, mask, map);
+    if (later.ground_steps.empty()) continue;
+    const GroundStepFrom& step = later.ground_steps.front();
+    const Rigid3& to = later.world_from_camera;
+    const Eigen::Vector3d from =
+        to.translation - step.ratio * ground.camera_height * (to.rotation * step.direction2);
+    const Eigen::Vector3d tracked = map->keyframe(step.keyframe).world_from_camera.translation;
+    const double tolerance = kMaxSigmas * std::hypot(step.sigma, kTrackedSigma);
+    if ((from - tracked).norm() <= tolerance * (from - to.translation).norm()) continue;
+    for (size_t j = 0; j < i; ++j) {
+      map->keyframe(ids[j]).world_from_camera.translation += from - tracked;
+      RemoveWrongObservations(ids[j], map);
+    }
   }
 }
 

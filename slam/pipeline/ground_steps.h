@@ -16,6 +16,12 @@ namespace orb360 {
 void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
                         const cv::Mat& mask, Map* map);
 
+/// Measures the steps that the first keyframes lack as soon as the ground is known, from the last
+/// to the first, and moves all keyframes before a step that tracking has got wrong. Two views of
+/// far landmarks tell little of the distance between them, and its direction may have been too
+/// uncertain to find the step before.
+void MeasureFirstSteps(const KnownGround& ground, const cv::Mat& mask, Map* map);
+
 /// Moves and turns a keyframe so that the step from the keyframe before it is the one that the
 /// ground shows. Does nothing where length and turn agree with it within their errors.
 void CorrectStep(KeyframeId id, const KnownGround& ground, Map* map);

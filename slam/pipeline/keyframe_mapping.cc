@@ -34,14 +34,6 @@ std::optional<KnownGround> LookForGround(const Map& map, const std::optional<Kno
                      .camera_height = known->camera_height};
 }
 
-// Measures the steps that the first keyframes lack. Before the ground was known, their directions
-// of motion may have been too uncertain to find them.
-void MeasureMissingSteps(const KnownGround& ground, const cv::Mat& mask, Map* map) {
-  for (const KeyframeId id : map->KeyframeIds()) {
-    if (map->keyframe(id).ground_steps.empty()) MeasureGroundSteps(id, ground, mask, map);
-  }
-}
-
 }  // namespace
 
 MappedKeyframe MapKeyframe(KeyframeMapping job, const Options& options) {
@@ -52,7 +44,7 @@ MappedKeyframe MapKeyframe(KeyframeMapping job, const Options& options) {
                         options.scale.from_ground ? std::optional(job.mask) : std::nullopt, &map);
   result.ground = LookForGround(map, job.ground, options.scale);
   if (result.ground && !job.ground) {
-    MeasureMissingSteps(*result.ground, job.mask, &map);
+    MeasureFirstSteps(*result.ground, job.mask, &map);
     AdjustLocally(id, options.mapper.bundle, result.ground, &map);
   }
   result.update.reference = id;

@@ -32,7 +32,7 @@ PatchSlope ExpectSlope(const Keyframe& keyframe, const LandmarkPatch& patch,
     return PatchSlope{patch.spacing * tangent,
                       Eigen::Matrix2d::Identity() / std::pow(patch.spacing * sigma, 2)};
   };
-  const PatchSlope unknown = slope(Eigen::Vector2d::Zero(), kSlopeSigma);
+  PatchSlope unknown = slope(Eigen::Vector2d::Zero(), kSlopeSigma);
   if (!ground) return unknown;
   const Rigid3& pose = keyframe.world_from_camera;
   const double height = ground->up.dot(pose.translation - position);

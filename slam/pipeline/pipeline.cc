@@ -174,28 +174,30 @@ void Pipeline::FinishMap() {
 }
 
 // Bundle adjustment weighs heights over planes of landmarks, which may be kerbs, as much as steps
-// over the ground. All that the images show of the ground, together, knows the scale better.
-void Pipeline::CorrectScale() {
+// over the ground. All that the images show of the ground, together, knows the scale better, and so
+// do positions.
+void Pipeline::CorrectScale(std::span<const PositionFix> positions) {
   if (is_map_loaded_) return;  // Its unit of length is kept.
-  const EstimatedScale scale = EstimateScale(atlas_.maps(), atlas_.grounds(), options_.scale);
-  for (size_t i = 0; i < scale.map_log_scales.size(); ++i) {
-    atlas_.ChangeUnit(static_cast<int>(i), std::exp(scale.map_log_scales[i]));
+  const EstimatedScale scale =
+      EstimateScale(atlas_.maps(), atlas_.grounds(), options_.scale, positions);
+  for (size_t i = 0; i < scale.maps.size(); ++i) {
+    atlas_.ChangeUnit(static_cast<int>(i), std::exp(scale.maps[i].log_scale));
   }
 }
 
-Reconstruction Pipeline::Finish() {
+Reconstruction Pipeline::Finish(std::span<const PositionFix> positions) {
   if (back_end_.has_map()) AdoptMap();
   if (!atlas_.is_lent()) FinishMap();  // Otherwise a job has thrown, and its map is lost.
   atlas_.Finish();
   if (dense_) dense_->Flush();
 
-  CorrectScale();
+  CorrectScale(positions);
   Reconstruction result = MakeReconstruction(atlas_.maps(), atlas_.anchors(), num_threads_);
   const std::span<const std::optional<KnownGround>> grounds = atlas_.grounds();
+  EstimatedScale scale = EstimateScale(atlas_.maps(), grounds, options_.scale, positions);
   for (size_t i = 0; i < result.maps.size(); ++i) {
-    result.maps[i].is_metric = grounds[i].has_value();
+    result.maps[i].is_metric = scale.maps[i].sigma > 0;
   }
-  EstimatedScale scale = EstimateScale(atlas_.maps(), grounds, options_.scale);
   result.scale = std::move(scale.whole);
   result.keyframe_scales = std::move(scale.keyframes);
   // The ground of another place is better than none.

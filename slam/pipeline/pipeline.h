@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 
 #include "slam/pipeline/atlas.h"
 #include "slam/pipeline/back_end.h"
@@ -27,7 +28,7 @@ class Pipeline {
   void LoadMap(const StoredMap& stored, bool keeps_map);
   void CompleteDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
   FrameReport Process(const Frame& frame);
-  Reconstruction Finish();
+  Reconstruction Finish(std::span<const PositionFix> positions);
 
   const Atlas& atlas() const { return atlas_; }
   const std::optional<DenseMapper>& dense() const { return dense_; }
@@ -53,7 +54,7 @@ class Pipeline {
   void AdoptDepth();
   /// Adopts all pending results, and adjusts the map once more where loops were closed.
   void FinishMap();
-  void CorrectScale();
+  void CorrectScale(std::span<const PositionFix> positions);
 
   /// Adapts everything that refers to the present map to a change of the map.
   void Apply(const MapUpdate& update);

@@ -64,7 +64,8 @@ void Pipeline::StartMapping(const cv::Mat& image) {
 }
 
 void Pipeline::AdoptMap() {
-  std::visit([this](auto&& result) { Adopt(std::move(result)); }, back_end_.TakeMap());
+  std::visit([this](auto&& result) { Adopt(std::forward<decltype(result)>(result)); },
+             back_end_.TakeMap());
 }
 
 void Pipeline::Adopt(MappedKeyframe mapped) {

@@ -7,6 +7,7 @@
 #include "slam/geometry/bearing.h"
 #include "slam/geometry/cluster_weights.h"
 #include "slam/pipeline/ground.h"
+#include "slam/scale/position_scale.h"
 #include "slam/scale/scale_smoother.h"
 
 namespace orb360 {
@@ -70,9 +71,11 @@ double DriftVariance(const Map& map, KeyframeId first, KeyframeId second, Keyfra
 struct MapScale {
   double log_scale = 0;
   double sigma = 0;
-  double length = 0;   // of the path, in the map's unit
-  int num_steps = 0;   // keyframes whose images show the ground
-  int num_planes = 0;  // keyframes whose landmarks show it
+  bool has_positions = false;
+  bool is_conflict = false;  // of the ground and the positions
+  double length = 0;         // of the path, in the map's unit
+  int num_steps = 0;         // keyframes whose images show the ground
+  int num_planes = 0;        // keyframes whose landmarks show it
   std::vector<KeyframeScale> keyframes;
 };
 
@@ -131,6 +134,38 @@ MapScale ScaleOf(const Map& map, int number, const std::optional<KnownGround>& g
   return result;
 }
 
+// Joins the scale of a map with that of positions along its keyframes. The ground and the positions
+// have no error in common.
+void UsePositions(const Map& map, std::span<const PositionFix> positions, MapScale* scale) {
+  std::vector<PathPoint> path;
+  for (const KeyframeId id : map.KeyframeIds()) {
+    const Keyframe& keyframe = map.keyframe(id);
+    path.push_back({keyframe.timestamp, keyframe.world_from_camera.translation});
+  }
+  std::ranges::stable_sort(path, {}, &PathPoint::timestamp);
+  const std::optional<ScaleMeasurement> measured = MeasureScaleByPositions(path, positions);
+  if (!measured) return;
+  scale->has_positions = true;
+  ScaleMeasurement fused = *measured;
+  if (scale->sigma > 0) {
+    fused = FuseScales({scale->log_scale, scale->sigma}, *measured, &scale->is_conflict);
+  }
+  for (KeyframeScale& keyframe : scale->keyframes) {
+    if (keyframe.sigma == 0) {
+      keyframe.value = std::exp(fused.log_scale);
+      keyframe.sigma = fused.sigma;
+      continue;
+    }
+    // The scale along the path relative to its mean is known by the ground alone.
+    const double apart =
+        std::sqrt(std::max(0.0, keyframe.sigma * keyframe.sigma - scale->sigma * scale->sigma));
+    keyframe.value *= std::exp(fused.log_scale - scale->log_scale);
+    keyframe.sigma = std::hypot(fused.sigma, apart);
+  }
+  scale->log_scale = fused.log_scale;
+  scale->sigma = fused.sigma;
+}
+
 std::vector<std::string> Sources(int num_steps, int num_planes) {
   std::vector<std::string> sources;
   if (num_steps > 0) sources.emplace_back("images of the ground");
@@ -143,7 +178,7 @@ std::vector<std::string> Sources(int num_steps, int num_planes) {
 
 EstimatedScale EstimateScale(std::span<const Map> maps,
                              std::span<const std::optional<KnownGround>> grounds,
-                             const ScaleOptions& options) {
+                             const ScaleOptions& options, std::span<const PositionFix> positions) {
   EstimatedScale result;
   MetricScale& whole = result.whole;
   whole.is_height_assumed = options.camera_height == 0;
@@ -155,12 +190,17 @@ EstimatedScale EstimateScale(std::span<const Map> maps,
   double sum_of_logs = 0;
   bool is_known = !maps.empty();
   bool is_completed = false;
+  bool has_positions = !maps.empty();
+  bool is_conflict = false;
   for (size_t m = 0; m < maps.size(); ++m) {
     MapScale scale = ScaleOf(maps[m], static_cast<int>(m), grounds[m], height_sigma);
+    UsePositions(maps[m], positions, &scale);
+    has_positions = has_positions && scale.has_positions;
+    is_conflict = is_conflict || scale.is_conflict;
     result.keyframes.insert(result.keyframes.end(), scale.keyframes.begin(), scale.keyframes.end());
     num_steps += scale.num_steps;
     num_planes += scale.num_planes;
-    result.map_log_scales.push_back(scale.log_scale);
+    result.maps.push_back({scale.log_scale, scale.sigma});
     length += scale.length;
     sum_of_logs += scale.length * scale.log_scale;
     whole.sigma = std::max(whole.sigma, scale.sigma);
@@ -169,13 +209,15 @@ EstimatedScale EstimateScale(std::span<const Map> maps,
   }
   whole.sources = Sources(num_steps, num_planes);
   if (is_completed) whole.sources.emplace_back("completed depth");
-  if (!whole.sources.empty()) whole.camera_height = options.height();
+  if (has_positions) whole.sources.emplace_back("positions");
+  if (num_steps > 0 || num_planes > 0 || is_completed) whole.camera_height = options.height();
   if (!is_known) {
     whole.sigma = 0;
     return result;
   }
   whole.value = length > 0 ? std::exp(sum_of_logs / length) : 1.0;
-  if (whole.sigma <= kMaxMetric && !whole.is_height_assumed) {
+  const bool is_given = has_positions || !whole.is_height_assumed;
+  if (whole.sigma <= kMaxMetric && is_given && !is_conflict) {
     whole.state = ScaleState::kMetric;
   } else if (whole.sigma <= kMaxRough) {
     whole.state = ScaleState::kRough;

@@ -24,7 +24,9 @@ void System::CompleteDepth(const std::filesystem::path& weights,
 
 FrameReport System::Process(const Frame& frame) { return pipeline_->Process(frame); }
 
-Reconstruction System::Finish() { return pipeline_->Finish(); }
+Reconstruction System::Finish(std::span<const PositionFix> positions) {
+  return pipeline_->Finish(positions);
+}
 
 std::span<const Map> System::maps() const { return pipeline_->atlas().maps(); }
 

@@ -330,7 +330,7 @@ std::optional<GroundStep> MeasureGroundStep(const SpherePyramid& image1,
     const std::optional<Eigen::Matrix3d> axes =
         GroundAxes(camera1_from_camera2.translation, up, is_parallel);
     if (!axes) return std::nullopt;
-    const std::optional<GroundStep> step =
+    std::optional<GroundStep> step =
         Sweep(image1, image2, camera2_from_camera1, *axes, mask, options);
     if (!step) continue;
     const std::optional<Eigen::Matrix3d> seen = GroundAxes(step->direction, step->up, true);

@@ -49,7 +49,7 @@ Vector3f Surroundings::Radiance(const Vector3f& direction) const {
   const float sky = std::clamp((direction.z() - house.height) / kEdge, 0.0F, 1.0F);
   // The lower part of a wall at the street is darker, because of shops, cars and shade.
   const float lower = 0.55F + 0.45F * std::min(1.0F, direction.z() * 4);
-  const Vector3f wall = lower * house.radiance;
+  Vector3f wall = lower * house.radiance;
   if (sky <= 0) return wall;
   return wall + sky * (sky_->Radiance(direction).cwiseMin(kBrightest) - wall);
 }

@@ -10,7 +10,7 @@
 namespace orb360::town {
 namespace {
 
-using std::string_view_literals::operator""sv;
+using namespace std::string_view_literals;
 
 /// Writes the numbers of the format, lowest byte first.
 class ByteWriter {

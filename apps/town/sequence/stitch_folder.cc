@@ -94,10 +94,10 @@ void RequireEvenNumbers(const std::filesystem::path& recording, const FrameFiles
 void CopyGroundTruth(const std::filesystem::path& from, const std::filesystem::path& to,
                      double duration) {
   const std::vector<StampedPose> poses = ReadTrajectory(from);
-  const auto [first, last] = std::ranges::minmax(poses, {}, &StampedPose::timestamp);
-  if (last.timestamp < 0 || first.timestamp > duration) {
-    throw UserError(from.string() + ": is of " + ToText(first.timestamp) + " to " +
-                    ToText(last.timestamp) + " s, but the frames of 0 to " + ToText(duration) +
+  const auto [first, last] = std::ranges::minmax_element(poses, {}, &StampedPose::timestamp);
+  if (last->timestamp < 0 || first->timestamp > duration) {
+    throw UserError(from.string() + ": is of " + ToText(first->timestamp) + " to " +
+                    ToText(last->timestamp) + " s, but the frames of 0 to " + ToText(duration) +
                     " s; the first frame's time must be 0");
   }
   std::ifstream file(from, std::ios::binary);

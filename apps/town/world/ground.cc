@@ -18,7 +18,7 @@ struct Corner {
 };
 
 /// Returns the part of a convex polygon where low <= distance < high.
-std::vector<Corner> ClipToBand(std::vector<Corner> polygon, double low, double high) {
+std::vector<Corner> ClipToBand(const std::vector<Corner>& polygon, double low, double high) {
   const auto clip = [](const std::vector<Corner>& source, double limit, double sign) {
     std::vector<Corner> result;
     for (size_t i = 0; i < source.size(); ++i) {

@@ -26,8 +26,7 @@ Mesh MakePedestrian(uint32_t phase, const Materials& materials, Random random) {
                         float upper, float lower, float radius) {
     b.set_tint(tint);
     const Vector3f knee = joint + upper * Vector3f(std::sin(angle), 0, -std::cos(angle));
-    const Vector3f end =
-        knee + lower * Vector3f(std::sin(angle - bend), 0, -std::cos(angle - bend));
+    Vector3f end = knee + lower * Vector3f(std::sin(angle - bend), 0, -std::cos(angle - bend));
     b.AddTube(cloth, knee, joint, 0.8F * radius, radius, 8);
     b.AddTube(cloth, end, knee, 0.65F * radius, 0.8F * radius, 8);
     return end;

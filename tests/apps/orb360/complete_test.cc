@@ -109,12 +109,13 @@ TEST_F(CompleteTest, CompletesAFolderAndTellsWhatItWrote) {
   ASSERT_EQ(result.status, 0) << result.err;
   const nlohmann::json told = nlohmann::json::parse(result.out);
   ASSERT_EQ(told.size(), 2);
-  const float expected[] = {2, 4};  // by name
+  const float expected[] = {2, 4};      // by name
+  constexpr int kOneFifth = 65535 / 5;  // of what 16 bits hold
   for (std::size_t i = 0; i < 2; ++i) {
     const cv::Mat depth = ReadDepthImage(told[i]["depth"].get<std::string>());
     EXPECT_EQ(cv::countNonZero(depth != expected[i]), 0);
     const cv::Mat ground = cv::imread(told[i]["ground"].get<std::string>(), cv::IMREAD_UNCHANGED);
-    EXPECT_EQ(cv::countNonZero(ground != 65535 / 5), 0);
+    EXPECT_EQ(cv::countNonZero(ground != kOneFifth), 0);
     // The median of the points is a height of the camera.
     EXPECT_NEAR(told[i]["camera_height_guess"].get<double>(), expected[i], 1e-6);
   }

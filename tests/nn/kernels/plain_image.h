@@ -1,10 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <random>
 #include <span>
@@ -151,7 +151,7 @@ inline void ExpectSameBits(const TensorView& a, const TensorView& b) {
       for (int x = 0; x < a.shape.width; ++x) {
         const float first = At(a, c, y, x);
         const float second = At(b, c, y, x);
-        ASSERT_EQ(std::memcmp(&first, &second, sizeof(float)), 0)
+        ASSERT_EQ(std::bit_cast<uint32_t>(first), std::bit_cast<uint32_t>(second))
             << "channel " << c << " y " << y << " x " << x << ": " << first << " and " << second;
       }
     }

@@ -111,6 +111,23 @@ TEST(CorrectStep, GivesAStepTheLengthThatTheGroundShows) {
   EXPECT_EQ(to, tracked);
 }
 
+TEST(MeasureFirstSteps, MovesTheFirstKeyframesToWhereTheGroundSaysThatTheyWere) {
+  Map map = Drive(6, 1.0, Scaled(Asphalt(12)));
+  const KnownGround known{Eigen::Vector3d::UnitZ(), kHeight};
+  for (const KeyframeId id : {3, 4, 5}) MeasureGroundSteps(id, known, {}, &map);
+  // Two views of far landmarks have told that the camera stood almost still at first.
+  for (const KeyframeId id : {0, 1}) {
+    map.keyframe(id).world_from_camera.translation =
+        TruePose(2).translation + Eigen::Vector3d(-0.03 * (2 - id), 0.01, 0);
+  }
+  MeasureFirstSteps(known, {}, &map);
+  for (const KeyframeId id : map.KeyframeIds()) {
+    EXPECT_LT((map.PoseOf(id).translation - TruePose(id).translation).norm(), 0.03) << id;
+  }
+  EXPECT_EQ(map.keyframe(1).ground_steps.size(), 1u);
+  EXPECT_EQ(map.keyframe(2).ground_steps.size(), 2u);
+}
+
 TEST(CorrectStep, RemovesWhatMovesWithTheCamera) {
   const Ground ground = Scaled(Asphalt(6));
   const Eigen::Vector3d wall(3.0, 4.0, 1.0);

@@ -110,5 +110,58 @@ TEST(ScaleState, NearLandmarksPassTheScaleOnBetterThanFarOnes) {
   EXPECT_GT(sigma_at_end(100.0, 200.0), 3 * sigma_at_end(3.0, 12.0));
 }
 
+// What a receiver says of a walk whose unit of length is `metres`.
+std::vector<PositionFix> FixesOf(const Map& map, double metres, double sigma) {
+  std::vector<PositionFix> fixes;
+  for (const KeyframeId id : map.KeyframeIds()) {
+    const Keyframe& keyframe = map.keyframe(id);
+    fixes.push_back({keyframe.timestamp + 1e-3,
+                     metres * keyframe.world_from_camera.translation + Eigen::Vector3d(7, 8, 9),
+                     sigma});
+  }
+  return fixes;
+}
+
+EstimatedScale EstimateBy(const Map& map, const std::optional<KnownGround>& ground, double metres,
+                          double sigma) {
+  ScaleOptions options;
+  options.camera_height = ground ? kHeight : 0.0;
+  const Grounds grounds = {ground};
+  return EstimateScale(std::span(&map, 1), grounds, options, FixesOf(map, metres, sigma));
+}
+
+TEST(ScaleState, PositionsMakeItMetricWithoutGround) {
+  const Map map = WalkOver(std::vector<double>(12, 0.0));
+  const EstimatedScale scale = EstimateBy(map, std::nullopt, 3.0, 0.01);
+  EXPECT_EQ(scale.whole.state, ScaleState::kMetric);
+  EXPECT_NEAR(scale.whole.value, 3.0, 0.01);
+  EXPECT_EQ(scale.whole.sources, std::vector<std::string>{"positions"});
+  EXPECT_EQ(scale.whole.camera_height, 0.0);
+  EXPECT_NEAR(scale.keyframes.back().value, 3.0, 0.01);
+  EXPECT_EQ(scale.keyframes.back().sigma, scale.whole.sigma);
+  EXPECT_EQ(EstimateBy(map, std::nullopt, 3.0, 1.0).whole.state, ScaleState::kRough);
+}
+
+TEST(ScaleState, PositionsAndGroundThatAgreeAreSurerThanEach) {
+  const Map map = WalkOver(std::vector<double>(12, 1.0));
+  const double by_ground = Estimate(map, kGround).whole.sigma;
+  const double by_positions = EstimateBy(map, std::nullopt, 1.0, 0.1).whole.sigma;
+  const EstimatedScale both = EstimateBy(map, kGround, 1.01, 0.1);
+  EXPECT_EQ(both.whole.state, ScaleState::kMetric);
+  EXPECT_LT(both.whole.sigma, by_ground);
+  EXPECT_LT(both.whole.sigma, by_positions);
+  EXPECT_GT(both.whole.value, 1.0);
+  EXPECT_LT(both.whole.value, 1.01);
+}
+
+TEST(ScaleState, IsRoughWherePositionsContradictTheGround) {
+  const Map map = WalkOver(std::vector<double>(12, 1.0));
+  const EstimatedScale scale = EstimateBy(map, kGround, 1.2, 0.01);
+  EXPECT_EQ(scale.whole.state, ScaleState::kRough);
+  EXPECT_GT(scale.whole.value, 1.0);
+  EXPECT_LT(scale.whole.value, 1.2);
+  EXPECT_GT(scale.whole.sigma, 0.05);
+}
+
 }  // namespace
 }  // namespace orb360

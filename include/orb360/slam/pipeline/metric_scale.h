@@ -9,7 +9,7 @@ namespace orb360 {
 enum class ScaleState {
   kUnknown,  ///< The unit is arbitrary, or its standard deviation is larger than 30 %.
   kRough,    ///< Metres with a standard deviation of up to 30 %.
-  kMetric    ///< Metres with a standard deviation of up to 3 %, from a height that the user gave.
+  kMetric    ///< The same of up to 3 %, from a height or from positions that the user gave.
 };
 
 /// Name of a state as summary.json has it: "unknown", "rough" or "metric".

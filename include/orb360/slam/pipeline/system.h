@@ -8,12 +8,12 @@
 #include <orb360/slam/geometry/camera.h>
 #include <orb360/slam/pipeline/frame_report.h>
 #include <orb360/slam/pipeline/reconstruction.h>
+#include <orb360/slam/scale/position_fix.h>
 
 namespace cv {
 class Mat;
 }
 namespace orb360 {
-
 class Map;
 class Pipeline;
 class DepthMapStore;
@@ -32,18 +32,18 @@ class System {
 
   /// Before the first frame: continues a stored map, in which the camera has to be relocalized.
   void LoadMap(const StoredMap& stored);
-  /// Before the first frame: frames are only localized in a stored map, which does not change.
+  /// The same, but frames are only localized in the map, which does not change.
   void Localize(const StoredMap& stored);
-  /// Before the first frame: keyframes get dense depth, computed beside tracking by the network in
-  /// `weights` and stored in `folder` during the lifetime of the system. Throws UserError where one
-  /// of them cannot be used.
+  /// Before the first frame: keyframes get dense depth beside tracking, by the network in
+  /// `weights`, kept in `folder` while the system lives. Throws UserError where one of them cannot
+  /// be used.
   void CompleteDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
 
   /// Processes the next frame; timestamps must grow. Throws ContractError for an image of another
   /// size or type than 8-bit BGR. After another exception only Finish may be called.
   FrameReport Process(const Frame& frame);
-  /// Waits for all jobs and returns everything computed. The system takes no further frames.
-  Reconstruction Finish();
+  /// Waits for all jobs and returns everything; no frame may follow. `positions` add to the scale.
+  Reconstruction Finish(std::span<const PositionFix> positions = {});
 
   /// Returns the maps in the order of their start, after Finish.
   std::span<const Map> maps() const;

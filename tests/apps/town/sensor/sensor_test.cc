@@ -95,7 +95,7 @@ TEST(ExposureGainAt, ChangesOnlyWhenThePeriodHasPassed) {
   double last = 1;
   for (int frame = 0; frame < 40; ++frame) {  // 20 a second
     const double gain = ExposureGainAt(options, frame / 20.0, darkening);
-    EXPECT_NEAR(metered_at.back(), 0.5 * (frame / 10), 1e-9);
+    EXPECT_NEAR(metered_at.back(), 0.5 * std::floor(frame / 10.0), 1e-9);
     if (frame % 10 == 0) {
       EXPECT_GE(gain, last);
     } else {
