@@ -87,6 +87,7 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
       {"loop_frames", FramesOf(reconstruction.loops)},
       {"loop_times", TimesOf(reconstruction.loops, reconstruction.frames)},
       {"relocalizations", reconstruction.relocalized},
+      {"interpolated", reconstruction.interpolated},
       {"merges", reconstruction.merges.size()},
       {"merge_frames", FramesOf(reconstruction.merges)},
       {"initialized_at", nullptr},

@@ -21,6 +21,8 @@ struct FrameAnchor {
   std::vector<Sighting> sightings = {};
   /// Number of present units of the map in one unit of the map when the frame was anchored.
   double unit_scale = 1.0;
+  /// Whether the pose lies between those of other frames, because this one showed nothing.
+  bool is_interpolated = false;
 };
 
 /// The anchors of all frames that have a pose, by frame index.

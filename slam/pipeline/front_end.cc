@@ -84,13 +84,14 @@ bool FrontEnd::Track(const PendingFrame& frame, int num_threads, Atlas* atlas) {
   return true;
 }
 
-void FrontEnd::Anchor(const TrackedFrame& frame, Atlas* atlas) const {
+void FrontEnd::Anchor(const TrackedFrame& frame, Atlas* atlas, bool is_interpolated) const {
   atlas->Anchor(frame.index, {.timestamp = frame.timestamp,
                               .map = atlas->present_number(),
                               .reference = local_.reference,
                               .reference_from_camera =
                                   local_.world_from_reference.Inverse() * frame.world_from_camera,
-                              .sightings = SightingsOf(frame)});
+                              .sightings = SightingsOf(frame),
+                              .is_interpolated = is_interpolated});
 }
 
 bool FrontEnd::NeedsKeyframe(bool has_ground) const {
@@ -168,8 +169,10 @@ std::optional<Relocalization> FrontEnd::Find(const PendingFrame& frame, int num_
         TrackFromPrediction(*frame.features, PredictPose(*before, frame.timestamp), before->last,
                             local_, pixel_sigma_, options_.tracker, std::nullopt, num_threads);
     if (result) {
-      return Relocalization{
-          .map = atlas->present_number(), .local = local_, .result = std::move(*result)};
+      return Relocalization{.map = atlas->present_number(),
+                            .local = local_,
+                            .result = std::move(*result),
+                            .continues_motion = true};
     }
   }
   return Relocalize(*frame.features, local_, pixel_sigma_, options_, num_threads, atlas,
@@ -183,6 +186,7 @@ void FrontEnd::Resume(const PendingFrame& frame, Relocalization found, int num_t
   ++events_.num_relocalized;
   counts_.Add(found.result);
   const TrackedFrame tracked = MakeTracked(frame, std::move(found.result));
+  if (found.continues_motion) InterpolatePending(lost()->before->last, tracked, atlas);
   state_ = Tracking{.last = tracked};
   Anchor(tracked, atlas);
   TrackPendingBackwards(tracked, num_threads, atlas);
@@ -219,6 +223,27 @@ void FrontEnd::TrackPendingBackwards(TrackedFrame last, int num_threads, Atlas* 
         turned.reference_from_camera.rotation * frame.turn->reference_from_camera;
     turned.sightings.clear();
     atlas->Anchor(frame.index, std::move(turned));
+  }
+}
+
+// Where something has covered the view for a moment, and the camera is found where its motion has
+// taken it, it has been on the way in between. A frame that can be tracked backwards gets its own
+// pose in place of this one.
+void FrontEnd::InterpolatePending(const TrackedFrame& before, const TrackedFrame& after,
+                                  Atlas* atlas) {
+  const Rigid3 motion = before.world_from_camera.Inverse() * after.world_from_camera;
+  const double elapsed = after.timestamp - before.timestamp;
+  for (const PendingFrame& pending : pending_.frames()) {
+    const double fraction = (pending.timestamp - before.timestamp) / elapsed;
+    if (!(0 < fraction && fraction < 1)) continue;  // also for equal times
+    const TrackedFrame frame{.index = pending.index,
+                             .timestamp = pending.timestamp,
+                             .features = pending.features,
+                             .world_from_camera = before.world_from_camera *
+                                                  Rigid3{ExpSo3(fraction * LogSo3(motion.rotation)),
+                                                         fraction * motion.translation},
+                             .landmarks = {}};
+    Anchor(frame, atlas, true);
   }
 }
 

@@ -103,8 +103,10 @@ class FrontEnd {
   void Apply(const MapUpdate& update, Map* map);
 
  private:
-  void Anchor(const TrackedFrame& frame, Atlas* atlas) const;
+  void Anchor(const TrackedFrame& frame, Atlas* atlas, bool is_interpolated = false) const;
   void TrackPendingBackwards(TrackedFrame last, int num_threads, Atlas* atlas);
+  /// Gives the pending frames between two frames interpolated poses.
+  void InterpolatePending(const TrackedFrame& before, const TrackedFrame& after, Atlas* atlas);
 
   const Options options_;
   const cv::Mat mask_;

@@ -16,6 +16,7 @@ Reconstruction MakeReconstruction(std::span<const Map> maps, const FrameAnchors&
   for (const auto& [index, anchor] : anchors) {
     result.frames.push_back({index, anchor.timestamp, anchor.map, Rigid3()});
     ordered.push_back(&anchor);
+    result.interpolated += anchor.is_interpolated;
     MapSummary& summary = result.maps[anchor.map];
     if (summary.tracked++ == 0) summary.first_frame = index;
     summary.last_frame = index;

@@ -37,6 +37,7 @@ class PendingFrames {
   explicit PendingFrames(int max_frames) : max_frames_(max_frames) {}
 
   bool empty() const { return frames_.empty(); }
+  const std::deque<PendingFrame>& frames() const { return frames_; }
   void Remember(PendingFrame frame);
   void Forget(int index);
 

@@ -15,6 +15,8 @@ struct Relocalization {
   int map;  ///< Number of the map in the atlas.
   LocalMap local;
   TrackResult result;
+  /// Whether it is where the motion before has taken the camera.
+  bool continues_motion = false;
 };
 
 /// Searches a lost camera: in `local`, the map around its last pose; at those places of all maps

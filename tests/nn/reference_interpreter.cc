@@ -102,9 +102,11 @@ class Interpreter {
       const auto left = static_cast<int>(std::floor(column));
       double sum = 0, magnitude = 0;
       for (int i = 0; i < 4; ++i) {
+        const int below = i / 2;
+        const int right = i % 2;
         const double fraction =
-            std::abs(1 - i / 2 - (row - top)) * std::abs(1 - i % 2 - (column - left));
-        const double term = fraction * in(0).padded(op.padding, channel, top + i / 2, left + i % 2);
+            std::abs(1 - below - (row - top)) * std::abs(1 - right - (column - left));
+        const double term = fraction * in(0).padded(op.padding, channel, top + below, left + right);
         sum += term;
         magnitude += std::abs(term);
       }

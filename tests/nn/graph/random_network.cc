@@ -147,7 +147,7 @@ class Author {
     }
   }
   void AddResampling(const Made& x) {
-    if (x.level != kSingle && x.level < kDeepest && Below(2) == 0) {
+    if (x.level < kDeepest && Below(2) == 0) {
       made_.push_back({net_.Node(NewName(), "average_pool", {x.name}), x.channels, x.level + 1});
     } else if (x.level != kSingle && x.level > 0) {
       const bool is_bilinear = Below(2) == 0;

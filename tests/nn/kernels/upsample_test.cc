@@ -63,9 +63,10 @@ TEST(UpsampleBilinear, SamplesBetweenTheCentresOfPixels) {
                 const int top = static_cast<int>(std::floor(y_at));
                 const int left = static_cast<int>(std::floor(x_at));
                 for (int k = 0; k < 4; ++k) {
-                  const double weight =
-                      (1 - std::abs(top + k / 2 - y_at)) * (1 - std::abs(left + k % 2 - x_at));
-                  const double value = x.padded(padding, c, top + k / 2, left + k % 2);
+                  const int row = top + k / 2;
+                  const int column = left + k % 2;
+                  const double weight = (1 - std::abs(row - y_at)) * (1 - std::abs(column - x_at));
+                  const double value = x.padded(padding, c, row, column);
                   expected.at(c, v, u) += weight * value;
                   tolerance.at(c, v, u) += 6 * 0x1p-24 * std::abs(weight * value);
                 }

@@ -27,7 +27,9 @@ TEST(SystemSlow, FindsItselfAgainAfterAShortBlackout) {
   const Reconstruction result = system.Finish();
   EXPECT_EQ(result.lost, 1);
   EXPECT_EQ(result.maps.size(), 1u);
-  EXPECT_GE(result.frames.size(), 79u);
+  EXPECT_EQ(result.frames.size(), 90u);
+  EXPECT_GE(result.interpolated, 9);
+  EXPECT_LE(result.interpolated, 10);
   const PathError error = Compare(result.frames, frames);
   EXPECT_LT(error.rmse, 0.01 * error.length);
 }
@@ -101,6 +103,7 @@ TEST(SystemSlow, FindsItselfAgainWhereverItIsPutAndHoweverItIsTurned) {
   EXPECT_EQ(result.maps.size(), 1u);
   EXPECT_EQ(result.relocalized, 3);
   ASSERT_EQ(result.frames.size(), 93u);
+  EXPECT_EQ(result.interpolated, 0) << "nobody knows the way";
   EXPECT_LT(Compare(result.frames, frames).rmse, 0.01 * 1.3 * 90 / 25);
 }
 

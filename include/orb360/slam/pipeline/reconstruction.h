@@ -68,6 +68,9 @@ struct Reconstruction {
   std::optional<int> initialized_at;
   int lost = 0;                    ///< How often tracking was lost after that.
   int relocalized = 0;             ///< How often a lost camera was found again.
+  /// Number of frames whose view was covered for less than a second, with a pose between those of
+  /// the frames before and after.
+  int interpolated = 0;
   std::vector<ClosedLoop> loops;   ///< Loops that were closed within a map.
   std::vector<ClosedLoop> merges;  ///< Loops by which a map was merged into an older one.
   /// Mean number of a keyframe's features whose corner has a landmark.
