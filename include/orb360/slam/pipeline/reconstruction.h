@@ -66,8 +66,8 @@ struct Reconstruction {
   /// Index of the frame at which the first map was made, or at which the camera was first localized
   /// in a loaded map. None where neither happened.
   std::optional<int> initialized_at;
-  int lost = 0;                    ///< How often tracking was lost after that.
-  int relocalized = 0;             ///< How often a lost camera was found again.
+  int lost = 0;         ///< How often tracking was lost after that.
+  int relocalized = 0;  ///< How often a lost camera was found again.
   /// Number of frames whose view was covered for less than a second, with a pose between those of
   /// the frames before and after.
   int interpolated = 0;
