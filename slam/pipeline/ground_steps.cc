@@ -20,6 +20,9 @@ constexpr double kTrackedSigma = 0.01;
 constexpr double kMaxSigmas = 3.0;
 // Standard deviation of the turn of a tracked pose about the vertical in good conditions, rad.
 constexpr double kTrackedTurnSigma = 0.002;
+// Largest standard deviation of a turn that is used, rad. On boards, whose grain is the same all
+// along, tiles scatter across the motion, and the tracked rotation is better.
+constexpr double kMaxTurnSigma = 0.01;
 // Standard deviations of a bearing beyond which it contradicts the pose that the ground has
 // corrected. The landmark's own error is unknown, so it is more than the 95 % bound.
 constexpr double kMaxBearingSigmas = 5.0;
@@ -163,7 +166,8 @@ void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
     const Eigen::Vector3d up =
         (step->up - step->up.dot(step->direction) * step->direction).normalized();
     const Eigen::Quaterniond later_from_earlier = motion.rotation.conjugate();
-    const Eigen::Quaterniond turned = later_from_earlier * ExpSo3(-step->turn * up);
+    const double turn = step->turn_sigma < kMaxTurnSigma ? step->turn : 0.0;
+    const Eigen::Quaterniond turned = later_from_earlier * ExpSo3(-turn * up);
     keyframe.ground_steps.push_back({.keyframe = other,
                                      .ratio = step->ratio,
                                      .sigma = step->sigma,

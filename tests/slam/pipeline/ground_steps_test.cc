@@ -73,6 +73,24 @@ TEST(MeasureGroundSteps, TellsTheRotationThatTrackingHasMissed) {
       0.003);
 }
 
+TEST(MeasureGroundSteps, KeepsTheTrackedRotationOverBoards) {
+  // The grain of boards across the motion is nearly the same all along them.
+  const Asphalt grain(13);
+  const Asphalt dirt(14);
+  const Ground boards = [&](const Eigen::Vector2d& p) {
+    return grain({p.x() / kHeight, 0.02 * p.y()}) + 0.05 * dirt(p / kHeight);
+  };
+  Map map = Drive(2, 1.0, boards);
+  MeasureGroundSteps(1, std::nullopt, {}, &map);
+  for (const GroundStepFrom& step : map.keyframe(1).ground_steps) {
+    EXPECT_GT(step.turn_sigma, 0.01);
+    EXPECT_LT(AngleBetween(TruePose(0).rotation * step.direction1,
+                           TruePose(1).rotation * step.direction2),
+              1e-6);
+  }
+  EXPECT_EQ(map.keyframe(1).ground_steps.size(), 1u);
+}
+
 TEST(MeasureGroundSteps, SeeksTheStepAroundTheLastSpeed) {
   for (const double last_ratio : {0.9, 0.3}) {  // of the true step, and of one far shorter
     Map map = Drive(3, 1.0, Scaled(Asphalt(7)));
