@@ -265,8 +265,10 @@ void AdjustLocally(KeyframeId center, const LocalBundleOptions& options,
   }
   // Fixed poses hold the gauge; in a small map these are its oldest. Steps over the ground hold the
   // scale, or else it takes a second one.
+  const auto is_moving = [&](KeyframeId id) { return std::ranges::count(moving, id) > 0; };
   const bool has_scale = ground && std::ranges::any_of(moving, [&](KeyframeId id) {
-                           return !map->keyframe(id).ground_steps.empty();
+                           return std::ranges::any_of(map->keyframe(id).ground_steps, is_moving,
+                                                      &GroundStepFrom::keyframe);
                          });
   const size_t min_fixed = has_scale ? 1 : 2;
   while (fixed.size() < min_fixed && moving.size() > 1) {

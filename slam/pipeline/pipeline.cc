@@ -186,6 +186,7 @@ void Pipeline::CorrectScale(std::span<const PositionFix> positions) {
 }
 
 Reconstruction Pipeline::Finish(std::span<const PositionFix> positions) {
+  for (const PositionFix& fix : positions) ORB360_CHECK(fix.IsValid(), fix.timestamp, fix.sigma);
   if (back_end_.has_map()) AdoptMap();
   if (!atlas_.is_lent()) FinishMap();  // Otherwise a job has thrown, and its map is lost.
   atlas_.Finish();

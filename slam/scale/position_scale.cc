@@ -12,11 +12,11 @@ namespace {
 
 constexpr double kMaxGap = 2.0;            // seconds between points of the path
 constexpr double kCorrelationTime = 10.0;  // seconds within which errors of fixes are alike
-constexpr size_t kMinFixes = 3;
-constexpr int kRounds = 10;
-constexpr double kHuberSigmas = 2.0;
-constexpr double kMaxSigma = 1.0;
-constexpr double kMaxConflict = 3.0;  // standard deviations
+constexpr size_t kMinFixes = 3;            // as many as a similarity has unknowns for
+constexpr int kRounds = 10;                // of reweighting; its weights settle within a few
+constexpr double kHuberSigmas = 2.0;       // distance from which a fix counts less
+constexpr double kMaxSigma = 1.0;          // of ln(scale): a factor of e
+constexpr double kMaxConflict = 3.0;       // standard deviations of the difference
 
 /// The fixes during the path, and where the path was then.
 struct Pairs {
@@ -29,7 +29,7 @@ struct Pairs {
 Pairs MakePairs(std::span<const PathPoint> path, std::span<const PositionFix> fixes) {
   Pairs pairs;
   for (const PositionFix& fix : fixes) {
-    ORB360_CHECK(fix.sigma > 0, fix.sigma);
+    ORB360_CHECK(fix.IsValid(), fix.timestamp, fix.sigma);
     const auto after = std::ranges::upper_bound(path, fix.timestamp, {}, &PathPoint::timestamp);
     if (after == path.begin() || after == path.end()) continue;
     const PathPoint& before = *(after - 1);

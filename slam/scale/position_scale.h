@@ -26,7 +26,8 @@ struct ScaleMeasurement {
 /// as straight, and fixes where two points are more than two seconds apart are not used. Errors of
 /// receivers are alike for seconds, so fixes within ten seconds count as one. Where the residuals
 /// are larger than the fixes' standard deviations, the result's is larger in proportion (Birge's
-/// ratio). Empty where the fixes do not tell the scale within a factor of e.
+/// ratio). Empty where the fixes do not tell the scale within a factor of e. Throws ContractError
+/// for a fix that is not valid.
 std::optional<ScaleMeasurement> MeasureScaleByPositions(std::span<const PathPoint> path,
                                                         std::span<const PositionFix> fixes);
 

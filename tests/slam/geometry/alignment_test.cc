@@ -95,6 +95,28 @@ TEST(Alignment, PlanarPointsAreNotReflected) {
   EXPECT_LT(LogSo3(found->rotation.conjugate() * truth.rotation).norm(), 1e-9);
 }
 
+TEST(AlignSimilarity, APointWithAWeightCountsAsThatManyPoints) {
+  RandomGeometry random(17);
+  std::vector<Vector3d> source;
+  std::vector<Vector3d> target;
+  std::vector<double> weights;
+  std::vector<Vector3d> repeated_source;
+  std::vector<Vector3d> repeated_target;
+  for (int i = 0; i < 12; ++i) {
+    source.push_back(random.Point(1.0, 5.0));
+    target.push_back(2.0 * source.back() + random.Point(0.0, 0.5));
+    weights.push_back(1.0 + i % 3);
+    repeated_source.insert(repeated_source.end(), 1 + i % 3, source.back());
+    repeated_target.insert(repeated_target.end(), 1 + i % 3, target.back());
+  }
+  const Similarity3 weighted = AlignSimilarity(source, target, weights).value();
+  const Similarity3 repeated = AlignSimilarity(repeated_source, repeated_target).value();
+  EXPECT_NEAR(weighted.scale, repeated.scale, 1e-12);
+  EXPECT_LT(weighted.rotation.angularDistance(repeated.rotation), 1e-7);
+  EXPECT_LT((weighted.translation - repeated.translation).norm(), 1e-11);
+  EXPECT_GT(std::abs(weighted.scale - AlignSimilarity(source, target)->scale), 1e-4);
+}
+
 TEST(Alignment, MirroredPointsGetTheBestProperRotation) {
   RandomGeometry random(4);
   std::vector<Vector3d> source = RandomPoints(200, &random), target = source;

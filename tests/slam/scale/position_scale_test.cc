@@ -93,6 +93,8 @@ TEST(PositionScale, IsEmptyWhereTheFixesTellNothing) {
   std::vector<PositionFix> wrong = fixes;
   wrong[2].sigma = 0;
   EXPECT_THROW(MeasureScaleByPositions(Path(), wrong), ContractError);
+  wrong[2] = {.timestamp = 20, .position = {NAN, 0, 0}, .sigma = 1};
+  EXPECT_THROW(MeasureScaleByPositions(Path(), wrong), ContractError);
 }
 
 TEST(FuseScales, WeighsByPrecisionWhereBothAgree) {
