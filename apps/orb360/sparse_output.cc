@@ -31,7 +31,7 @@ void WriteSparseKeyframes(const std::filesystem::path& folder, std::span<const M
   std::map<int, KeyframeOfMap> keyframes;
   for (const Map& map : maps) {
     for (const KeyframeId id : map.KeyframeIds()) {
-      if (map.keyframe(id).frame_index < 0) continue;
+      if (!map.keyframe(id).IsOfThisRun()) continue;
       keyframes.insert({map.keyframe(id).frame_index, {&map, id}});
     }
   }

@@ -47,6 +47,7 @@ std::optional<GroundMotion> FindGroundMotion(const Map& map, KeyframeId newest,
   int count = 0;
   for (KeyframeId id = newest - 1; id >= 0 && count < kChanges; --id) {
     if (!map.HasKeyframe(id)) continue;
+    if (!map.keyframe(id).IsOfThisRun()) break;
     const std::optional<Velocity> earlier = VelocityAt(map, id, ground);
     if (!earlier) continue;
     speed_changes += std::pow(std::log(later.value.norm() / earlier->value.norm()), 2);

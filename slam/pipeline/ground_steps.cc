@@ -51,6 +51,7 @@ std::optional<TimedStep> StepNear(const Map& map, const Keyframe& keyframe) {
     for (KeyframeId id = keyframe.id; id >= 0 && id < map.keyframe_end(); id += direction) {
       if (!map.HasKeyframe(id)) continue;
       const Keyframe& other = map.keyframe(id);
+      if (!other.IsOfThisRun()) break;
       if (!(std::abs(keyframe.timestamp - other.timestamp) < kMaxGap)) break;
       for (const GroundStepFrom& step : other.ground_steps) {
         if (!map.HasKeyframe(step.keyframe)) continue;

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "slam/optimization/local_bundle_adjustment.h"
 #include "slam/pipeline/ground.h"
 #include "slam/pipeline/ground_steps.h"
 
@@ -43,10 +42,7 @@ MappedKeyframe MapKeyframe(KeyframeMapping job, const Options& options) {
       IntegrateKeyframe(job.frame, std::move(job.pyramid), options.mapper, job.ground,
                         options.scale.from_ground ? std::optional(job.mask) : std::nullopt, &map);
   result.ground = LookForGround(map, job.ground, options.scale);
-  if (result.ground && !job.ground) {
-    MeasureFirstSteps(*result.ground, job.mask, &map);
-    AdjustLocally(id, options.mapper.bundle, result.ground, &map);
-  }
+  if (result.ground && !job.ground) MeasureFirstSteps(*result.ground, job.mask, &map);
   result.update.reference = id;
   result.update.correction =
       ToSimilarity(map.keyframe(id).world_from_camera * job.frame.world_from_camera.Inverse());

@@ -140,6 +140,7 @@ void UsePositions(const Map& map, std::span<const PositionFix> positions, MapSca
   std::vector<PathPoint> path;
   for (const KeyframeId id : map.KeyframeIds()) {
     const Keyframe& keyframe = map.keyframe(id);
+    if (!keyframe.IsOfThisRun()) continue;
     path.push_back({keyframe.timestamp, keyframe.world_from_camera.translation});
   }
   std::ranges::stable_sort(path, {}, &PathPoint::timestamp);

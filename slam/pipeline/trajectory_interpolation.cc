@@ -35,6 +35,7 @@ bool IsShort(double gap) { return gap > 0 && gap <= kMaxGap; }
 TrajectoryInterpolation::TrajectoryInterpolation(const Map& map) {
   for (const KeyframeId id : map.KeyframeIds()) {
     const Keyframe& keyframe = map.keyframe(id);
+    if (!keyframe.IsOfThisRun()) continue;
     nodes_.push_back({keyframe.timestamp, keyframe.world_from_camera});
   }
   std::ranges::stable_sort(nodes_, {}, &Node::timestamp);  // merged maps are not in this order

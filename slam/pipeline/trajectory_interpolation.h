@@ -14,7 +14,7 @@ namespace orb360 {
 /// as well. The evidence of the landmarks overrules it wherever these are near enough to tell more.
 class TrajectoryInterpolation {
  public:
-  /// Takes the keyframes of a finished map.
+  /// Takes the keyframes of a finished map that are of this run.
   explicit TrajectoryInterpolation(const Map& map);
 
   /// The position at a time, seconds. Empty outside the keyframes, where more than a second lies

@@ -194,6 +194,21 @@ TEST(LocalBundleAdjustment, StepsOverTheGroundHoldTheMotionThatFarPointsDoNot) {
   EXPECT_LT(error_after(aside, map), 0.01);
 }
 
+TEST(LocalBundleAdjustment, StepsOverTheGroundAlsoMoveTheFirstKeyframesOfASmallMap) {
+  SyntheticScene scene(300, 200.0, 400.0);
+  const std::vector<Rigid3> poses = Walk(4, {-1.2, 0.1, 0.0});
+  Map map = scene.MakeMap(poses, 300);
+  for (KeyframeId id = 1; id < 4; ++id) {
+    map.keyframe(id).world_from_camera.translation -= 0.4 * poses[1].translation;  // all but one
+    map.keyframe(id).ground_steps.push_back(TrueGroundStep(id - 1, poses[id - 1], poses[id], 1.6));
+  }
+  AdjustLocally(3, {.max_iterations = 20}, KnownGround{Eigen::Vector3d::UnitZ(), 1.6}, &map);
+  for (KeyframeId id = 1; id < 4; ++id) {
+    const double length = (map.PoseOf(id).translation - map.PoseOf(id - 1).translation).norm();
+    EXPECT_NEAR(length / poses[1].translation.norm(), 1.0, 0.02) << id;
+  }
+}
+
 TEST(LocalBundleAdjustment, GlobalAdjustmentBringsTheWholeMapToRest) {
   SyntheticScene scene(200);
   const std::vector<Rigid3> poses = Walk(5, {-0.3, 0.1, 0.0});

@@ -164,6 +164,11 @@ TEST(SystemSlow, LocatesTheCameraInAMapOfAnEarlierRunAndLeavesItAsItIs) {
   ASSERT_EQ(later.maps().size(), 1u);
   EXPECT_EQ(later.maps().front().num_keyframes(), map.num_keyframes());
   EXPECT_EQ(later.maps().front().num_landmarks(), map.num_landmarks());
+  // The keyframes of the map were somewhere else at these times.
+  for (const FramePose& frame : result.frames) {
+    const Eigen::Vector3d place = fit * frame.world_from_camera.translation;
+    EXPECT_LT((place - TruePose(frames[frame.index]).translation).norm(), 0.05) << frame.index;
+  }
 }
 
 TEST(SystemSlow, GoesOnInAMapOfAnEarlierRun) {
@@ -190,7 +195,14 @@ TEST(SystemSlow, GoesOnInAMapOfAnEarlierRun) {
     frames.push_back(50 + i);
     later.Process(MakeFrame(i, room.Render(kHallCamera, TruePose(frames.back()))));
   }
-  const Reconstruction result = later.Finish();
+  // A receiver that contradicts the map does not change its unit, which others use.
+  std::vector<PositionFix> fixes;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    fixes.push_back({static_cast<double>(i) / 25.0, 1.3 * TruePose(frames[i]).translation, 0.01});
+  }
+  const Reconstruction result = later.Finish(fixes);
+  EXPECT_EQ(result.scale.state, ScaleState::kRough);
+  EXPECT_NEAR(Compare(result.frames, frames).scale, 1.0, 0.03);
   EXPECT_EQ(result.maps.size(), 1u);
   ASSERT_EQ(result.frames.size(), 60u);
   EXPECT_GT(later.maps().front().num_keyframes(), earlier.maps().front().num_keyframes());

@@ -58,6 +58,16 @@ TEST(TrajectoryInterpolation, TellsNothingWhereNoKeyframesAreNear) {
   EXPECT_FALSE(TrajectoryInterpolation(Map()).PositionAt(0.1));
 }
 
+TEST(TrajectoryInterpolation, LeavesOutKeyframesOfAnEarlierRunWhoseClockIsAnother) {
+  Map map = Drive(0);
+  for (int i = 0; i < 8; ++i) {  // elsewhere at the same times
+    map.AddKeyframe(i - 8, (i + 0.5) * kPeriod, {Eigen::Quaterniond::Identity(), {50, 50, 1.0 * i}},
+                    std::make_shared<Features>());
+  }
+  const PositionPrior prior = TrajectoryInterpolation(map).PositionAt(1.0).value();
+  EXPECT_LT((prior.position - OnArc(1.0).translation).norm(), 1e-3);
+}
+
 TEST(TrajectoryInterpolation, TellsNothingBetweenEqualTimes) {
   Map map;
   for (int i = 0; i < 6; ++i) {

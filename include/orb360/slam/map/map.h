@@ -91,6 +91,8 @@ struct Keyframe {
   /// Pyramid of the image, kept for the newest keyframes only (Map::ForgetImages); else null.
   std::shared_ptr<const SpherePyramid> image;
 
+  /// Whether the frame is one of this run. Otherwise its timestamp is on another clock.
+  bool IsOfThisRun() const { return frame_index >= 0; }
   /// Returns the range prior of a feature, with sigma 0 where there is none.
   RangePrior PriorOf(int feature) const {
     return range_priors.empty() ? RangePrior{} : range_priors[feature];
