@@ -17,8 +17,6 @@ using Basis = Eigen::Matrix<double, 3, 2>;
 constexpr int kRounds = 4;
 constexpr int kIterationsPerRound = 6;
 constexpr int kMinInliers = 3;
-// 95 % bound of a chi-squared variable with three degrees of freedom.
-constexpr double kPriorChiSquared95 = 7.815;
 
 struct NormalEquations {
   Matrix6d hessian = Matrix6d::Zero();
@@ -108,7 +106,7 @@ class Problem {
 
  private:
   Eigen::Vector3d PriorResidual(const Rigid3& camera_from_world) const {
-    return prior_->sqrt_information * (camera_from_world.Inverse().translation - prior_->position);
+    return prior_->ErrorOf(camera_from_world.Inverse().translation);
   }
 
   void LinearizePrior(const Rigid3& camera_from_world, NormalEquations* equations) const {

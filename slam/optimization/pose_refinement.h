@@ -22,7 +22,16 @@ struct PoseObservation {
 struct PositionPrior {
   Eigen::Vector3d position;          ///< World frame.
   Eigen::Matrix3d sqrt_information;  ///< Times the error of the position: of unit covariance.
+
+  /// The error of a position, in standard deviations.
+  Eigen::Vector3d ErrorOf(const Eigen::Vector3d& actual) const {
+    return sqrt_information * (actual - position);
+  }
 };
+
+/// 95 % bound of the squared error of a prior, which has a chi-squared distribution with three
+/// degrees of freedom.
+inline constexpr double kPriorChiSquared95 = 7.815;
 
 struct RefinedPose {
   Rigid3 world_from_camera;

@@ -24,10 +24,15 @@ Rigid3 RefineFrame(const Map& map, const Rigid3& world_from_camera,
   const RefinedPose refined = RefinePose(world_from_camera, observations, prior);
   // A few landmarks, or the smaller part of them, may agree on a wrong pose. The refined pose needs
   // as many inliers as tracking does (TrackerOptions::min_motion_inliers), and half of the
-  // sightings.
+  // sightings, unless it lies where the keyframes around it let expect it: then the others were
+  // observed in a wrong pose.
   constexpr int kEnough = 20;
-  const bool is_sure = refined.num_inliers >= kEnough &&
-                       2 * refined.num_inliers >= static_cast<int>(sightings.size());
+  const bool is_expected =
+      prior &&
+      prior->ErrorOf(refined.world_from_camera.translation).squaredNorm() <= kPriorChiSquared95;
+  const bool is_sure =
+      refined.num_inliers >= kEnough &&
+      (is_expected || 2 * refined.num_inliers >= static_cast<int>(sightings.size()));
   return is_sure ? refined.world_from_camera : world_from_camera;
 }
 

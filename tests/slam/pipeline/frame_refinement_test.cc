@@ -56,6 +56,18 @@ TEST(FrameRefinement, LeavesAPoseWhoseLandmarksAreGone) {
   ExpectNear(RefineFrame(sight.map, kNear, {}), kNear, 1e-12);
 }
 
+TEST(FrameRefinement, AMinorityIsEnoughWhereItAgreesWithThePrior) {
+  Sight sight(1.0);
+  for (LandmarkId id = 0; id < 120; ++id) {  // seen in a wrong pose
+    sight.map.landmark(id).position = sight.scene.random.Point(2.0, 20.0);
+  }
+  const PositionPrior prior{.position = kTruth.translation + Eigen::Vector3d(0.02, 0.01, 0),
+                            .sqrt_information = Eigen::Matrix3d::Identity() / 0.03};
+  const Rigid3 wrong{kTruth.rotation, kTruth.translation + Eigen::Vector3d(0.3, 0, 0)};
+  ExpectNear(RefineFrame(sight.map, wrong, sight.sightings), wrong, 1e-12);
+  ExpectNear(RefineFrame(sight.map, wrong, sight.sightings, prior), kTruth, 0.01);
+}
+
 TEST(FrameRefinement, TakesThePositionFromItsPriorWhereAllLandmarksAreFar) {
   Sight sight(1.0);
   for (LandmarkId id = 0; id < 200; ++id) sight.map.landmark(id).position *= 1e4;
