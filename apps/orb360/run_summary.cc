@@ -29,6 +29,7 @@ nlohmann::json DescribeScale(const MetricScale& scale) {
                               {"sigma", nullptr},
                               {"camera_height", nullptr},
                               {"assumed_height", scale.is_height_assumed},
+                              {"lens_distance", scale.lens_distance},
                               {"sources", scale.sources}};
   if (scale.value > 0) {
     described["value"] = scale.value;

@@ -25,7 +25,8 @@ std::vector<Sighting> SightingsOf(const TrackedFrame& frame);
 /// been adjusted only a few times. Where most of them still exist, they give a better pose now.
 /// `world_from_camera` is the tracked pose after all corrections of the map; it is also the result
 /// where too few landmarks are left. `prior`: what the keyframes before and after the frame tell of
-/// its position (TrajectoryInterpolation), which matters where all landmarks are far.
+/// its position (TrajectoryInterpolation), which matters where all landmarks are far; where the
+/// result contradicts it by more than five standard deviations, its position is taken.
 Rigid3 RefineFrame(const Map& map, const Rigid3& world_from_camera,
                    std::span<const Sighting> sightings,
                    const std::optional<PositionPrior>& prior = std::nullopt);

@@ -7,6 +7,7 @@
 #include "slam/features/sphere_pyramid.h"
 #include "slam/geometry/bearing.h"
 #include "slam/pipeline/ground.h"
+#include "slam/pipeline/lens_distance.h"
 #include "slam/scale/ground_sweep.h"
 
 namespace orb360 {
@@ -34,6 +35,10 @@ constexpr double kMaxGap = 5.0;
 constexpr double kMinAgreement = 0.8;
 // Largest |ln| of the ratio of two heights that are the same.
 constexpr double kMaxHeightError = 0.15;
+// Number of keyframes to which the steps add up that tells that they are right, and the largest
+// error of such a sum, as a fraction of it: directions were tracked.
+constexpr int kMinClosed = 2;
+constexpr double kMaxMisclosure = 0.06;
 // The direction of motion may be wrong by this much of the step, heights of the camera, as long as
 // nothing has told about the ground: few near landmarks have been seen by then.
 constexpr double kWideAside = 0.96;
@@ -70,7 +75,7 @@ std::optional<TimedStep> StepNear(const Map& map, const Keyframe& keyframe) {
 std::optional<GroundSweepOptions> RangeOfSweep(const Map& map, const Keyframe& earlier,
                                                const Keyframe& later,
                                                const std::optional<KnownGround>& ground) {
-  GroundSweepOptions options;
+  GroundSweepOptions options{.lens_distance = AssumedLensDistance(map)};
   if (!ground) options.max_aside = kWideAside;
   double expected = 0;  // ratio
   if (const std::optional<TimedStep> near = StepNear(map, earlier)) {
@@ -109,21 +114,24 @@ std::vector<Assumption> Assume(const Map& map, const Keyframe& earlier, const Ri
       {motion.translation, step.up}, {step.direction2, step.up}, {motion.translation, known_up}};
 }
 
-// Removes a keyframe's observations that its pose contradicts: those of landmarks that move with
-// the camera, and of landmarks that were made with wrong poses.
-void RemoveWrongObservations(KeyframeId id, Map* map) {
-  const Keyframe& keyframe = map->keyframe(id);
-  const Rigid3 camera_from_world = keyframe.world_from_camera.Inverse();
-  const std::vector<LandmarkId> landmarks = keyframe.landmarks;
-  for (size_t f = 0; f < landmarks.size(); ++f) {
-    if (landmarks[f] == kNoId) continue;
-    const Landmark& landmark = map->landmark(landmarks[f]);
-    const double error =
-        AngleBetween(camera_from_world * landmark.position, keyframe.features->bearings[f]);
-    if (error < kMaxBearingSigmas * keyframe.features->keypoints[f].sigma) continue;
-    map->RemoveObservation(landmarks[f], id);
-    if (map->landmark(landmarks[f]).observations.size() < 2) map->RemoveLandmark(landmarks[f]);
+// Whether the step to a keyframe from the one but last before it is the sum of the steps between.
+// These are three measurements of other pairs of images.
+bool StepsAddUp(const Map& map, KeyframeId id) {
+  const std::vector<GroundStepFrom>& steps = map.keyframe(id).ground_steps;
+  if (steps.size() < 2) return false;
+  const GroundStepFrom& last = steps[0];
+  const GroundStepFrom& both = steps[1];
+  if (!map.HasKeyframe(last.keyframe) || !map.HasKeyframe(both.keyframe)) return false;
+  for (const GroundStepFrom& first : map.keyframe(last.keyframe).ground_steps) {
+    if (first.keyframe != both.keyframe) continue;
+    // In the frame of the keyframe in between.
+    const Eigen::Quaterniond between_from_before =
+        map.PoseOf(last.keyframe).rotation.conjugate() * map.PoseOf(both.keyframe).rotation;
+    const Eigen::Vector3d sum = first.ratio * first.direction2 + last.ratio * last.direction1;
+    const Eigen::Vector3d error = sum - both.ratio * (between_from_before * both.direction1);
+    return error.norm() < kMaxMisclosure * both.ratio;
   }
+  return false;
 }
 
 // The ground as the newest step to each of the keyframes shows it.
@@ -177,57 +185,74 @@ void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
                                      .direction1 = step->direction,
                                      .direction2 = turned * step->direction,
                                      .turn_sigma = step->turn_sigma,
-                                     .up = later_from_earlier * step->up});
+                                     .up = later_from_earlier * step->up,
+                                     .assumed_lens_distance = options->lens_distance,
+                                     .per_lens_distance = step->per_lens_distance,
+                                     .lens_distance = step->lens_distance});
   }
 }
 
-void MeasureFirstSteps(const KnownGround& ground, const cv::Mat& mask, Map* map) {
-  const std::vector<KeyframeId> ids = map->KeyframeIds();
-  for (size_t i = ids.size(); i-- > 1;) {
-    const Keyframe& later = map->keyframe(ids[i]);
-    if (!later.ground_steps.empty()) continue;
-    MeasureGroundSteps(later.id, ground, mask, map);
-    if (later.ground_steps.empty()) continue;
-    const GroundStepFrom& step = later.ground_steps.front();
-    const Rigid3& to = later.world_from_camera;
-    const Eigen::Vector3d from =
-        to.translation - step.ratio * ground.camera_height * (to.rotation * step.direction2);
-    const Eigen::Vector3d tracked = map->keyframe(step.keyframe).world_from_camera.translation;
-    const double tolerance = kMaxSigmas * std::hypot(step.sigma, kTrackedSigma);
-    if ((from - tracked).norm() <= tolerance * (from - to.translation).norm()) continue;
-    for (size_t j = 0; j < i; ++j) {
-      map->keyframe(ids[j]).world_from_camera.translation += from - tracked;
-      RemoveWrongObservations(ids[j], map);
-    }
+std::optional<Rigid3> PoseByStep(const GroundStepFrom& step, const Rigid3& from, const Rigid3& to,
+                                 double camera_height) {
+  const Eigen::Vector3d direction = from.rotation * step.direction1;
+  const Eigen::Vector3d up = to.rotation * step.up;
+  const Eigen::Vector3d tracked_direction = to.rotation * step.direction2;
+  const double turn =
+      std::atan2(up.dot(tracked_direction.cross(direction)), tracked_direction.dot(direction));
+  const double length = step.ratio * camera_height;
+  const double factor = length / (to.translation - from.translation).norm();
+  const bool is_turned =
+      std::abs(turn) > kMaxSigmas * std::hypot(step.turn_sigma, kTrackedTurnSigma);
+  const bool is_right =
+      std::abs(std::log(factor)) <= kMaxSigmas * std::hypot(step.sigma, kTrackedSigma);
+  if (is_right && !is_turned) return std::nullopt;
+  Rigid3 pose{to.rotation, from.translation + length * direction};
+  if (is_turned) pose.rotation = (ExpSo3(turn * up) * to.rotation).normalized();
+  return pose;
+}
+
+void RemoveWrongObservations(KeyframeId id, Map* map) {
+  const Keyframe& keyframe = map->keyframe(id);
+  const Rigid3 camera_from_world = keyframe.world_from_camera.Inverse();
+  const std::vector<LandmarkId> landmarks = keyframe.landmarks;
+  for (size_t f = 0; f < landmarks.size(); ++f) {
+    if (landmarks[f] == kNoId) continue;
+    const Landmark& landmark = map->landmark(landmarks[f]);
+    const double error =
+        AngleBetween(camera_from_world * landmark.position, keyframe.features->bearings[f]);
+    if (error < kMaxBearingSigmas * keyframe.features->keypoints[f].sigma) continue;
+    map->RemoveObservation(landmarks[f], id);
+    if (map->landmark(landmarks[f]).observations.size() < 2) map->RemoveLandmark(landmarks[f]);
   }
 }
 
 void CorrectStep(KeyframeId id, const KnownGround& ground, Map* map) {
   Keyframe& keyframe = map->keyframe(id);
   if (keyframe.ground_steps.empty()) return;
-  const GroundStepFrom& measured = keyframe.ground_steps.front();
-  const Rigid3& from = map->keyframe(measured.keyframe).world_from_camera;
-  Rigid3& to = keyframe.world_from_camera;
-  const Eigen::Vector3d direction = from.rotation * measured.direction1;
-  const Eigen::Vector3d up = to.rotation * measured.up;
-  const Eigen::Vector3d tracked_direction = to.rotation * measured.direction2;
-  const double turn =
-      std::atan2(up.dot(tracked_direction.cross(direction)), tracked_direction.dot(direction));
-  const double length = measured.ratio * ground.camera_height;
-  const double factor = length / (to.translation - from.translation).norm();
-  const bool is_turned =
-      std::abs(turn) > kMaxSigmas * std::hypot(measured.turn_sigma, kTrackedTurnSigma);
-  const bool is_right =
-      std::abs(std::log(factor)) <= kMaxSigmas * std::hypot(measured.sigma, kTrackedSigma);
-  if (is_right && !is_turned) return;
-  if (is_turned) to.rotation = (ExpSo3(turn * up) * to.rotation).normalized();
-  to.translation = from.translation + length * direction;
+  const GroundStepFrom& step = keyframe.ground_steps.front();
+  const Rigid3& from = map->keyframe(step.keyframe).world_from_camera;
+  const auto pose = PoseByStep(step, from, keyframe.world_from_camera, ground.camera_height);
+  if (!pose) return;
+  keyframe.world_from_camera = *pose;
   RemoveWrongObservations(id, map);
 }
 
 std::optional<KnownGround> GroundFromSteps(const Map& map, std::span<const KeyframeId> keyframes) {
-  return AgreeOnGround(SightingsOf(map, keyframes),
-                       kMinAgreement * static_cast<double>(keyframes.size()));
+  const std::vector<GroundSighting> sightings = SightingsOf(map, keyframes);
+  if (const auto ground =
+          AgreeOnGround(sightings, kMinAgreement * static_cast<double>(keyframes.size()))) {
+    return ground;
+  }
+  // Where all landmarks are far, the tracked unit of length changes at each keyframe, so that the
+  // heights disagree. The steps themselves tell then whether they are right.
+  if (!StepsAddUp(map, keyframes.back()) || std::ranges::count_if(keyframes, [&](KeyframeId id) {
+                                              return StepsAddUp(map, id);
+                                            }) < kMinClosed) {
+    return std::nullopt;
+  }
+  Eigen::Vector3d up = Eigen::Vector3d::Zero();
+  for (const GroundSighting& sighting : sightings) up += sighting.up;
+  return KnownGround{up.normalized(), sightings.back().height};
 }
 
 bool AgreesWithSteps(const KnownGround& ground, const Map& map,

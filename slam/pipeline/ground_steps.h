@@ -16,18 +16,22 @@ namespace orb360 {
 void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
                         const cv::Mat& mask, Map* map);
 
-/// Measures the steps that the first keyframes lack as soon as the ground is known, from the last
-/// to the first, and moves all keyframes before a step that tracking has got wrong. Two views of
-/// far landmarks tell little of the distance between them, and its direction may have been too
-/// uncertain to find the step before.
-void MeasureFirstSteps(const KnownGround& ground, const cv::Mat& mask, Map* map);
+/// The pose of a keyframe as its step over the ground from another keyframe's pose shows it: moved
+/// and turned about the vertical. Empty where `to` agrees with the step within their errors.
+std::optional<Rigid3> PoseByStep(const GroundStepFrom& step, const Rigid3& from, const Rigid3& to,
+                                 double camera_height);
+
+/// Removes a keyframe's observations that its pose contradicts: those of landmarks that move with
+/// the camera, and of landmarks that were made with wrong poses.
+void RemoveWrongObservations(KeyframeId id, Map* map);
 
 /// Moves and turns a keyframe so that the step from the keyframe before it is the one that the
 /// ground shows. Does nothing where length and turn agree with it within their errors.
 void CorrectStep(KeyframeId id, const KnownGround& ground, Map* map);
 
-/// The ground as the steps of some keyframes show it, in the map's unit of length. Empty where
-/// fewer than four fifths of the keyframes have steps that agree on the height of the camera.
+/// The ground as the steps of some keyframes show it, in the map's unit of length, which is that of
+/// the newest one where they differ. Empty where fewer than four fifths of the keyframes have steps
+/// that agree on the height of the camera, and fewer than two have steps that add up.
 std::optional<KnownGround> GroundFromSteps(const Map& map, std::span<const KeyframeId> keyframes);
 
 /// Whether no step of the keyframes contradicts the height of a ground that something else shows. A

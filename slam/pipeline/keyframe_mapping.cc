@@ -2,8 +2,10 @@
 
 #include <utility>
 
+#include "slam/pipeline/first_steps.h"
 #include "slam/pipeline/ground.h"
 #include "slam/pipeline/ground_steps.h"
+#include "slam/pipeline/lens_distance.h"
 
 namespace orb360 {
 namespace {
@@ -41,8 +43,18 @@ MappedKeyframe MapKeyframe(KeyframeMapping job, const Options& options) {
   const KeyframeId id =
       IntegrateKeyframe(job.frame, std::move(job.pyramid), options.mapper, job.ground,
                         options.scale.from_ground ? std::optional(job.mask) : std::nullopt, &map);
+  const double lengthening = CorrectForLenses(job.finished, &map);
   result.ground = LookForGround(map, job.ground, options.scale);
-  if (result.ground && !job.ground) MeasureFirstSteps(*result.ground, job.mask, &map);
+  if (job.ground && lengthening != 1) {
+    // The map was made with steps that looked too short.
+    job.ground->camera_height /= lengthening;
+    result.ground->camera_height = job.ground->camera_height;
+    result.changes_unit = true;
+  }
+  if (result.ground && !job.ground) {
+    result.changes_unit = true;
+    AlignFirstKeyframes(*result.ground, job.mask, &map);
+  }
   result.update.reference = id;
   result.update.correction =
       ToSimilarity(map.keyframe(id).world_from_camera * job.frame.world_from_camera.Inverse());

@@ -40,6 +40,9 @@ struct MappedKeyframe {
   cv::Mat color = {};
   /// The ground with the new keyframe taken into account.
   std::optional<KnownGround> ground = {};
+  /// Whether the map has to be scaled so that the camera's height over this ground becomes the
+  /// true one.
+  bool changes_unit = false;
   /// The camera's motion over the ground at the new keyframe.
   std::optional<GroundMotion> ground_motion = {};
   /// The loop that the keyframe closes.

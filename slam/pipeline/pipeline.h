@@ -58,7 +58,7 @@ class Pipeline {
 
   /// Adapts everything that refers to the present map to a change of the map.
   void Apply(const MapUpdate& update);
-  void FollowGround(const KnownGround& ground);
+  void FollowGround(const KnownGround& ground, bool changes_unit);
   void LookForDenseGround();
   void CountMap();
   int FreeThreads() const;

@@ -79,7 +79,7 @@ void Pipeline::Adopt(MappedKeyframe mapped) {
                   std::move(mapped.sparse), num_frames_);
   }
   if (mapped.loop) atlas_.found_loop = std::move(mapped.loop);
-  if (mapped.ground) FollowGround(*mapped.ground);
+  if (mapped.ground) FollowGround(*mapped.ground, mapped.changes_unit);
 }
 
 // --- depth --------------------------------------------------------------------------------------
@@ -150,9 +150,9 @@ void Pipeline::AdoptAdjustment() {
 
 // --- the ground ---------------------------------------------------------------------------------
 
-void Pipeline::FollowGround(const KnownGround& ground) {
+void Pipeline::FollowGround(const KnownGround& ground, bool changes_unit) {
   const double height = options_.scale.height();
-  if (!atlas_.ReliableGround()) {
+  if (changes_unit) {
     if (back_end_.is_adjusting()) AdoptAdjustment();
     atlas_.found_loop.reset();  // It was measured in the old unit of length.
     atlas_.places().Restart();
@@ -166,7 +166,9 @@ void Pipeline::FollowGround(const KnownGround& ground) {
 // ground in the dense depth makes the map at least roughly metric.
 void Pipeline::LookForDenseGround() {
   if (!dense_ || atlas_.ground() || !options_.scale.from_ground) return;
-  if (const std::optional<KnownGround> ground = dense_->Ground()) FollowGround(*ground);
+  if (const std::optional<KnownGround> ground = dense_->Ground()) {
+    FollowGround(*ground, true);
+  }
 }
 
 }  // namespace orb360

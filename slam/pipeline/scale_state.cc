@@ -7,6 +7,7 @@
 #include "slam/geometry/bearing.h"
 #include "slam/geometry/cluster_weights.h"
 #include "slam/pipeline/ground.h"
+#include "slam/pipeline/lens_distance.h"
 #include "slam/scale/position_scale.h"
 #include "slam/scale/scale_smoother.h"
 
@@ -28,6 +29,9 @@ constexpr double kPlaneSigma = 0.05;
 // landmarks around it were far.
 constexpr double kUnconfirmedSigma = 0.1;
 constexpr double kCompletedSigma = 0.5;
+// Of the distance between the lenses that stitching leaves near the ground, before anything has
+// been measured, heights of the camera: cameras have 2 to 4 cm.
+constexpr double kLensSigma = 0.01;
 
 // Largest standard deviations of the states.
 constexpr double kMaxMetric = 0.03;
@@ -68,28 +72,42 @@ double DriftVariance(const Map& map, KeyframeId first, KeyframeId second, Keyfra
   return std::clamp(1 / std::max(information, 1e-12), kLeastDrift, kLargestDrift);
 }
 
+// Standard deviation of the distance between the lenses, heights of the camera. Where it is not
+// certain, the steps are measured without it.
+double SigmaOf(const EstimatedLensDistance& lenses) {
+  const auto& [value, sigma] = lenses.distance;
+  if (!(sigma > 0)) return kLensSigma;
+  if (lenses.is_certain) return sigma;
+  const double information = 1 / (sigma * sigma);
+  const double total = information + 1 / (kLensSigma * kLensSigma);
+  return std::hypot(value * information / total, 1 / std::sqrt(total));
+}
+
 struct MapScale {
   double log_scale = 0;
   double sigma = 0;
   bool has_positions = false;
-  bool is_conflict = false;  // of the ground and the positions
-  double length = 0;         // of the path, in the map's unit
-  int num_steps = 0;         // keyframes whose images show the ground
-  int num_planes = 0;        // keyframes whose landmarks show it
+  bool is_conflict = false;          // of the ground and the positions
+  double length = 0;                 // of the path, in the map's unit
+  int num_steps = 0;                 // keyframes whose images show the ground
+  double sum_per_lens_distance = 0;  // of these: change of ln(step) with the distance of the lenses
+  int num_planes = 0;                // keyframes whose landmarks show it
   std::vector<KeyframeScale> keyframes;
 };
 
 // The measurement of a keyframe by its own images of the ground, or else by its landmarks.
-void Measure(const Map& map, const Keyframe& keyframe, const KnownGround& ground, ScaleNode* node,
-             MapScale* scale) {
+void Measure(const Map& map, const Keyframe& keyframe, const KnownGround& ground,
+             const EstimatedLensDistance& lenses, ScaleNode* node, MapScale* scale) {
   for (const GroundStepFrom& step : keyframe.ground_steps) {
     if (!map.HasKeyframe(step.keyframe)) continue;
     const double distance = (keyframe.world_from_camera.translation -
                              map.keyframe(step.keyframe).world_from_camera.translation)
                                 .norm();
     if (!(distance > 0)) continue;
-    node->measured = std::log(step.ratio * ground.camera_height / distance);
+    const double ratio = lenses.is_certain ? RatioWith(lenses.distance.value, step) : step.ratio;
+    node->measured = std::log(ratio * ground.camera_height / distance);
     node->sigma = std::hypot(step.sigma, kReliefSigma);
+    scale->sum_per_lens_distance += step.per_lens_distance / step.ratio;
     ++scale->num_steps;
     return;
   }
@@ -101,7 +119,7 @@ void Measure(const Map& map, const Keyframe& keyframe, const KnownGround& ground
 }
 
 MapScale ScaleOf(const Map& map, int number, const std::optional<KnownGround>& ground,
-                 double height_sigma) {
+                 double height_sigma, const EstimatedLensDistance& lenses) {
   MapScale result;
   const std::vector<KeyframeId> ids = map.KeyframeIds();
   std::vector<ScaleNode> nodes(ids.size());
@@ -117,14 +135,17 @@ MapScale ScaleOf(const Map& map, int number, const std::optional<KnownGround>& g
                                  .norm();
     }
     result.length += nodes[i].path_length;
-    if (ground && !ground->is_rough) Measure(map, keyframe, *ground, &nodes[i], &result);
+    if (ground && !ground->is_rough) Measure(map, keyframe, *ground, lenses, &nodes[i], &result);
   }
   const std::optional<SmoothedScale> smoothed = SmoothScale(nodes);
   if (!smoothed) {
     if (ground) result.sigma = std::hypot(kCompletedSigma, height_sigma);
     return result;
   }
-  const double common = std::hypot(height_sigma, result.num_steps == 0 ? kUnconfirmedSigma : 0.0);
+  const double source_sigma =
+      result.num_steps == 0 ? kUnconfirmedSigma
+                            : SigmaOf(lenses) * result.sum_per_lens_distance / result.num_steps;
+  const double common = std::hypot(height_sigma, source_sigma);
   result.log_scale = smoothed->mean;
   result.sigma = std::hypot(smoothed->mean_sigma, common);
   for (size_t i = 0; i < ids.size(); ++i) {
@@ -185,6 +206,7 @@ EstimatedScale EstimateScale(std::span<const Map> maps,
   whole.is_height_assumed = options.camera_height == 0;
   const double height_sigma =
       whole.is_height_assumed ? kAssumedHeightSigma : options.camera_height_sigma;
+  const EstimatedLensDistance lenses = EstimateLensDistance(maps);
   int num_steps = 0;
   int num_planes = 0;
   double length = 0;
@@ -194,7 +216,7 @@ EstimatedScale EstimateScale(std::span<const Map> maps,
   bool has_positions = !maps.empty();
   bool is_conflict = false;
   for (size_t m = 0; m < maps.size(); ++m) {
-    MapScale scale = ScaleOf(maps[m], static_cast<int>(m), grounds[m], height_sigma);
+    MapScale scale = ScaleOf(maps[m], static_cast<int>(m), grounds[m], height_sigma, lenses);
     UsePositions(maps[m], positions, &scale);
     has_positions = has_positions && scale.has_positions;
     is_conflict = is_conflict || scale.is_conflict;
@@ -212,6 +234,7 @@ EstimatedScale EstimateScale(std::span<const Map> maps,
   if (is_completed) whole.sources.emplace_back("completed depth");
   if (has_positions) whole.sources.emplace_back("positions");
   if (num_steps > 0 || num_planes > 0 || is_completed) whole.camera_height = options.height();
+  if (lenses.is_certain) whole.lens_distance = lenses.distance.value * options.height();
   if (!is_known) {
     whole.sigma = 0;
     return result;

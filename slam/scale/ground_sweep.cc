@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Dense>
 
-#include "nn/base/statistics.h"
 #include "slam/scale/birds_eye_view.h"
+#include "slam/scale/shift_polynomial.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
@@ -33,15 +32,6 @@ constexpr int kMargin = 2 + kFineReach + kTileReach;  // cells, for all of these
 // Least cosine of the angle between the ground and the motion.
 constexpr double kMinHorizontal = 0.5;
 constexpr float kMinTileCorrelation = 0.35f;
-// A tile's shift farther from the common polynomial than this many robust standard deviations is an
-// outlier.
-constexpr double kMaxTileSigmas = 3.0;
-// Standard deviation of the shift of a perfect tile, cells: interpolation and the tile's own
-// relief.
-constexpr double kTileFloor = 0.05;
-// Errors of neighbouring tiles are correlated: against the truth, the errors of ln(ratio) have
-// twice the standard deviation that independent tiles would give (docs/results/scale.md).
-constexpr double kCorrelatedTiles = 2.0;
 // Angle between the assumed normal of the ground across the motion and the one that the tiles show
 // up to which the error of the height, 1 - cos, does not matter, rad.
 constexpr double kMaxTilt = 0.035;
@@ -136,71 +126,10 @@ std::optional<CoarseShift> SweepCoarsely(const BirdsEyeView& view1, const BirdsE
   return result;
 }
 
-/// How far a tile is shifted from one view to the other.
-struct TileShift {
-  Eigen::Vector2d place;  // of its centre relative to the point half-way, heights: along, across
-  double shift;           // cells
-};
-
-/// The shift at the point half-way between the cameras.
-struct ShiftBelow {
-  double shift;              // cells
-  Eigen::Vector2d gradient;  // along and across, cells per height
-  double sigma;              // standard deviation of the shift, cells
-  double gradient_sigma;     // and of its gradient along, cells per height
-  int num_tiles;
-};
-
 Eigen::Vector2d CenterOf(int tile) {
   const auto center = [](int index, int count) { return (index + 0.5 - 0.5 * count) * kTile; };
   return kCell * Eigen::Vector2d(center(tile / kTilesAcross, kTilesAlong),
                                  center(tile % kTilesAcross, kTilesAcross));
-}
-
-/// Fits the shifts of the tiles by a polynomial of their place, because roads are cambered and bend
-/// over hills, and leaves out tiles that do not agree: what moves, or stands on the ground.
-std::optional<ShiftBelow> FitShifts(std::vector<TileShift> tiles, int min_tiles) {
-  constexpr int kParameters = 6;  // of a quadratic polynomial in two variables
-  constexpr int kRounds = 4;
-  for (int round = 0; round < kRounds; ++round) {
-    const auto count = static_cast<Eigen::Index>(tiles.size());
-    if (count < std::max(min_tiles, 2 * kParameters)) return std::nullopt;
-    Eigen::MatrixXd terms(count, kParameters);
-    Eigen::VectorXd shifts(count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const double x = tiles[i].place.x();
-      const double y = tiles[i].place.y();
-      terms.row(i) << 1, x, y, x * x, x * y, y * y;
-      shifts[i] = tiles[i].shift;
-    }
-    const Eigen::LDLT<Eigen::MatrixXd> normal((terms.transpose() * terms).eval());
-    const Eigen::VectorXd solution = normal.solve(terms.transpose() * shifts);
-    const Eigen::VectorXd residuals = shifts - terms * solution;
-    std::vector<double> absolute(count);
-    for (Eigen::Index i = 0; i < count; ++i) absolute[i] = std::abs(residuals[i]);
-    const double robust_sigma = std::hypot(1.4826 * Median(absolute), kTileFloor);
-    const auto is_outlier = [&](const TileShift& tile) {
-      return std::abs(residuals[&tile - tiles.data()]) > kMaxTileSigmas * robust_sigma;
-    };
-    const bool is_last = round + 1 == kRounds || std::ranges::none_of(tiles, is_outlier);
-    if (is_last) {
-      const double scatter = std::hypot(
-          residuals.norm() / std::sqrt(static_cast<double>(count - kParameters)), kTileFloor);
-      const auto sigma_of = [&](int parameter) {
-        const Eigen::VectorXd unit = Eigen::VectorXd::Unit(kParameters, parameter);
-        return kCorrelatedTiles * scatter * std::sqrt(normal.solve(unit)[parameter]);
-      };
-      return ShiftBelow{.shift = solution[0],
-                        .gradient = solution.segment<2>(1),
-                        .sigma = sigma_of(0),
-                        .gradient_sigma = sigma_of(1),
-                        .num_tiles = static_cast<int>(count)};
-    }
-    std::vector<TileShift> kept;
-    std::ranges::remove_copy_if(tiles, std::back_inserter(kept), is_outlier);
-    tiles = std::move(kept);
-  }
-  return std::nullopt;
 }
 
 /// The direction of motion, left and up in the frame of camera 1. The ground is parallel to the
@@ -259,6 +188,28 @@ TileShifts ShiftsOfTiles(const BirdsEyeView& view1, const BirdsEyeView& view2,
   return shifts;
 }
 
+/// Fills in TileShift::per_lens_distance. Where a tile lies ahead of a camera, the lens that looks
+/// ahead sees it, from a place half the distance of the lenses ahead of the camera's centre, and so
+/// it appears nearer by that; behind it is the other way round. `axis1` and `axis2`: direction of
+/// the lens that looks ahead, in the axes of the ground. `common`: shift of all tiles, cells.
+void SeeThroughLenses(const Eigen::Vector3d& axis1, const Eigen::Vector3d& axis2,
+                      const Shift& common, TileShifts* tiles) {
+  constexpr double kHalfTile = 0.5 * kTile * kCell;
+  const Eigen::Vector2d half = 0.5 * kCell * Eigen::Vector2d(common.along, common.across);
+  const auto add = [&](int component, std::vector<TileShift>* shifts) {
+    for (TileShift& tile : *shifts) {
+      // Fraction of the tile that lies ahead less that behind.
+      const auto side = [&](const Eigen::Vector2d& place, const Eigen::Vector3d& axis) {
+        return std::clamp(place.dot(axis.head<2>()) / kHalfTile, -1.0, 1.0) * axis[component];
+      };
+      tile.per_lens_distance =
+          -0.5 * (side(tile.place + half, axis1) - side(tile.place - half, axis2)) / kCell;
+    }
+  };
+  add(0, &tiles->along);
+  add(1, &tiles->across);
+}
+
 /// `axes`: of the ground, in the frame of camera 1.
 std::optional<GroundStep> Sweep(const SpherePyramid& image1, const SpherePyramid& image2,
                                 const Eigen::Quaterniond& camera2_from_camera1,
@@ -295,8 +246,12 @@ std::optional<GroundStep> Sweep(const SpherePyramid& image1, const SpherePyramid
     }
   }
   TileShifts tiles = ShiftsOfTiles(view1, view2, common);
-  const std::optional<ShiftBelow> below = FitShifts(std::move(tiles.along), options.min_tiles);
-  const std::optional<ShiftBelow> aside = FitShifts(std::move(tiles.across), options.min_tiles);
+  const Eigen::Vector3d ahead = Eigen::Vector3d::UnitX();
+  SeeThroughLenses(axes.transpose() * ahead,
+                   axes.transpose() * (camera2_from_camera1.conjugate() * ahead), common, &tiles);
+  const double lens_distance = options.lens_distance;
+  const std::optional<ShiftBelow> below = FitShifts(tiles.along, lens_distance, options.min_tiles);
+  const std::optional<ShiftBelow> aside = FitShifts(tiles.across, lens_distance, options.min_tiles);
   if (!below || !aside) return std::nullopt;
   GroundStep step;
   step.ratio = kCell * std::hypot(below->shift, aside->shift);
@@ -305,6 +260,8 @@ std::optional<GroundStep> Sweep(const SpherePyramid& image1, const SpherePyramid
   step.correlation = coarse->correlation;
   step.rival = coarse->rival;
   step.num_tiles = below->num_tiles;
+  step.per_lens_distance = kCell * below->per_lens_distance;
+  step.lens_distance = FitLensDistance(tiles.along, options.min_tiles);
   step.direction = axes * Eigen::Vector3d(below->shift, aside->shift, 0).normalized();
   // Relief shifts a tile along the motion only, a turn shifts it across in proportion to its place.
   step.turn = kCell * aside->gradient.x();

@@ -31,6 +31,9 @@ struct GroundSweepOptions {
   double max_sigma = 0.03;
   /// Least number of tiles of the ground that must agree.
   int min_tiles = 12;
+  /// Distance between the lens that looks ahead and the one that looks back, heights of the camera:
+  /// what stitching leaves of it near the ground. 0: all is seen from one point.
+  double lens_distance = 0;
 };
 
 /// What two images of the ground tell about the camera's motion between them.
@@ -50,6 +53,11 @@ struct GroundStep {
   double turn_sigma = 0;
   /// Normal of the ground below the point half-way, unit, frame of camera 1.
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
+  /// What the tiles tell of the distance between the lenses, heights of the camera; sigma 0 where
+  /// they tell nothing.
+  LensDistance lens_distance;
+  /// Change of `ratio` with the distance between the lenses that is assumed.
+  double per_lens_distance = 0;
   double correlation = 0;  ///< Mean correlation of the tiles at the best ratio.
   double rival = 0;        ///< Largest mean correlation at any other ratio that is a local maximum.
   int num_tiles = 0;       ///< Number of tiles that agree.
@@ -67,6 +75,12 @@ struct GroundStep {
 /// the tiles lie symmetrically about the point half-way; where the tiles show that the normal is
 /// wrong by more than that allows, the measurement is repeated with the one that they show. `mask`
 /// (CV_8U, size of level 0, 0: not used; may be empty) removes what moves with the camera.
+///
+/// Panoramic cameras have two lenses, which look along the camera's x axis and back, and stitching
+/// joins their images as if all were far away. The ground ahead is then seen from another point
+/// than the ground behind, and a step by which it passes from one to the other looks too short by
+/// the distance of the lenses: 3 cm make 2 to 6 % of a step. Tiles that stay on one side do not
+/// show that, so that the distance can be measured.
 ///
 /// Empty where the camera moves along the normal, and where no ratio passes the options.
 std::optional<GroundStep> MeasureGroundStep(const SpherePyramid& image1,

@@ -68,6 +68,19 @@ TEST(FrameRefinement, AMinorityIsEnoughWhereItAgreesWithThePrior) {
   ExpectNear(RefineFrame(sight.map, wrong, sight.sightings, prior), kTruth, 0.01);
 }
 
+TEST(FrameRefinement, ItsPriorWinsAgainstLandmarksThatSayThatTheCameraHasLeftThePath) {
+  const Sight sight(1.0);
+  PositionPrior prior{.position = kTruth.translation + Eigen::Vector3d(0.5, 0, 0),
+                      .sqrt_information = Eigen::Matrix3d::Identity() / 0.05};
+  // Two hundred near landmarks are stronger than the prior, but say that it is wrong by ten sigmas.
+  const Rigid3 refined = RefineFrame(sight.map, kNear, sight.sightings, prior);
+  EXPECT_EQ(refined.translation, prior.position);
+  EXPECT_LT(refined.rotation.angularDistance(kTruth.rotation), 0.01);
+  // Three sigmas happen.
+  prior.sqrt_information = Eigen::Matrix3d::Identity() / 0.17;
+  ExpectNear(RefineFrame(sight.map, kNear, sight.sightings, prior), kTruth, 0.01);
+}
+
 TEST(FrameRefinement, TakesThePositionFromItsPriorWhereAllLandmarksAreFar) {
   Sight sight(1.0);
   for (LandmarkId id = 0; id < 200; ++id) sight.map.landmark(id).position *= 1e4;

@@ -1,5 +1,7 @@
 #include "slam/pipeline/ground_steps.h"
 
+#include "slam/pipeline/first_steps.h"
+
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -129,7 +131,7 @@ TEST(CorrectStep, GivesAStepTheLengthThatTheGroundShows) {
   EXPECT_EQ(to, tracked);
 }
 
-TEST(MeasureFirstSteps, MovesTheFirstKeyframesToWhereTheGroundSaysThatTheyWere) {
+TEST(AlignFirstKeyframes, MovesTheFirstKeyframesToWhereTheGroundSaysThatTheyWere) {
   Map map = Drive(6, 1.0, Scaled(Asphalt(12)));
   const KnownGround known{Eigen::Vector3d::UnitZ(), kHeight};
   for (const KeyframeId id : {3, 4, 5}) MeasureGroundSteps(id, known, {}, &map);
@@ -138,7 +140,7 @@ TEST(MeasureFirstSteps, MovesTheFirstKeyframesToWhereTheGroundSaysThatTheyWere) 
     map.keyframe(id).world_from_camera.translation =
         TruePose(2).translation + Eigen::Vector3d(-0.03 * (2 - id), 0.01, 0);
   }
-  MeasureFirstSteps(known, {}, &map);
+  AlignFirstKeyframes(known, {}, &map);
   for (const KeyframeId id : map.KeyframeIds()) {
     EXPECT_LT((map.PoseOf(id).translation - TruePose(id).translation).norm(), 0.03) << id;
   }
@@ -198,9 +200,31 @@ TEST(GroundFromSteps, FindsHeightAndNormalInTheMapsUnit) {
   EXPECT_FALSE(ground->is_rough);
 }
 
-TEST(GroundFromSteps, IsEmptyWhereTheHeightsDisagree) {
+TEST(GroundFromSteps, HasTheNewestUnitWhereThatDriftsButTheStepsAddUp) {
   Map map = Drive(6, 1.0, Scaled(Asphalt(5)));
   for (KeyframeId id = 1; id < 6; ++id) MeasureGroundSteps(id, std::nullopt, {}, &map);
+  // Far landmarks have let each step shrink by a third.
+  Eigen::Vector3d place = TruePose(0).translation;
+  for (KeyframeId id = 1; id < 6; ++id) {
+    place += std::pow(0.67, id) * (TruePose(id).translation - TruePose(id - 1).translation);
+    map.keyframe(id).world_from_camera.translation = place;
+  }
+  const std::vector<KeyframeId> all = {1, 2, 3, 4, 5};
+  const std::optional<KnownGround> ground = GroundFromSteps(map, all);
+  ASSERT_TRUE(ground);
+  EXPECT_NEAR(ground->camera_height / (std::pow(0.67, 5) * kHeight), 1.0, 0.01);
+  EXPECT_LT(std::acos(ground->up.z()), 0.02);
+  // The newest one has to add up.
+  map.keyframe(5).ground_steps.front().ratio *= 1.2;
+  EXPECT_FALSE(GroundFromSteps(map, all));
+}
+
+TEST(GroundFromSteps, IsEmptyWhereTheHeightsDisagree) {
+  Map map = Drive(6, 1.0, Scaled(Asphalt(5)));
+  for (KeyframeId id = 1; id < 6; ++id) {
+    MeasureGroundSteps(id, std::nullopt, {}, &map);
+    map.keyframe(id).ground_steps.resize(1);
+  }
   map.keyframe(1).ground_steps.clear();
   map.keyframe(2).ground_steps.front().ratio *= 1.3;
   const std::vector<KeyframeId> all = {1, 2, 3, 4, 5};

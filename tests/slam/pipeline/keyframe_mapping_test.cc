@@ -56,5 +56,38 @@ TEST(KeyframeMapping, MeasuresTheFirstStepsOnceItKnowsTheGround) {
   }
 }
 
+TEST(KeyframeMapping, EnlargesTheMapOnceTheDistanceBetweenTheLensesIsCertain) {
+  Map map;
+  for (int i = 0; i < 15; ++i) {
+    const KeyframeId id = map.AddKeyframe(i, 0.1 * i, TruePose(i), std::make_shared<Features>());
+    if (i == 0) continue;
+    map.keyframe(id).ground_steps.push_back({.keyframe = id - 1,
+                                             .ratio = kStep / kHeight,
+                                             .sigma = 0.002,
+                                             .direction1 = Eigen::Vector3d::UnitX(),
+                                             .direction2 = Eigen::Vector3d::UnitX(),
+                                             .per_lens_distance = 1,
+                                             .lens_distance = {0.02, 0.002}});
+  }
+  Options options;
+  options.loop.enabled = false;
+  const TrackedFrame frame{.index = 15,
+                           .timestamp = 1.5,
+                           .features = std::make_shared<Features>(),
+                           .world_from_camera = TruePose(15),
+                           .landmarks = {}};
+  const KnownGround ground{.up = Eigen::Vector3d::UnitZ(), .camera_height = kHeight};
+  KeyframeMapping job{.active = {std::move(map), LoopDetector({}, {}, 12, 0.001)},
+                      .finished = {},
+                      .frame = frame,
+                      .pyramid = nullptr,
+                      .ground = ground};
+  const MappedKeyframe mapped = MapKeyframe(std::move(job), options);
+  EXPECT_TRUE(mapped.changes_unit);
+  ASSERT_TRUE(mapped.ground.has_value());
+  const double ratio = kStep / kHeight;
+  EXPECT_NEAR(mapped.ground->camera_height, kHeight * ratio / (ratio + 0.02), 1e-6);
+}
+
 }  // namespace
 }  // namespace orb360

@@ -54,6 +54,28 @@ TEST(ScaleState, IsMetricWhereStepsHoldAGivenHeight) {
   }
 }
 
+TEST(ScaleState, TakesTheDistanceBetweenTheLensesOutOrCoversIt) {
+  Map map = WalkOver(std::vector<double>(16, 1.0));
+  const double ratio = map.keyframe(1).ground_steps.front().ratio;
+  const auto see = [&](const LensDistance& distance) {
+    for (KeyframeId id = 1; id < 16; ++id) {
+      GroundStepFrom& step = map.keyframe(id).ground_steps.front();
+      step.per_lens_distance = 1;
+      step.lens_distance = distance;
+    }
+    return Estimate(map, kGround).whole;
+  };
+  const MetricScale certain = see({0.02, 0.004});
+  EXPECT_NEAR(certain.value, (ratio + 0.02) / ratio, 2e-3);
+  EXPECT_NEAR(certain.lens_distance, 0.02 * kHeight, 1e-6);
+  EXPECT_LT(certain.sigma, 0.025);
+  const MetricScale uncertain = see({0.02, 0.04});
+  EXPECT_NEAR(uncertain.value, 1.0, 1e-3);
+  EXPECT_EQ(uncertain.lens_distance, 0);
+  EXPECT_GT(std::hypot(0.02, 0.01 / ratio), 0.022);
+  EXPECT_NEAR(uncertain.sigma, std::hypot(0.02, 0.01 / ratio), 0.004);
+}
+
 TEST(ScaleState, AnAssumedHeightIsNeverMetric) {
   const EstimatedScale scale = Estimate(WalkOver(std::vector<double>(12, 1.0)), kGround, 0.0);
   EXPECT_EQ(scale.whole.state, ScaleState::kRough);

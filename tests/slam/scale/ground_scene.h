@@ -44,20 +44,23 @@ class Asphalt {
   std::vector<float> lattice_ = std::vector<float>(kSide * kSide);
 };
 
-/// What a camera over the plane z = 0 sees, with gray noise; above the horizon a plain sky.
+/// What a camera over the plane z = 0 sees, with gray noise; above the horizon a plain sky. The
+/// camera has one lens that looks ahead (x) and one that looks back, `lens_distance` apart.
 inline SpherePyramid LookAtGround(const Rigid3& world_from_camera, const Ground& ground,
-                                  double noise = 1.0) {
+                                  double noise = 1.0, double lens_distance = 0.0) {
   const EquirectangularCamera camera(kGroundWidth, kGroundWidth / 2);
   cv::Mat gray(kGroundWidth / 2, kGroundWidth, CV_8U);
   std::mt19937 random(static_cast<unsigned>(1e6 * world_from_camera.translation.x()) + 7);
   std::normal_distribution<double> normal(0.0, noise);
   for (int v = 0; v < gray.rows; ++v) {
     for (int u = 0; u < gray.cols; ++u) {
-      const Eigen::Vector3d ray = world_from_camera.rotation * camera.Bearing({u + 0.5, v + 0.5});
+      const Eigen::Vector3d bearing = camera.Bearing({u + 0.5, v + 0.5});
+      const Eigen::Vector3d ray = world_from_camera.rotation * bearing;
       double value = 200;
       if (ray.z() < -0.01) {
-        const double range = -world_from_camera.translation.z() / ray.z();
-        value = ground((world_from_camera.translation + range * ray).head<2>());
+        const double ahead = (bearing.x() > 0 ? 0.5 : -0.5) * lens_distance;
+        const Eigen::Vector3d lens = world_from_camera * Eigen::Vector3d(ahead, 0, 0);
+        value = ground((lens - lens.z() / ray.z() * ray).head<2>());
       }
       gray.at<uint8_t>(v, u) = cv::saturate_cast<uint8_t>(value + normal(random));
     }

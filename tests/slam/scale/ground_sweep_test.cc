@@ -89,6 +89,35 @@ TEST(MeasureGroundStep, FindsTheRotationAboutTheVerticalToo) {
   }
 }
 
+TEST(MeasureGroundStep, TellsTheDistanceBetweenTheLensesAndTakesItOut) {
+  const Asphalt asphalt(12);
+  const double step = 0.8;
+  const Rigid3 second{
+      kFirst.rotation,
+      kFirst.translation + step * (kFirst.rotation * Eigen::Vector3d(0.98, 0.2, 0).normalized())
+                                      .cwiseProduct(Eigen::Vector3d(1, 1, 0))};
+  const double true_step = (second.translation - kFirst.translation).norm();
+  for (const double distance : {0.0, 0.02, -0.015}) {  // heights
+    const auto measure = [&](double assumed) {
+      return MeasureGroundStep(
+          LookAtGround(kFirst, asphalt, 1.0, distance),
+          LookAtGround(second, asphalt, 1.0, distance), kFirst.Inverse() * second,
+          kFirst.rotation.conjugate() * Eigen::Vector3d::UnitZ(), {}, {.lens_distance = assumed});
+    };
+    const auto found = measure(0);
+    ASSERT_TRUE(found) << distance;
+    EXPECT_NEAR(found->ratio, true_step - distance, 0.005) << distance;
+    EXPECT_GT(found->lens_distance.sigma, 0) << distance;
+    EXPECT_LT(found->lens_distance.sigma, 0.01) << distance;
+    EXPECT_NEAR(found->lens_distance.value, distance, 3 * found->lens_distance.sigma) << distance;
+    EXPECT_NEAR(found->ratio + found->per_lens_distance * distance, true_step, 0.004) << distance;
+    const auto corrected = measure(distance);
+    ASSERT_TRUE(corrected) << distance;
+    EXPECT_NEAR(std::log(corrected->ratio / true_step), 0.0, 0.004) << distance;
+    EXPECT_NEAR(corrected->turn, 0.0, 0.001) << distance;
+  }
+}
+
 TEST(MeasureGroundStep, ItsErrorsAreWithinItsSigma) {
   double squares = 0;
   constexpr int kCount = 12;

@@ -54,6 +54,13 @@ struct RangePrior {
   float sigma = 0;  ///< Standard deviation of ln(range); 0 where nothing is known.
 };
 
+/// A measurement of the distance between the lens that looks ahead and the one that looks back, as
+/// far as stitching has left it, heights of the camera. Sigma is 0 where nothing is known.
+struct LensDistance {
+  double value = 0;
+  double sigma = 0;
+};
+
 /// The motion from another keyframe, measured on the ground. Frame 1 is that of the other keyframe,
 /// frame 2 that of the keyframe that has this step.
 struct GroundStepFrom {
@@ -72,6 +79,12 @@ struct GroundStepFrom {
   double turn_sigma = 0;
   /// Normal of the ground below the point half-way, unit, frame 2.
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  /// The distance between the lenses that `ratio` assumes, heights of the camera.
+  double assumed_lens_distance = 0;
+  /// Change of `ratio` with that distance.
+  double per_lens_distance = 0;
+  /// What the images of the step tell of that distance.
+  LensDistance lens_distance = {};
 };
 
 /// A frame that is kept in the map with its features.
