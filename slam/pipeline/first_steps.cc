@@ -1,5 +1,6 @@
 #include "slam/pipeline/first_steps.h"
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -8,6 +9,11 @@
 
 namespace orb360 {
 namespace {
+
+// Longest time over which a step tells the one before it, seconds, and how far that one may be from
+// it, as a fraction of its length, before it is replaced.
+constexpr double kMaxGap = 1.0;
+constexpr double kMaxChange = 0.5;
 
 void TriangulateAnew(Map* map) {
   for (LandmarkId id = 0; id < map->landmark_end(); ++id) {
@@ -32,18 +38,42 @@ void TriangulateAnew(Map* map) {
 
 }  // namespace
 
+// The pose of a keyframe relative to one before it whose step was not measured, if that is far from
+// what the step after it lets expect: carriers change their speed and direction little in that
+// time.
+std::optional<Rigid3> PoseByNextStep(const Keyframe& earlier, const Keyframe& later,
+                                     const Keyframe& next, double camera_height) {
+  if (next.ground_steps.empty()) return std::nullopt;
+  const GroundStepFrom& step = next.ground_steps.front();
+  if (step.keyframe != later.id) return std::nullopt;
+  const double elapsed = later.timestamp - earlier.timestamp;
+  const double fraction = elapsed / (next.timestamp - later.timestamp);
+  if (!(fraction > 0 && std::isfinite(fraction)) || elapsed > kMaxGap) return std::nullopt;
+  const Rigid3& to = later.world_from_camera;
+  const Eigen::Vector3d motion =
+      fraction * step.ratio * camera_height * (to.rotation * step.direction1);
+  const Eigen::Vector3d tracked = to.translation - earlier.world_from_camera.translation;
+  if ((tracked - motion).norm() < kMaxChange * motion.norm()) return std::nullopt;
+  return Rigid3{to.rotation, earlier.world_from_camera.translation + motion};
+}
+
 void AlignFirstKeyframes(const KnownGround& ground, const cv::Mat& mask, Map* map) {
   const std::vector<KeyframeId> ids = map->KeyframeIds();
   bool has_moved = false;
   for (size_t i = ids.size(); i-- > 1;) {
     const Keyframe& later = map->keyframe(ids[i]);
     if (later.ground_steps.empty()) MeasureGroundSteps(later.id, ground, mask, map);
-    if (later.ground_steps.empty()) continue;
-    const GroundStepFrom& step = later.ground_steps.front();
-    if (!map->HasKeyframe(step.keyframe)) continue;
-    const Rigid3& from = map->keyframe(step.keyframe).world_from_camera;
-    const std::optional<Rigid3> pose =
-        PoseByStep(step, from, later.world_from_camera, ground.camera_height);
+    std::optional<Rigid3> pose;
+    if (later.ground_steps.empty()) {
+      if (i + 1 == ids.size()) continue;
+      pose = PoseByNextStep(map->keyframe(ids[i - 1]), later, map->keyframe(ids[i + 1]),
+                            ground.camera_height);
+    } else {
+      const GroundStepFrom& step = later.ground_steps.front();
+      if (!map->HasKeyframe(step.keyframe)) continue;
+      const Rigid3& from = map->keyframe(step.keyframe).world_from_camera;
+      pose = PoseByStep(step, from, later.world_from_camera, ground.camera_height);
+    }
     if (!pose) continue;
     // What would move the later keyframe there moves the earlier ones the other way.
     const Rigid3 correction = later.world_from_camera * pose->Inverse();

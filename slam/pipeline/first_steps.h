@@ -10,7 +10,8 @@ namespace orb360 {
 /// Brings the keyframes from before the ground was known to where their steps over it say that they
 /// were, starting from the newest one. Steps that they lack are measured now. Two views of far
 /// landmarks tell little of the distance between them, and so the first keyframes may be wrong by
-/// factors. What they see is triangulated anew. `mask`: see MeasureGroundSteps.
+/// factors. A step that cannot be measured is replaced by the one after it where it is far from
+/// that. What they see is triangulated anew. `mask`: see MeasureGroundSteps.
 void AlignFirstKeyframes(const KnownGround& ground, const cv::Mat& mask, Map* map);
 
 }  // namespace orb360

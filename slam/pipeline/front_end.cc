@@ -94,7 +94,7 @@ void FrontEnd::Anchor(const TrackedFrame& frame, Atlas* atlas, bool is_interpola
                               .is_interpolated = is_interpolated});
 }
 
-bool FrontEnd::NeedsKeyframe(bool has_ground) const {
+bool FrontEnd::NeedsKeyframe(const Map& map, bool has_ground) const {
   const TrackedFrame& last = std::get<Tracking>(state_).last;
   const KeyframeOptions& options = options_.keyframe;
   const double motion =
@@ -106,6 +106,16 @@ bool FrontEnd::NeedsKeyframe(bool has_ground) const {
     return true;
   }
   if (motion < options.min_motion) return false;
+  // Before the ground is known, nobody knows how long a step is. Carriers move by a fraction of the
+  // camera's height to three heights in this time.
+  constexpr double kMaxStepTime = 0.25;  // seconds
+  // After that many keyframes the ground has had its chance.
+  constexpr KeyframeId kMaxSearch = 15;
+  if (options_.scale.from_ground && !has_ground && map.keyframe_end() < kMaxSearch &&
+      last.timestamp - map.keyframe(map.LivingKeyframe(map.keyframe_end() - 1)).timestamp >
+          kMaxStepTime) {
+    return true;
+  }
   return motion > options.max_motion ||
          last.num_inliers < options.min_tracked_fraction * local_.reference_matches ||
          last.num_inliers < options.urgent_inliers;

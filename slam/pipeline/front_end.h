@@ -86,8 +86,9 @@ class FrontEnd {
   /// Starts tracking in the map just made, which is the present one. State: then tracking.
   void StartTracking(const InitialMap& initial, int num_threads, Atlas* atlas);
 
-  /// Whether the last frame should become a keyframe. State: tracking.
-  bool NeedsKeyframe(bool has_ground) const;
+  /// Whether the last frame should become a keyframe of the map, whose ground is known or not.
+  /// State: tracking.
+  bool NeedsKeyframe(const Map& map, bool has_ground) const;
   /// Adds the collected counts to the landmarks of the map, and makes the local map anew where
   /// another keyframe than its reference shares most landmarks with the last frame. State:
   /// tracking.

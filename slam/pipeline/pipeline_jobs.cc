@@ -27,7 +27,8 @@ void Pipeline::StartDue(const cv::Mat& image) {
   front_end_.UpdateLocalMap(&atlas_.map());
   if (atlas_.found_loop && !back_end_.is_adjusting()) {
     StartLoopCorrection();
-  } else if (!keeps_map_ && front_end_.NeedsKeyframe(atlas_.ReliableGround().has_value())) {
+  } else if (!keeps_map_ &&
+             front_end_.NeedsKeyframe(atlas_.map(), atlas_.ReliableGround().has_value())) {
     StartMapping(image);
   }
 }

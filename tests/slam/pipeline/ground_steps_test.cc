@@ -148,6 +148,26 @@ TEST(AlignFirstKeyframes, MovesTheFirstKeyframesToWhereTheGroundSaysThatTheyWere
   EXPECT_EQ(map.keyframe(2).ground_steps.size(), 2u);
 }
 
+TEST(AlignFirstKeyframes, TakeTheNextStepWhereOneCannotBeMeasured) {
+  Map map = Drive(6, 1.0, Scaled(Asphalt(12)));
+  const KnownGround known{Eigen::Vector3d::UnitZ(), kHeight};
+  for (const KeyframeId id : {2, 3, 4, 5}) MeasureGroundSteps(id, known, {}, &map);
+  map.keyframe(2).ground_steps.resize(1);
+  // The first image shows another ground, and tracking is wrong by a factor and sideways.
+  map.keyframe(0).image =
+      std::make_shared<const SpherePyramid>(LookAtGround(TruePose(0), Scaled(Asphalt(13))));
+  map.keyframe(0).world_from_camera.translation =
+      TruePose(1).translation + Eigen::Vector3d(-0.1, 0.3, 0);
+  AlignFirstKeyframes(known, {}, &map);
+  EXPECT_TRUE(map.keyframe(1).ground_steps.empty());
+  EXPECT_LT((map.PoseOf(0).translation - TruePose(0).translation).norm(), 0.1 * kStep);
+  // What is right by half is kept: the carrier may have braked.
+  const Eigen::Vector3d slow = TruePose(1).translation - Eigen::Vector3d(0.7 * kStep, 0, 0);
+  map.keyframe(0).world_from_camera.translation = slow;
+  AlignFirstKeyframes(known, {}, &map);
+  EXPECT_LT((map.PoseOf(0).translation - slow).norm(), 0.02);
+}
+
 TEST(CorrectStep, RemovesWhatMovesWithTheCamera) {
   const Ground ground = Scaled(Asphalt(6));
   const Eigen::Vector3d wall(3.0, 4.0, 1.0);
