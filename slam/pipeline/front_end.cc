@@ -5,6 +5,8 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "slam/pipeline/ground_steps.h"
+
 namespace orb360 {
 namespace {
 
@@ -109,9 +111,7 @@ bool FrontEnd::NeedsKeyframe(const Map& map, bool has_ground) const {
   // Before the ground is known, nobody knows how long a step is. Carriers move by a fraction of the
   // camera's height to three heights in this time.
   constexpr double kMaxStepTime = 0.25;  // seconds
-  // After that many keyframes the ground has had its chance.
-  constexpr KeyframeId kMaxSearch = 15;
-  if (options_.scale.from_ground && !has_ground && map.keyframe_end() < kMaxSearch &&
+  if (options_.scale.from_ground && !has_ground && map.keyframe_end() < kGroundSearch &&
       last.timestamp - map.keyframe(map.LivingKeyframe(map.keyframe_end() - 1)).timestamp >
           kMaxStepTime) {
     return true;

@@ -10,6 +10,10 @@
 
 namespace orb360 {
 
+/// Number of keyframes within which the ground is sought eagerly: they are close to each other, and
+/// none of them is redundant.
+inline constexpr KeyframeId kGroundSearch = 15;
+
 /// Measures the steps from the last keyframes before `id` to it on the ground that the images show
 /// (MeasureGroundStep), and stores them in the keyframe. `mask` removes what moves with the camera
 /// (CV_8U, 0: not used; may be empty).

@@ -100,7 +100,8 @@ KeyframeId IntegrateKeyframe(const TrackedFrame& frame, std::shared_ptr<const Sp
   AlignObservations(id, ground, map);
   FindByPatches(id, options.max_fusion_neighbours, map);
   AdjustLocally(id, options.bundle, ground, map);
-  CullRedundantKeyframes(id, options, map);
+  const bool seeks_ground = ground_mask && !ground && id < kGroundSearch;
+  if (!seeks_ground) CullRedundantKeyframes(id, options, map);
   map->ForgetImages(options.kept_images);
   return id;
 }

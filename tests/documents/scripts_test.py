@@ -90,6 +90,37 @@ class Scripts(unittest.TestCase):
         for key in ("network_vs_pytorch", "fusion_vs_pytorch", "unguided_vs_pytorch"):
             self.assertGreater(figures[key], 0.0)
 
+    def test_camera_effects_have_their_own_truth(self) -> None:
+        town = self.render(40, "--depth-every", "10")
+
+        def run(effect: str, *options: object) -> tuple[Path, float]:
+            out = self.folder / effect
+            self.run_script("camera_effects", effect, town, "--out", out, *options)
+            results = json.loads(self.run_script(
+                "evaluate", "--outside", out, "--skip-build", "--json", "--variants", "tri",
+                "--out", self.folder / "out"))
+            self.assertEqual(results[0]["tracked"], 40)
+            return out, results[0]["ate_rmse_sim3"]
+
+        for effect in ("exposure", "lock"):
+            with self.subTest(effect):
+                out, ate = run(effect)
+                self.assertLess(ate, 0.2)
+                self.assertEqual(len(list((out / "depth").iterdir())), 4)
+        # Poses of `lock` are level and all look along the world's x axis.
+        row = (self.folder / "lock" / "groundtruth.txt").read_text().splitlines()[20].split()
+        self.assertEqual([abs(round(float(x), 6)) for x in row[4:]], [0.5] * 4)
+        # No distance between the lenses leaves the images as they are, up to the JPEG.
+        out, ate = run("seam", "--lens-distance", 0)
+        self.assertLess(ate, 0.2)
+
+    def test_camera_effects_refuse_what_is_no_recording(self) -> None:
+        done = subprocess.run([str(ROOT / "scripts" / "camera_effects"), "level", str(self.folder),
+                               "--out", str(self.folder / "x")], check=False, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"^camera_effects: .*is .* a recording\?\n$")
+
     def test_kidnap_counts_every_try(self) -> None:
         printed = self.run_script("kidnap", self.render(60), "--out", self.folder / "kidnap",
                                   "--tries", 2, "--orb360", BUILD / "orb360")

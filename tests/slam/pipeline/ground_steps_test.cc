@@ -1,7 +1,5 @@
 #include "slam/pipeline/ground_steps.h"
 
-#include "slam/pipeline/first_steps.h"
-
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -9,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "slam/geometry/bearing.h"
+#include "slam/pipeline/first_steps.h"
 #include "tests/slam/map/true_ground_step.h"
 #include "tests/slam/scale/ground_scene.h"
 #include <orb360/slam/geometry/so3.h>

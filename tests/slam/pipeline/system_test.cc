@@ -186,6 +186,28 @@ TEST(SystemSlow, CompletesTheSameForAnyNumberOfThreads) {
   ExpectSame(two.result, one.result);
 }
 
+TEST(SystemSlow, KeyframesAreCloseToEachOtherWhileTheGroundIsSought) {
+  // A stroll, which needs a keyframe every second.
+  const auto largest_gap = [](bool from_ground) {
+    Options options = SmallOptions();
+    options.scale.from_ground = from_ground;
+    options.loop.enabled = false;
+    System system(kHallCamera, options, {});
+    for (int i = 0; i < 50; ++i) {
+      system.Process(MakeFrame(i, Hall().Render(kHallCamera, TruePose(0.25 * i))));
+    }
+    const Reconstruction result = system.Finish();
+    double gap = 0;
+    // The first two keyframes make the map, which needs parallax.
+    for (size_t i = 2; i < std::min<size_t>(result.keyframes.size(), 5); ++i) {
+      gap = std::max(gap, result.keyframes[i].timestamp - result.keyframes[i - 1].timestamp);
+    }
+    return gap;
+  };
+  EXPECT_GT(largest_gap(false), 0.6);
+  EXPECT_LT(largest_gap(true), 0.45);  // and a frame that mapping takes
+}
+
 TEST(SystemSlow, TracksAtSixFramesASecond) {
   std::vector<double> frames;
   for (int i = 0; i < 40; ++i) frames.push_back(4.0 * i);
