@@ -57,8 +57,8 @@ struct RangePrior {
 /// A measurement of the distance between the lens that looks ahead and the one that looks back, as
 /// far as stitching has left it, heights of the camera. Sigma is 0 where nothing is known.
 struct LensDistance {
-  double value = 0;
-  double sigma = 0;
+  double value = 0;  ///< Heights of the camera.
+  double sigma = 0;  ///< Standard deviation of it; 0: unknown.
 };
 
 /// The motion from another keyframe, measured on the ground. Frame 1 is that of the other keyframe,

@@ -27,9 +27,9 @@ struct MetricScale {
   double camera_height = 0;
   /// Whether nobody gave that height.
   bool is_height_assumed = false;
-  /// Distance between the lens that looks ahead and the one that looks back, as far as stitching has
-  /// left it near the ground, metres; 0 where the images show none beyond doubt. It has been taken
-  /// out of the steps over the ground.
+  /// Distance between the lens that looks ahead and the one that looks back, as far as stitching
+  /// has left it near the ground, metres; 0 where the images show none beyond doubt. It has been
+  /// taken out of the steps over the ground.
   double lens_distance = 0;
   /// What the scale was measured with, in the order of their weight.
   std::vector<std::string> sources;
