@@ -11,6 +11,9 @@ namespace {
 
 // Longest time between two keyframes between which is interpolated, seconds.
 constexpr double kMaxGap = 1.0;
+// A gap whose speed is more than this many times that of the gaps beside it is a cut of the video:
+// the camera went on at another place.
+constexpr double kMaxSpeedChange = 2.0;
 // Number of keyframes on each side whose deviations tell how smooth the motion is, and the least
 // number of deviations.
 constexpr size_t kNeighbours = 3;
@@ -52,12 +55,25 @@ TrajectoryInterpolation::TrajectoryInterpolation(const Map& map) {
   }
 }
 
+bool TrajectoryInterpolation::IsCut(size_t index) const {
+  const auto speed = [&](size_t i) {  // up to node i
+    if (i == 0 || i >= nodes_.size()) return 0.0;
+    const double elapsed = nodes_[i].timestamp - nodes_[i - 1].timestamp;
+    if (!IsShort(elapsed)) return 0.0;
+    const Eigen::Vector3d step =
+        nodes_[i].world_from_camera.translation - nodes_[i - 1].world_from_camera.translation;
+    return step.norm() / elapsed;
+  };
+  const double around = std::max(speed(index - 1), speed(index + 1));
+  return around > 0 && speed(index) > kMaxSpeedChange * around;
+}
+
 std::optional<PositionPrior> TrajectoryInterpolation::PositionAt(double timestamp) const {
   const auto after = std::ranges::upper_bound(nodes_, timestamp, {}, &Node::timestamp);
   if (after == nodes_.begin() || after == nodes_.end()) return std::nullopt;
   const auto before = after - 1;
   const double gap = after->timestamp - before->timestamp;
-  if (!IsShort(gap)) return std::nullopt;
+  if (!IsShort(gap) || IsCut(static_cast<size_t>(after - nodes_.begin()))) return std::nullopt;
   double sum = 0;
   int count = 0;
   const auto index = static_cast<size_t>(after - nodes_.begin());

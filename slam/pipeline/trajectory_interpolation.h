@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -18,7 +19,8 @@ class TrajectoryInterpolation {
   explicit TrajectoryInterpolation(const Map& map);
 
   /// The position at a time, seconds. Empty outside the keyframes, where more than a second lies
-  /// between two of them, and where fewer than two keyframes nearby show how smooth the motion is.
+  /// between two of them, where the video has been cut, and where fewer than two keyframes nearby
+  /// show how smooth the motion is.
   std::optional<PositionPrior> PositionAt(double timestamp) const;
 
  private:
@@ -29,6 +31,9 @@ class TrajectoryInterpolation {
     /// missing or far away in time.
     double deviation = -1;
   };
+
+  /// Whether the camera cannot have moved from the node before `index` to it.
+  bool IsCut(size_t index) const;
 
   std::vector<Node> nodes_;  // in the order of time
 };

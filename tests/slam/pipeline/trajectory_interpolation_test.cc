@@ -48,6 +48,18 @@ TEST(TrajectoryInterpolation, IsAsUncertainAsTheKeyframesShake) {
   EXPECT_LT(SigmaOf(path.PositionAt(3.02 * kPeriod).value()), 0.4 * kShake) << "near a keyframe";
 }
 
+TEST(TrajectoryInterpolation, TellsNothingWhereTheVideoIsCut) {
+  Map map = Drive(0);
+  // 1 m from keyframe to keyframe, and 15 m from the fourth to the fifth.
+  for (KeyframeId id = 4; id < 8; ++id) {
+    map.keyframe(id).world_from_camera.translation += Eigen::Vector3d(0, 15, 0);
+  }
+  const TrajectoryInterpolation path(map);
+  EXPECT_FALSE(path.PositionAt(3.5 * kPeriod));
+  EXPECT_TRUE(path.PositionAt(2.5 * kPeriod));
+  EXPECT_TRUE(path.PositionAt(4.5 * kPeriod));
+}
+
 TEST(TrajectoryInterpolation, TellsNothingWhereNoKeyframesAreNear) {
   const TrajectoryInterpolation path(Drive(0));
   EXPECT_FALSE(path.PositionAt(-0.1));
