@@ -6,7 +6,7 @@
 // For each frame of a sequence folder with true depth and the frame GAP after it [1]: the true
 // ratio of the step to the height over the ground, the measured one, the error of its logarithm and
 // that in standard deviations, and the error of the rotation about the vertical; at the end their
-// summary.
+// summary, and the distance between the two lenses that all pairs together show.
 
 #include <cmath>
 #include <cstdio>
@@ -89,6 +89,8 @@ void Measure(const fs::path& sequence, int gap) {
       orb360::ReadTrajectory(sequence / "groundtruth.txt");
   Errors lengths;
   Errors turns;
+  double lens_information = 0;  // of the distance between the lenses, 1 / heights^2
+  double weighted_lens_distance = 0;
   int num_frames = 0;
   std::printf("%6s %7s %8s %7s %7s %6s %7s %7s %6s %6s %6s\n", "frame", "true", "measured", "error",
               "sigma", "error/", "turn", "sigma", "corr.", "rival", "tiles");
@@ -110,6 +112,10 @@ void Measure(const fs::path& sequence, int gap) {
     const double error = std::log(step->ratio / truth);
     lengths.Add(error, step->sigma);
     turns.Add(step->turn, step->turn_sigma);  // The rotation given is the true one.
+    if (const auto& [distance, sigma] = step->lens_distance; sigma > 0) {
+      lens_information += 1 / (sigma * sigma);
+      weighted_lens_distance += distance / (sigma * sigma);
+    }
     std::printf("%6d %7.4f %8.4f %7.4f %7.4f %6.1f %7.4f %7.4f %6.2f %6.2f %6d\n", i, truth,
                 step->ratio, error, step->sigma, error / step->sigma, step->turn, step->turn_sigma,
                 step->correlation, step->rival, step->num_tiles);
@@ -118,6 +124,10 @@ void Measure(const fs::path& sequence, int gap) {
   std::printf("measured %zu of %d\n", lengths.absolute.size(), num_frames);
   lengths.Print("ln(step)");
   turns.Print("turn, rad");
+  if (lens_information > 0) {
+    std::printf("distance of the lenses, heights: %.4f, standard deviation %.4f\n",
+                weighted_lens_distance / lens_information, 1 / std::sqrt(lens_information));
+  }
 }
 
 }  // namespace

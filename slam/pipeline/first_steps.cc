@@ -1,5 +1,6 @@
 #include "slam/pipeline/first_steps.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -36,8 +37,6 @@ void TriangulateAnew(Map* map) {
   }
 }
 
-}  // namespace
-
 // The pose of a keyframe relative to one before it whose step was not measured, if that is far from
 // what the step after it lets expect: carriers change their speed and direction little in that
 // time.
@@ -57,8 +56,13 @@ std::optional<Rigid3> PoseByNextStep(const Keyframe& earlier, const Keyframe& la
   return Rigid3{to.rotation, earlier.world_from_camera.translation + motion};
 }
 
+}  // namespace
+
 void AlignFirstKeyframes(const KnownGround& ground, const cv::Mat& mask, Map* map) {
   const std::vector<KeyframeId> ids = map->KeyframeIds();
+  const bool is_of_this_run =
+      std::ranges::all_of(ids, [&](KeyframeId id) { return map->keyframe(id).IsOfThisRun(); });
+  if (map->keyframe_end() > kGroundSearch || !is_of_this_run) return;
   bool has_moved = false;
   for (size_t i = ids.size(); i-- > 1;) {
     const Keyframe& later = map->keyframe(ids[i]);

@@ -12,6 +12,9 @@ namespace orb360 {
 /// landmarks tell little of the distance between them, and so the first keyframes may be wrong by
 /// factors. A step that cannot be measured is replaced by the one after it where it is far from
 /// that. What they see is triangulated anew. `mask`: see MeasureGroundSteps.
+///
+/// Does nothing in a map of more than kGroundSearch keyframes or with keyframes of an earlier run:
+/// these hold each other by common landmarks, which a move of all earlier ones would tear.
 void AlignFirstKeyframes(const KnownGround& ground, const cv::Mat& mask, Map* map);
 
 }  // namespace orb360

@@ -27,14 +27,14 @@ Rigid3 RefineFrame(const Map& map, const Rigid3& world_from_camera,
   // sightings, unless it lies where the keyframes around it let expect it: then the others were
   // observed in a wrong pose.
   constexpr int kEnough = 20;
-  const double squared_error =
-      prior ? prior->ErrorOf(refined.world_from_camera.translation).squaredNorm() : 0.0;
-  const bool is_expected = prior && squared_error <= kPriorChiSquared95;
+  const bool is_expected =
+      prior &&
+      prior->ErrorOf(refined.world_from_camera.translation).squaredNorm() <= kPriorChiSquared95;
   const bool is_sure =
       refined.num_inliers >= kEnough &&
       (is_expected || 2 * refined.num_inliers >= static_cast<int>(sightings.size()));
   const Rigid3& pose = is_sure ? refined.world_from_camera : world_from_camera;
-  // No camera leaves the path that far. Most landmarks are far or move with the camera then.
+  // No camera leaves the path that far: most landmarks are far then, or move with the camera.
   constexpr double kMaxSigmas = 5.0;
   if (prior && prior->ErrorOf(pose.translation).norm() > kMaxSigmas) {
     return {pose.rotation, prior->position};

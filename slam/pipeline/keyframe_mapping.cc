@@ -4,7 +4,7 @@
 
 #include "slam/pipeline/first_steps.h"
 #include "slam/pipeline/ground.h"
-#include "slam/pipeline/ground_steps.h"
+#include "slam/pipeline/ground_from_steps.h"
 #include "slam/pipeline/lens_distance.h"
 
 namespace orb360 {
@@ -45,7 +45,7 @@ MappedKeyframe MapKeyframe(KeyframeMapping job, const Options& options) {
                         options.scale.from_ground ? std::optional(job.mask) : std::nullopt, &map);
   const double lengthening = CorrectForLenses(job.finished, &map);
   result.ground = LookForGround(map, job.ground, options.scale);
-  if (job.ground && lengthening != 1) {
+  if (job.ground && result.ground && lengthening != 1) {
     // The map was made with steps that looked too short.
     job.ground->camera_height /= lengthening;
     result.ground->camera_height = job.ground->camera_height;

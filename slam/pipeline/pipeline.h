@@ -58,6 +58,8 @@ class Pipeline {
 
   /// Adapts everything that refers to the present map to a change of the map.
   void Apply(const MapUpdate& update);
+  /// Takes over a ground. `changes_unit`: the map is scaled first, so that the camera has the
+  /// height of the options over it.
   void FollowGround(const KnownGround& ground, bool changes_unit);
   void LookForDenseGround();
   void CountMap();

@@ -91,35 +91,50 @@ class Scripts(unittest.TestCase):
             self.assertGreater(figures[key], 0.0)
 
     def test_camera_effects_have_their_own_truth(self) -> None:
-        town = self.render(40, "--depth-every", "10")
+        town = self.render(60, "--depth-every", "10")
 
-        def run(effect: str, *options: object) -> tuple[Path, float]:
+        def run(effect: str, *options: object) -> dict:
             out = self.folder / effect
             self.run_script("camera_effects", effect, town, "--out", out, *options)
-            results = json.loads(self.run_script(
+            result = json.loads(self.run_script(
                 "evaluate", "--outside", out, "--skip-build", "--json", "--variants", "tri",
-                "--out", self.folder / "out"))
-            self.assertEqual(results[0]["tracked"], 40)
-            return out, results[0]["ate_rmse_sim3"]
+                "--out", self.folder / "out"))[0]
+            self.assertEqual(result["tracked"], 60)
+            self.assertLess(result["ate_rmse_sim3"], 0.2)
+            return result
 
         for effect in ("exposure", "lock"):
             with self.subTest(effect):
-                out, ate = run(effect)
-                self.assertLess(ate, 0.2)
-                self.assertEqual(len(list((out / "depth").iterdir())), 4)
+                run(effect)
+        self.assertEqual(len(list((self.folder / "lock" / "depth").iterdir())), 6)
         # Poses of `lock` are level and all look along the world's x axis.
         row = (self.folder / "lock" / "groundtruth.txt").read_text().splitlines()[20].split()
         self.assertEqual([abs(round(float(x), 6)) for x in row[4:]], [0.5] * 4)
-        # No distance between the lenses leaves the images as they are, up to the JPEG.
-        out, ate = run("seam", "--lens-distance", 0)
-        self.assertLess(ate, 0.2)
+        # Lenses apart shorten each step, unless the run finds their distance.
+        result = run("seam", "--lens-distance", 0.1)
+        self.assertAlmostEqual(result["scale"]["lens_distance"], 0.1, delta=0.02)
+        self.assertAlmostEqual(result["scale_factor"], 1.0, delta=0.03)
 
     def test_camera_effects_refuse_what_is_no_recording(self) -> None:
-        done = subprocess.run([str(ROOT / "scripts" / "camera_effects"), "level", str(self.folder),
-                               "--out", str(self.folder / "x")], check=False, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        self.assertEqual(done.returncode, 1)
-        self.assertRegex(done.stderr, r"^camera_effects: .*is .* a recording\?\n$")
+        recording = self.folder / "recording"
+
+        def refused() -> str:
+            done = subprocess.run([str(ROOT / "scripts" / "camera_effects"), "level",
+                                   str(recording), "--out", str(self.folder / "x")], check=False,
+                                  text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            self.assertEqual(done.returncode, 1)
+            return done.stderr
+
+        self.assertRegex(refused(), r"^camera_effects: .*is .* a recording\?\n$")
+        recording.mkdir()
+        (recording / "sequence.yaml").write_text("camera_height: 1.6\n")
+        (recording / "groundtruth.txt").write_text("0 1 2 three\n")
+        self.assertRegex(refused(), r"^camera_effects: .*groundtruth.txt: .*three.*\n$")
+        (recording / "groundtruth.txt").write_text("0 0 0 0 0 0 0 1\n")
+        self.assertRegex(refused(), r"^camera_effects: .* has 0 images and 1 poses\n$")
+        (recording / "rgb").mkdir()
+        (recording / "rgb" / "000000.jpg").write_text("no image")
+        self.assertRegex(refused(), r"^camera_effects: .*000000.jpg is no image\n$")
 
     def test_kidnap_counts_every_try(self) -> None:
         printed = self.run_script("kidnap", self.render(60), "--out", self.folder / "kidnap",

@@ -7,38 +7,11 @@
 #include <gtest/gtest.h>
 
 #include "slam/geometry/bearing.h"
-#include "slam/pipeline/first_steps.h"
 #include "tests/slam/map/true_ground_step.h"
-#include "tests/slam/scale/ground_scene.h"
-#include <orb360/slam/geometry/so3.h>
+#include "tests/slam/pipeline/ground_drive.h"
 
 namespace orb360 {
 namespace {
-
-constexpr double kHeight = 1.5;
-constexpr double kStep = 1.1;
-
-// The true pose of keyframe i: a drive along +X, turning a little.
-Rigid3 TruePose(int i) {
-  return {ExpSo3({0.01 * i, 0.02, 3.0 + 0.05 * i}), {kStep * i, 0.0, kHeight}};
-}
-
-// A map of `count` keyframes over asphalt, as large as `scale` says.
-Map Drive(int count, double scale, const Ground& ground) {
-  Map map;
-  for (int i = 0; i < count; ++i) {
-    Rigid3 pose = TruePose(i);
-    const auto image = std::make_shared<const SpherePyramid>(LookAtGround(pose, ground));
-    pose.translation *= scale;
-    const KeyframeId id = map.AddKeyframe(i, 0.1 * i, pose, std::make_shared<Features>());
-    map.keyframe(id).image = image;
-  }
-  return map;
-}
-
-Ground Scaled(const Asphalt& asphalt) {
-  return [asphalt](const Eigen::Vector2d& p) { return asphalt(p / kHeight); };
-}
 
 TEST(MeasureGroundSteps, MeasuresFromTheLastTwoKeyframes) {
   Map map = Drive(4, 0.3, Scaled(Asphalt(1)));
@@ -130,43 +103,6 @@ TEST(CorrectStep, GivesAStepTheLengthThatTheGroundShows) {
   EXPECT_EQ(to, tracked);
 }
 
-TEST(AlignFirstKeyframes, MovesTheFirstKeyframesToWhereTheGroundSaysThatTheyWere) {
-  Map map = Drive(6, 1.0, Scaled(Asphalt(12)));
-  const KnownGround known{Eigen::Vector3d::UnitZ(), kHeight};
-  for (const KeyframeId id : {3, 4, 5}) MeasureGroundSteps(id, known, {}, &map);
-  // Two views of far landmarks have told that the camera stood almost still at first.
-  for (const KeyframeId id : {0, 1}) {
-    map.keyframe(id).world_from_camera.translation =
-        TruePose(2).translation + Eigen::Vector3d(-0.03 * (2 - id), 0.01, 0);
-  }
-  AlignFirstKeyframes(known, {}, &map);
-  for (const KeyframeId id : map.KeyframeIds()) {
-    EXPECT_LT((map.PoseOf(id).translation - TruePose(id).translation).norm(), 0.03) << id;
-  }
-  EXPECT_EQ(map.keyframe(1).ground_steps.size(), 1u);
-  EXPECT_EQ(map.keyframe(2).ground_steps.size(), 2u);
-}
-
-TEST(AlignFirstKeyframes, TakeTheNextStepWhereOneCannotBeMeasured) {
-  Map map = Drive(6, 1.0, Scaled(Asphalt(12)));
-  const KnownGround known{Eigen::Vector3d::UnitZ(), kHeight};
-  for (const KeyframeId id : {2, 3, 4, 5}) MeasureGroundSteps(id, known, {}, &map);
-  map.keyframe(2).ground_steps.resize(1);
-  // The first image shows another ground, and tracking is wrong by a factor and sideways.
-  map.keyframe(0).image =
-      std::make_shared<const SpherePyramid>(LookAtGround(TruePose(0), Scaled(Asphalt(13))));
-  map.keyframe(0).world_from_camera.translation =
-      TruePose(1).translation + Eigen::Vector3d(-0.1, 0.3, 0);
-  AlignFirstKeyframes(known, {}, &map);
-  EXPECT_TRUE(map.keyframe(1).ground_steps.empty());
-  EXPECT_LT((map.PoseOf(0).translation - TruePose(0).translation).norm(), 0.1 * kStep);
-  // What is right by half is kept: the carrier may have braked.
-  const Eigen::Vector3d slow = TruePose(1).translation - Eigen::Vector3d(0.7 * kStep, 0, 0);
-  map.keyframe(0).world_from_camera.translation = slow;
-  AlignFirstKeyframes(known, {}, &map);
-  EXPECT_LT((map.PoseOf(0).translation - slow).norm(), 0.02);
-}
-
 TEST(CorrectStep, RemovesWhatMovesWithTheCamera) {
   const Ground ground = Scaled(Asphalt(6));
   const Eigen::Vector3d wall(3.0, 4.0, 1.0);
@@ -208,48 +144,6 @@ TEST(CorrectStep, RemovesWhatMovesWithTheCamera) {
   map.CheckConsistency();
 }
 
-TEST(GroundFromSteps, FindsHeightAndNormalInTheMapsUnit) {
-  Map map = Drive(6, 0.25, Scaled(Asphalt(4)));
-  for (KeyframeId id = 1; id < 6; ++id) MeasureGroundSteps(id, std::nullopt, {}, &map);
-  const std::vector<KeyframeId> all = {1, 2, 3, 4, 5};
-  const std::optional<KnownGround> ground = GroundFromSteps(map, all);
-  ASSERT_TRUE(ground);
-  EXPECT_NEAR(ground->camera_height / (0.25 * kHeight), 1.0, 0.005);
-  EXPECT_LT(std::acos(ground->up.z()), 0.02);
-  EXPECT_FALSE(ground->is_rough);
-}
-
-TEST(GroundFromSteps, HasTheNewestUnitWhereThatDriftsButTheStepsAddUp) {
-  Map map = Drive(6, 1.0, Scaled(Asphalt(5)));
-  for (KeyframeId id = 1; id < 6; ++id) MeasureGroundSteps(id, std::nullopt, {}, &map);
-  // Far landmarks have let each step shrink by a third.
-  Eigen::Vector3d place = TruePose(0).translation;
-  for (KeyframeId id = 1; id < 6; ++id) {
-    place += std::pow(0.67, id) * (TruePose(id).translation - TruePose(id - 1).translation);
-    map.keyframe(id).world_from_camera.translation = place;
-  }
-  const std::vector<KeyframeId> all = {1, 2, 3, 4, 5};
-  const std::optional<KnownGround> ground = GroundFromSteps(map, all);
-  ASSERT_TRUE(ground);
-  EXPECT_NEAR(ground->camera_height / (std::pow(0.67, 5) * kHeight), 1.0, 0.01);
-  EXPECT_LT(std::acos(ground->up.z()), 0.02);
-  // The newest one has to add up.
-  map.keyframe(5).ground_steps.front().ratio *= 1.2;
-  EXPECT_FALSE(GroundFromSteps(map, all));
-}
-
-TEST(GroundFromSteps, IsEmptyWhereTheHeightsDisagree) {
-  Map map = Drive(6, 1.0, Scaled(Asphalt(5)));
-  for (KeyframeId id = 1; id < 6; ++id) {
-    MeasureGroundSteps(id, std::nullopt, {}, &map);
-    map.keyframe(id).ground_steps.resize(1);
-  }
-  map.keyframe(1).ground_steps.clear();
-  map.keyframe(2).ground_steps.front().ratio *= 1.3;
-  const std::vector<KeyframeId> all = {1, 2, 3, 4, 5};
-  EXPECT_FALSE(GroundFromSteps(map, all));
-}
-
 TEST(MeasureGroundSteps, FindsAStepInAnotherDirectionThanTrackedWhileNoGroundIsKnown) {
   Map map = Drive(2, 1.0, Scaled(Asphalt(9)));
   // With few landmarks nearby, tracking is off by 30 degrees.
@@ -264,18 +158,6 @@ TEST(MeasureGroundSteps, FindsAStepInAnotherDirectionThanTrackedWhileNoGroundIsK
   EXPECT_LT(
       AngleBetween(map.keyframe(1).world_from_camera.rotation * step.direction2, truth - from),
       0.03);
-}
-
-TEST(AgreesWithSteps, RefusesAPlaneAtAnotherHeight) {
-  Map map = Drive(4, 0.3, Scaled(Asphalt(10)));
-  for (const KeyframeId id : {1, 2, 3}) MeasureGroundSteps(id, std::nullopt, {}, &map);
-  const std::vector<KeyframeId> all = map.KeyframeIds();
-  const KnownGround right{.up = Eigen::Vector3d::UnitZ(), .camera_height = 0.3 * kHeight};
-  const KnownGround wrong{.up = Eigen::Vector3d::UnitZ(), .camera_height = kHeight};
-  EXPECT_TRUE(AgreesWithSteps(right, map, all));
-  EXPECT_FALSE(AgreesWithSteps(wrong, map, all));
-  for (const KeyframeId id : all) map.keyframe(id).ground_steps.clear();
-  EXPECT_TRUE(AgreesWithSteps(wrong, map, all));
 }
 
 }  // namespace

@@ -22,6 +22,24 @@ std::shared_ptr<const SpherePyramid> ImageAt(int i) {
   return std::make_shared<const SpherePyramid>(LookAtGround(TruePose(i), ground));
 }
 
+// Maps frame `index` as the next keyframe.
+MappedKeyframe MapNext(Map map, int index, std::shared_ptr<const SpherePyramid> image,
+                       const std::optional<KnownGround>& ground) {
+  Options options;
+  options.loop.enabled = false;
+  const TrackedFrame frame{.index = index,
+                           .timestamp = 0.1 * index,
+                           .features = std::make_shared<Features>(),
+                           .world_from_camera = TruePose(index),
+                           .landmarks = {}};
+  KeyframeMapping job{.active = {std::move(map), LoopDetector({}, {}, 12, 0.001)},
+                      .finished = {},
+                      .frame = frame,
+                      .pyramid = std::move(image),
+                      .ground = ground};
+  return MapKeyframe(std::move(job), options);
+}
+
 TEST(KeyframeMapping, MeasuresTheFirstStepsOnceItKnowsTheGround) {
   Map map;
   for (int i = 0; i < 6; ++i) {
@@ -34,19 +52,7 @@ TEST(KeyframeMapping, MeasuresTheFirstStepsOnceItKnowsTheGround) {
     map.keyframe(id).world_from_camera.translation =
         TruePose(2).translation - Eigen::Vector3d(0.03 * (2 - id), 0, 0);
   }
-  Options options;
-  options.loop.enabled = false;
-  const TrackedFrame frame{.index = 6,
-                           .timestamp = 0.6,
-                           .features = std::make_shared<Features>(),
-                           .world_from_camera = TruePose(6),
-                           .landmarks = {}};
-  KeyframeMapping job{.active = {std::move(map), LoopDetector({}, {}, 12, 0.001)},
-                      .finished = {},
-                      .frame = frame,
-                      .pyramid = ImageAt(6),
-                      .ground = std::nullopt};
-  const MappedKeyframe mapped = MapKeyframe(std::move(job), options);
+  const MappedKeyframe mapped = MapNext(std::move(map), 6, ImageAt(6), std::nullopt);
   ASSERT_TRUE(mapped.ground.has_value());
   EXPECT_NEAR(mapped.ground->camera_height, kHeight, 0.02);
   const Map& result = mapped.active.map;
@@ -69,20 +75,8 @@ TEST(KeyframeMapping, EnlargesTheMapOnceTheDistanceBetweenTheLensesIsCertain) {
                                              .per_lens_distance = 1,
                                              .lens_distance = {0.02, 0.002}});
   }
-  Options options;
-  options.loop.enabled = false;
-  const TrackedFrame frame{.index = 15,
-                           .timestamp = 1.5,
-                           .features = std::make_shared<Features>(),
-                           .world_from_camera = TruePose(15),
-                           .landmarks = {}};
   const KnownGround ground{.up = Eigen::Vector3d::UnitZ(), .camera_height = kHeight};
-  KeyframeMapping job{.active = {std::move(map), LoopDetector({}, {}, 12, 0.001)},
-                      .finished = {},
-                      .frame = frame,
-                      .pyramid = nullptr,
-                      .ground = ground};
-  const MappedKeyframe mapped = MapKeyframe(std::move(job), options);
+  const MappedKeyframe mapped = MapNext(std::move(map), 15, nullptr, ground);
   EXPECT_TRUE(mapped.changes_unit);
   ASSERT_TRUE(mapped.ground.has_value());
   const double ratio = kStep / kHeight;
