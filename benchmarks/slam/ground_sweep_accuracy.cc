@@ -6,8 +6,10 @@
 // For each frame of a sequence folder with true depth and the frame GAP after it [1]: the true
 // ratio of the step to the height over the ground, the measured one, the error of its logarithm and
 // that in standard deviations, and the error of the rotation about the vertical; at the end their
-// summary, and the distance between the two lenses that all pairs together show.
+// summary, the true height of the camera over the ground, and the distance between the two lenses
+// that all pairs together show.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -89,6 +91,7 @@ void Measure(const fs::path& sequence, int gap) {
       orb360::ReadTrajectory(sequence / "groundtruth.txt");
   Errors lengths;
   Errors turns;
+  std::vector<double> heights;  // true ones, metres
   double lens_information = 0;  // of the distance between the lenses, 1 / heights^2
   double weighted_lens_distance = 0;
   int num_frames = 0;
@@ -103,6 +106,7 @@ void Measure(const fs::path& sequence, int gap) {
     const Eigen::Vector3d up = pose1.rotation.conjugate() * Eigen::Vector3d::UnitZ();
     const double height = TrueHeight(orb360::ReadDepthImage(depth), motion.translation, up);
     const double truth = height > 0 ? motion.translation.norm() / height : 0.0;
+    if (height > 0) heights.push_back(height);
     const auto step = orb360::MeasureGroundStep(ReadPyramid(sequence, i),
                                                 ReadPyramid(sequence, i + gap), motion, up, {}, {});
     if (!step) {
@@ -119,6 +123,11 @@ void Measure(const fs::path& sequence, int gap) {
     std::printf("%6d %7.4f %8.4f %7.4f %7.4f %6.1f %7.4f %7.4f %6.2f %6.2f %6d\n", i, truth,
                 step->ratio, error, step->sigma, error / step->sigma, step->turn, step->turn_sigma,
                 step->correlation, step->rival, step->num_tiles);
+  }
+  if (!heights.empty()) {
+    const auto [least, largest] = std::minmax_element(heights.begin(), heights.end());
+    std::printf("true height of the camera: %.2f to %.2f m, ", *least, *largest);
+    std::printf("median %.2f m\n", orb360::Median(heights));
   }
   if (lengths.absolute.empty()) return;
   std::printf("measured %zu of %d\n", lengths.absolute.size(), num_frames);

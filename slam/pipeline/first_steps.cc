@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "slam/geometry/triangulation.h"
 #include "slam/pipeline/ground_steps.h"
+#include "slam/pipeline/retriangulation.h"
 
 namespace orb360 {
 namespace {
@@ -15,27 +15,6 @@ namespace {
 // it, as a fraction of its length, before it is replaced.
 constexpr double kMaxGap = 1.0;
 constexpr double kMaxChange = 0.5;
-
-void TriangulateAnew(Map* map) {
-  for (LandmarkId id = 0; id < map->landmark_end(); ++id) {
-    if (!map->HasLandmark(id)) continue;
-    std::vector<Rigid3> camera_from_world;
-    std::vector<Eigen::Vector3d> bearings;
-    for (const Observation& o : map->landmark(id).observations) {
-      const Keyframe& keyframe = map->keyframe(o.keyframe);
-      camera_from_world.push_back(keyframe.world_from_camera.Inverse());
-      bearings.push_back(keyframe.features->bearings[o.feature]);
-    }
-    // Far landmarks stay where they are.
-    if (const auto position = Triangulate(camera_from_world, bearings)) {
-      map->landmark(id).position = *position;
-    }
-  }
-  for (const KeyframeId id : map->KeyframeIds()) RemoveWrongObservations(id, map);
-  for (LandmarkId id = 0; id < map->landmark_end(); ++id) {
-    if (map->HasLandmark(id)) map->UpdateAppearance(id);
-  }
-}
 
 // The pose of a keyframe relative to one before it whose step was not measured, if that is far from
 // what the step after it lets expect: carriers change their speed and direction little in that
@@ -88,7 +67,11 @@ void AlignFirstKeyframes(const KnownGround& ground, const cv::Mat& mask, Map* ma
     }
     has_moved = true;
   }
-  if (has_moved) TriangulateAnew(map);
+  if (!has_moved) return;
+  for (LandmarkId id = 0; id < map->landmark_end(); ++id) {
+    if (map->HasLandmark(id)) Retriangulate(id, map);
+    if (map->HasLandmark(id)) map->UpdateAppearance(id);
+  }
 }
 
 }  // namespace orb360

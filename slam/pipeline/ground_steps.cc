@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "slam/features/sphere_pyramid.h"
-#include "slam/geometry/bearing.h"
 #include "slam/pipeline/lens_distance.h"
+#include "slam/pipeline/retriangulation.h"
 #include "slam/scale/ground_sweep.h"
 
 namespace orb360 {
@@ -23,9 +23,6 @@ constexpr double kTrackedTurnSigma = 0.002;
 // Largest standard deviation of a turn that is used, rad. On boards, whose grain is the same all
 // along, tiles scatter across the motion, and the tracked rotation is better.
 constexpr double kMaxTurnSigma = 0.01;
-// Standard deviations of a bearing beyond which it contradicts the pose that the ground has
-// corrected. The landmark's own error is unknown, so it is more than the 95 % bound.
-constexpr double kMaxBearingSigmas = 5.0;
 // Largest factor by which the speed changes from one step to the next, if not more than this time
 // passes, seconds.
 constexpr double kMaxSpeedChange = 1.6;
@@ -168,21 +165,6 @@ std::optional<Rigid3> PoseByStep(const GroundStepFrom& step, const Rigid3& from,
   return pose;
 }
 
-void RemoveWrongObservations(KeyframeId id, Map* map) {
-  const Keyframe& keyframe = map->keyframe(id);
-  const Rigid3 camera_from_world = keyframe.world_from_camera.Inverse();
-  const std::vector<LandmarkId> landmarks = keyframe.landmarks;
-  for (size_t f = 0; f < landmarks.size(); ++f) {
-    if (landmarks[f] == kNoId) continue;
-    const Landmark& landmark = map->landmark(landmarks[f]);
-    const double error =
-        AngleBetween(camera_from_world * landmark.position, keyframe.features->bearings[f]);
-    if (error < kMaxBearingSigmas * keyframe.features->keypoints[f].sigma) continue;
-    map->RemoveObservation(landmarks[f], id);
-    if (map->landmark(landmarks[f]).observations.size() < 2) map->RemoveLandmark(landmarks[f]);
-  }
-}
-
 void CorrectStep(KeyframeId id, const KnownGround& ground, Map* map) {
   Keyframe& keyframe = map->keyframe(id);
   if (keyframe.ground_steps.empty()) return;
@@ -191,7 +173,10 @@ void CorrectStep(KeyframeId id, const KnownGround& ground, Map* map) {
   const auto pose = PoseByStep(step, from, keyframe.world_from_camera, ground.camera_height);
   if (!pose) return;
   keyframe.world_from_camera = *pose;
-  RemoveWrongObservations(id, map);
+  const std::vector<LandmarkId> landmarks = keyframe.landmarks;
+  for (const LandmarkId landmark : landmarks) {
+    if (landmark != kNoId) Retriangulate(landmark, map);
+  }
 }
 
 }  // namespace orb360

@@ -24,12 +24,9 @@ void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
 std::optional<Rigid3> PoseByStep(const GroundStepFrom& step, const Rigid3& from, const Rigid3& to,
                                  double camera_height);
 
-/// Removes a keyframe's observations that its pose contradicts: those of landmarks that move with
-/// the camera, and of landmarks that were made with wrong poses.
-void RemoveWrongObservations(KeyframeId id, Map* map);
-
 /// Moves and turns a keyframe so that the step from the keyframe before it is the one that the
-/// ground shows. Does nothing where length and turn agree with it within their errors.
+/// ground shows, and triangulates the landmarks that contradict this anew. Does nothing where
+/// length and turn agree with it within their errors.
 void CorrectStep(KeyframeId id, const KnownGround& ground, Map* map);
 
 }  // namespace orb360

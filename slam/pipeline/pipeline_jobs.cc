@@ -8,6 +8,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "slam/pipeline/ground_steps.h"
 #include "slam/pipeline/pipeline.h"
 
 namespace orb360 {
@@ -45,6 +46,9 @@ void Pipeline::StartMapping(const cv::Mat& image) {
   for (LandmarkId& id : frame.landmarks) id = atlas_.map().Resolve(id);
   const bool is_completed = dense_ && dense_->Wants(atlas_.map().keyframe_end());
   const std::optional<KnownGround> ground = atlas_.ReliableGround();
+  // The sooner a keyframe is in the map, the sooner there is the next one.
+  const bool seeks_ground =
+      options_.scale.from_ground && !ground && atlas_.map().keyframe_end() < kGroundSearch;
   KeyframeMapping job{.active = atlas_.Lend(),
                       .finished = atlas_.finished(),
                       .frame = std::move(frame),
@@ -58,7 +62,7 @@ void Pipeline::StartMapping(const cv::Mat& image) {
   }
   const KeyframeOptions& options = options_.keyframe;
   const AdoptionTime adoption{
-      .num_frames = num_frames_ + options.mapping_frames,
+      .num_frames = num_frames_ + (seeks_ground ? 1 : options.mapping_frames),
       .min_inliers = std::max<double>(options.urgent_inliers,
                                       options.min_held_fraction * job.frame.num_inliers)};
   back_end_.Start(std::move(job), adoption);
