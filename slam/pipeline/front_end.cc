@@ -10,9 +10,6 @@
 namespace orb360 {
 namespace {
 
-// Time for which a motion predicts where the camera is, seconds.
-constexpr double kPredictable = 1.0;
-
 void SampleColors(const cv::Mat& bgr, Features* features) {
   features->colors.resize(features->size());
   for (int i = 0; i < features->size(); ++i) {
@@ -22,27 +19,6 @@ void SampleColors(const cv::Mat& bgr, Features* features) {
                           std::clamp(static_cast<int>(pixel.x()), 0, bgr.cols - 1));
     features->colors[i] = {c[2], c[1], c[0]};
   }
-}
-
-/// Predicts the pose at a time (seconds) with constant velocity in the camera's frame.
-Rigid3 PredictPose(const FrontEnd::Tracking& tracking, double timestamp) {
-  const TrackedFrame& last = tracking.last;
-  if (!tracking.before_last) return last.world_from_camera;
-  const double elapsed = last.timestamp - tracking.before_last->timestamp;
-  if (elapsed == 0) return last.world_from_camera;
-  const double ratio = (timestamp - last.timestamp) / elapsed;
-  const Rigid3 motion = tracking.before_last->world_from_camera.Inverse() * last.world_from_camera;
-  return last.world_from_camera *
-         Rigid3{ExpSo3(ratio * LogSo3(motion.rotation)), ratio * motion.translation};
-}
-
-TrackedFrame MakeTracked(const PendingFrame& frame, TrackResult result) {
-  return {.index = frame.index,
-          .timestamp = frame.timestamp,
-          .features = frame.features,
-          .world_from_camera = result.world_from_camera,
-          .landmarks = std::move(result.landmarks),
-          .num_inliers = result.num_inliers};
 }
 
 }  // namespace
@@ -63,6 +39,26 @@ PendingFrame FrontEnd::Extract(int index, double timestamp, const cv::Mat& image
 }
 
 // --- tracking ---------------------------------------------------------------------------------
+
+Rigid3 FrontEnd::PredictPose(const Tracking& tracking, double timestamp) {
+  const TrackedFrame& last = tracking.last;
+  if (!tracking.before_last) return last.world_from_camera;
+  const double elapsed = last.timestamp - tracking.before_last->timestamp;
+  if (elapsed == 0) return last.world_from_camera;
+  const double ratio = (timestamp - last.timestamp) / elapsed;
+  const Rigid3 motion = tracking.before_last->world_from_camera.Inverse() * last.world_from_camera;
+  return last.world_from_camera *
+         Rigid3{ExpSo3(ratio * LogSo3(motion.rotation)), ratio * motion.translation};
+}
+
+TrackedFrame FrontEnd::MakeTracked(const PendingFrame& frame, TrackResult result) {
+  return {.index = frame.index,
+          .timestamp = frame.timestamp,
+          .features = frame.features,
+          .world_from_camera = result.world_from_camera,
+          .landmarks = std::move(result.landmarks),
+          .num_inliers = result.num_inliers};
+}
 
 bool FrontEnd::Track(const PendingFrame& frame, int num_threads, Atlas* atlas) {
   Tracking& tracking = std::get<Tracking>(state_);
@@ -154,109 +150,6 @@ void FrontEnd::Apply(const MapUpdate& update, Map* map) {
   local_ = MakeLocalMap(*map, update.reference, options_.keyframe.local_keyframes);
 }
 
-// --- recovery ---------------------------------------------------------------------------------
-
-void FrontEnd::Lose(PendingFrame frame, int num_frames, const Map& map) {
-  state_ = Lost{.before = std::get<Tracking>(std::move(state_)),
-                .since = num_frames,
-                .next_keyframe = map.keyframe_end() - 1};
-  ground_motion_.reset();
-  ++events_.num_lost;
-  pending_.ResetReference();
-  pending_.Remember(std::move(frame));
-}
-
-void FrontEnd::StartLost(const Map& map) {
-  local_ = MakeLocalMap(map, map.KeyframeIds().back(), options_.keyframe.local_keyframes);
-  state_ = Lost{.next_keyframe = map.keyframe_end() - 1};
-}
-
-std::optional<Relocalization> FrontEnd::Find(const PendingFrame& frame, int num_threads,
-                                             Atlas* atlas) {
-  const std::optional<Tracking>& before = lost()->before;
-  if (before && frame.timestamp - before->last.timestamp < kPredictable) {
-    std::optional<TrackResult> result =
-        TrackFromPrediction(*frame.features, PredictPose(*before, frame.timestamp), before->last,
-                            local_, pixel_sigma_, options_.tracker, std::nullopt, num_threads);
-    if (result) {
-      return Relocalization{.map = atlas->present_number(),
-                            .local = local_,
-                            .result = std::move(*result),
-                            .continues_motion = true};
-    }
-  }
-  return Relocalize(*frame.features, local_, pixel_sigma_, options_, num_threads, atlas,
-                    &std::get<Lost>(state_).next_keyframe);
-}
-
-void FrontEnd::Resume(const PendingFrame& frame, Relocalization found, int num_threads,
-                      Atlas* atlas) {
-  local_ = std::move(found.local);
-  if (!events_.initialized_at) events_.initialized_at = frame.index;  // in a loaded map
-  ++events_.num_relocalized;
-  counts_.Add(found.result);
-  const TrackedFrame tracked = MakeTracked(frame, std::move(found.result));
-  if (found.continues_motion) InterpolatePending(lost()->before->last, tracked, atlas);
-  state_ = Tracking{.last = tracked};
-  Anchor(tracked, atlas);
-  TrackPendingBackwards(tracked, num_threads, atlas);
-}
-
-void FrontEnd::TrackPendingBackwards(TrackedFrame last, int num_threads, Atlas* atlas) {
-  std::optional<TrackedFrame> before;
-  const std::vector<PendingFrame> frames = pending_.TakeNewestFirst();
-  for (const PendingFrame& frame : frames) {
-    if (!frame.features) continue;
-    Rigid3 predicted = last.world_from_camera;
-    if (before) {
-      predicted =
-          last.world_from_camera * (before->world_from_camera.Inverse() * last.world_from_camera);
-    }
-    std::optional<TrackResult> result =
-        TrackFromPrediction(*frame.features, predicted, last, local_, pixel_sigma_,
-                            options_.tracker, std::nullopt, num_threads);
-    if (!result) {
-      result = TrackWithoutPrediction(*frame.features, local_, pixel_sigma_, options_.tracker,
-                                      num_threads);
-    }
-    if (!result) continue;
-    before = std::exchange(last, MakeTracked(frame, std::move(*result)));
-    Anchor(last, atlas);
-  }
-  for (const PendingFrame& frame : frames) {
-    if (!frame.turn || atlas->anchors().contains(frame.index)) continue;
-    const auto reference = atlas->anchors().find(frame.turn->reference);
-    if (reference == atlas->anchors().end()) continue;
-    FrameAnchor turned = reference->second;
-    turned.timestamp = frame.timestamp;
-    turned.reference_from_camera.rotation =
-        turned.reference_from_camera.rotation * frame.turn->reference_from_camera;
-    turned.sightings.clear();
-    atlas->Anchor(frame.index, std::move(turned));
-  }
-}
-
-// Where something has covered the view for a moment, and the camera is found where its motion has
-// taken it, it has been on the way in between. A frame that can be tracked backwards gets its own
-// pose in place of this one.
-void FrontEnd::InterpolatePending(const TrackedFrame& before, const TrackedFrame& after,
-                                  Atlas* atlas) {
-  const Rigid3 motion = before.world_from_camera.Inverse() * after.world_from_camera;
-  const double elapsed = after.timestamp - before.timestamp;
-  for (const PendingFrame& pending : pending_.frames()) {
-    const double fraction = (pending.timestamp - before.timestamp) / elapsed;
-    if (!(0 < fraction && fraction < 1)) continue;  // also for equal times
-    const TrackedFrame frame{.index = pending.index,
-                             .timestamp = pending.timestamp,
-                             .features = pending.features,
-                             .world_from_camera = before.world_from_camera *
-                                                  Rigid3{ExpSo3(fraction * LogSo3(motion.rotation)),
-                                                         fraction * motion.translation},
-                             .landmarks = {}};
-    Anchor(frame, atlas, true);
-  }
-}
-
 // --- initialization -----------------------------------------------------------------------------
 
 std::optional<InitialMap> FrontEnd::Initialize(PendingFrame frame, int num_threads) {
@@ -298,8 +191,8 @@ void FrontEnd::StartTracking(const InitialMap& initial, int num_threads, Atlas* 
   const Map& map = atlas->map();
   local_ = MakeLocalMap(map, InitialMap::kSecond, options_.keyframe.local_keyframes);
   counts_.Clear();
-  const TrackedFrame first = MakeTracked(map.keyframe(InitialMap::kFirst));
-  const TrackedFrame second = MakeTracked(map.keyframe(InitialMap::kSecond));
+  const TrackedFrame first = orb360::MakeTracked(map.keyframe(InitialMap::kFirst));
+  const TrackedFrame second = orb360::MakeTracked(map.keyframe(InitialMap::kSecond));
   state_ = Tracking{.last = second, .before_last = first};
   Anchor(first, atlas);
   Anchor(second, atlas);

@@ -104,6 +104,12 @@ class FrontEnd {
   void Apply(const MapUpdate& update, Map* map);
 
  private:
+  /// Time for which a motion predicts where the camera is, seconds.
+  static constexpr double kPredictable = 1.0;
+
+  /// The pose at a time (seconds) by constant velocity in the camera's frame.
+  static Rigid3 PredictPose(const Tracking& tracking, double timestamp);
+  static TrackedFrame MakeTracked(const PendingFrame& frame, TrackResult result);
   void Anchor(const TrackedFrame& frame, Atlas* atlas, bool is_interpolated = false) const;
   void TrackPendingBackwards(TrackedFrame last, int num_threads, Atlas* atlas);
   /// Gives the pending frames between two frames interpolated poses.

@@ -6,6 +6,7 @@
 
 #include <orb360/slam/geometry/rigid3.h>
 #include <orb360/slam/map/map.h>
+#include <orb360/slam/pipeline/loop_options.h>
 
 namespace orb360 {
 
@@ -32,5 +33,10 @@ void Rescale(std::span<const Similarity3> corrections, Loop* loop);
 
 /// Returns the similarity that moves the world around the revisiting keyframe to the place.
 Similarity3 CorrectionBy(const Revisit& revisit, const Map& map, const Map& place_map);
+
+/// Whether a map can have drifted as a correction of its newest part says, which begins at `here`,
+/// after a way of that length, world units.
+bool IsPlausible(const Similarity3& correction, const Eigen::Vector3d& here, double way,
+                 const LoopOptions& options);
 
 }  // namespace orb360

@@ -170,17 +170,6 @@ std::optional<Revisit> LoopDetector::Verify(
                  result->num_inliers};
 }
 
-bool LoopDetector::IsPlausible(const Similarity3& correction, const Eigen::Vector3d& here,
-                               double way) const {
-  const double scale_drift = std::abs(std::log(correction.scale));
-  // A scale that has drifted steadily by exp(d) displaces the end of a closed path by about half of
-  // d times its length.
-  const double max_displacement = (options_.max_drift + 0.5 * scale_drift) * way;
-  return scale_drift <= std::log(options_.max_scale) &&
-         Angle(correction.rotation) <= options_.max_turn &&
-         (correction * here - here).norm() <= max_displacement;
-}
-
 std::optional<Loop> LoopDetector::Observe(const Map& map, KeyframeId newest,
                                           std::span<const Map> finished) {
   const int present = static_cast<int>(finished.size());
@@ -209,7 +198,8 @@ std::optional<Loop> LoopDetector::Observe(const Map& map, KeyframeId newest,
     if (!revisit) continue;
     if (is_present) {
       const Similarity3 correction = CorrectionBy(*revisit, map, map);
-      if (!IsPlausible(correction, keyframe.world_from_camera.translation, ways[revisit->place])) {
+      if (!IsPlausible(correction, keyframe.world_from_camera.translation, ways[revisit->place],
+                       options_)) {
         continue;
       }
     }

@@ -60,9 +60,6 @@ class LoopDetector {
                                            const std::vector<uint8_t>& excluded, int count) const;
   std::optional<TrackResult> TrackAt(const Features& features, const Map& map,
                                      const LocalMap& local, int num_threads = 1) const;
-  /// Whether a map can have drifted as a correction of its newest part says, which begins at
-  /// `here`, after a way of that length, world units.
-  bool IsPlausible(const Similarity3& correction, const Eigen::Vector3d& here, double way) const;
   /// Returns the pose of the newest keyframe at a place, relative to the nearest of the keyframes
   /// there that `may_close` allows.
   std::optional<Revisit> Verify(const Map& map, KeyframeId newest, const Map& place_map,

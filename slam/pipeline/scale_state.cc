@@ -4,10 +4,10 @@
 #include <cmath>
 #include <optional>
 
-#include "slam/geometry/bearing.h"
-#include "slam/geometry/cluster_weights.h"
+#include "slam/pipeline/assumed_height.h"
 #include "slam/pipeline/ground.h"
 #include "slam/pipeline/lens_distance.h"
+#include "slam/pipeline/scale_drift.h"
 #include "slam/scale/position_scale.h"
 #include "slam/scale/scale_smoother.h"
 
@@ -16,9 +16,6 @@ namespace {
 
 // All standard deviations are relative to the length.
 
-// Of a carrier's height over the road where nobody gave it: between the roof of a small car (1.4 m)
-// and a stick over the head (2.4 m).
-constexpr double kAssumedHeightSigma = 0.25;
 // Of a step over the ground, beside that of the sweep: the camera bobs and the road is uneven.
 constexpr double kReliefSigma = 0.01;
 // Of the height over the plane of one keyframe's landmarks. Neighbouring keyframes see the same
@@ -36,41 +33,6 @@ constexpr double kLensSigma = 0.01;
 // Largest standard deviations of the states.
 constexpr double kMaxMetric = 0.03;
 constexpr double kMaxRough = 0.3;
-
-constexpr double kLeastDrift = 1e-6;   // variance between keyframes
-constexpr double kLargestDrift = 1.0;  // where nothing passes the scale on
-
-// Variance with which landmarks pass the scale on from the step between two keyframes to the next
-// step: a landmark whose range the first step has shown tells the length of the second one.
-double DriftVariance(const Map& map, KeyframeId first, KeyframeId second, KeyframeId third) {
-  const Keyframe& newest = map.keyframe(third);
-  const Eigen::Vector3d& center1 = map.keyframe(first).world_from_camera.translation;
-  const Eigen::Vector3d& center2 = map.keyframe(second).world_from_camera.translation;
-  const Eigen::Vector3d& center3 = newest.world_from_camera.translation;
-  std::vector<Eigen::Vector3d> bearings;
-  std::vector<double> informations;
-  for (size_t f = 0; f < newest.landmarks.size(); ++f) {
-    if (newest.landmarks[f] == kNoId) continue;
-    const Landmark& landmark = map.landmark(newest.landmarks[f]);
-    if (landmark.FindObservation(first) == nullptr || landmark.FindObservation(second) == nullptr) {
-      continue;
-    }
-    const double parallax1 = AngleBetween(landmark.position - center1, landmark.position - center2);
-    const double parallax2 = AngleBetween(landmark.position - center2, landmark.position - center3);
-    const double noise = newest.features->keypoints[f].sigma;
-    const double product = parallax1 * parallax2;
-    informations.push_back(product * product /
-                           (noise * noise * (parallax1 * parallax1 + parallax2 * parallax2)));
-    bearings.push_back(newest.features->bearings[f]);
-  }
-  const std::vector<double> weights =
-      ClusterWeights(bearings).Weights(std::vector<uint8_t>(bearings.size(), 1));
-  double information = 0;
-  for (size_t i = 0; i < weights.size(); ++i) {
-    if (std::isfinite(informations[i])) information += weights[i] * informations[i];
-  }
-  return std::clamp(1 / std::max(information, 1e-12), kLeastDrift, kLargestDrift);
-}
 
 // Standard deviation of the distance between the lenses, heights of the camera. Where it is not
 // certain, the steps are measured without it.
@@ -204,8 +166,9 @@ EstimatedScale EstimateScale(std::span<const Map> maps,
   EstimatedScale result;
   MetricScale& whole = result.whole;
   whole.is_height_assumed = options.camera_height == 0;
-  const double height_sigma =
-      whole.is_height_assumed ? kAssumedHeightSigma : options.camera_height_sigma;
+  const double height_sigma = whole.is_height_assumed
+                                  ? AssumedHeightSigma(RiseOfSurroundings(maps, grounds))
+                                  : options.camera_height_sigma;
   const EstimatedLensDistance lenses = EstimateLensDistance(maps);
   int num_steps = 0;
   int num_planes = 0;
