@@ -101,7 +101,7 @@ MapScale ScaleOf(const Map& map, int number, const std::optional<KnownGround>& g
   }
   const std::optional<SmoothedScale> smoothed = SmoothScale(nodes);
   if (!smoothed) {
-    if (ground) result.sigma = std::hypot(kCompletedSigma, height_sigma);
+    if (ground && ground->is_rough) result.sigma = std::hypot(kCompletedSigma, height_sigma);
     return result;
   }
   const double source_sigma =

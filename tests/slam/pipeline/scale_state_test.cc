@@ -102,6 +102,8 @@ TEST(ScaleState, IsUnknownWhereNothingShowsTheGround) {
   EXPECT_EQ(by_depth.whole.state, ScaleState::kUnknown);
   EXPECT_GT(by_depth.whole.sigma, 0.3);
   EXPECT_EQ(by_depth.whole.sources, std::vector<std::string>{"completed depth"});
+  // A ground that no keyframe of the finished map shows tells nothing.
+  EXPECT_EQ(Estimate(map, kGround).whole.value, 0);
   EXPECT_EQ(EstimateScale({}, {}, {}).whole.state, ScaleState::kUnknown);
 }
 
