@@ -30,6 +30,7 @@ nlohmann::json DescribeScale(const MetricScale& scale) {
                               {"camera_height", nullptr},
                               {"assumed_height", scale.is_height_assumed},
                               {"lens_distance", scale.lens_distance},
+                              {"surroundings_rise", scale.surroundings_rise},
                               {"sources", scale.sources}};
   if (scale.value > 0) {
     described["value"] = scale.value;

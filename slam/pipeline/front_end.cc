@@ -107,7 +107,7 @@ bool FrontEnd::NeedsKeyframe(const Map& map, bool has_ground) const {
   // Before the ground is known, nobody knows how long a step is. Carriers move by a fraction of the
   // camera's height to three heights in this time.
   constexpr double kMaxStepTime = 0.25;  // seconds
-  if (options_.scale.from_ground && !has_ground && map.keyframe_end() < kGroundSearch &&
+  if (options_.scale.from_ground && SeeksGround(map, has_ground) &&
       last.timestamp - map.keyframe(map.LivingKeyframe(map.keyframe_end() - 1)).timestamp >
           kMaxStepTime) {
     return true;

@@ -23,17 +23,20 @@ constexpr double kTrackedTurnSigma = 0.002;
 // Largest standard deviation of a turn that is used, rad. On boards, whose grain is the same all
 // along, tiles scatter across the motion, and the tracked rotation is better.
 constexpr double kMaxTurnSigma = 0.01;
-// Largest factor by which the speed changes from one step to the next, if not more than this time
-// passes, seconds.
+// The speed changes from one step to the next by up to this factor, or where that is more, as after
+// a halt, by this acceleration, heights of the camera per s^2 (cars brake with 8 m/s^2). Both hold
+// if not more than kMaxGap passes, seconds.
 constexpr double kMaxSpeedChange = 1.6;
+constexpr double kMaxAcceleration = 4.0;
 constexpr double kMaxGap = 5.0;
 // The direction of motion may be wrong by this much of the step, heights of the camera, as long as
 // nothing has told about the ground: few near landmarks have been seen by then.
 constexpr double kWideAside = 0.96;
 
-// A measured step, and the time that it took, seconds.
+// A measured step, the time half-way, and the time that it took, seconds.
 struct TimedStep {
   const GroundStepFrom* step;
+  double timestamp;
   double elapsed;
 };
 
@@ -49,7 +52,7 @@ std::optional<TimedStep> StepNear(const Map& map, const Keyframe& keyframe) {
       for (const GroundStepFrom& step : other.ground_steps) {
         if (!map.HasKeyframe(step.keyframe)) continue;
         const double elapsed = other.timestamp - map.keyframe(step.keyframe).timestamp;
-        if (elapsed > 0) return TimedStep{&step, elapsed};
+        if (elapsed > 0) return TimedStep{&step, other.timestamp - 0.5 * elapsed, elapsed};
       }
     }
   }
@@ -66,8 +69,12 @@ std::optional<GroundSweepOptions> RangeOfSweep(const Map& map, const Keyframe& e
   GroundSweepOptions options{.lens_distance = AssumedLensDistance(map)};
   if (!ground) options.max_aside = kWideAside;
   double expected = 0;  // ratio
+  double change = 0;    // of the ratio, by acceleration
   if (const std::optional<TimedStep> near = StepNear(map, earlier)) {
-    expected = near->step->ratio / near->elapsed * (later.timestamp - earlier.timestamp);
+    const double elapsed = later.timestamp - earlier.timestamp;
+    const double between = std::abs(earlier.timestamp + 0.5 * elapsed - near->timestamp);
+    expected = near->step->ratio / near->elapsed * elapsed;
+    change = kMaxAcceleration * between * elapsed;
   } else if (ground) {
     expected =
         (later.world_from_camera.translation - earlier.world_from_camera.translation).norm() /
@@ -75,9 +82,12 @@ std::optional<GroundSweepOptions> RangeOfSweep(const Map& map, const Keyframe& e
   } else {
     return options;
   }
-  if (!(options.min_ratio < expected && expected < options.max_ratio)) return std::nullopt;
-  options.min_ratio = std::max(options.min_ratio, expected / kMaxSpeedChange);
-  options.max_ratio = std::min(options.max_ratio, expected * kMaxSpeedChange);
+  if (!(expected < options.max_ratio)) return std::nullopt;
+  options.min_ratio =
+      std::max(options.min_ratio, std::min(expected / kMaxSpeedChange, expected - change));
+  options.max_ratio =
+      std::min(options.max_ratio, std::max(expected * kMaxSpeedChange, expected + change));
+  if (!(options.min_ratio < options.max_ratio)) return std::nullopt;
   return options;
 }
 

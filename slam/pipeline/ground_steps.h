@@ -9,9 +9,14 @@
 
 namespace orb360 {
 
-/// Number of keyframes within which the ground is sought eagerly: they are close to each other, and
-/// none of them is redundant.
+/// Number of keyframes within which the ground is sought eagerly.
 inline constexpr KeyframeId kGroundSearch = 15;
+
+/// Whether the ground is being sought for the next keyframe of a map: keyframes are then made close
+/// to each other and adopted at once, and none of them is redundant.
+inline bool SeeksGround(const Map& map, bool has_ground) {
+  return !has_ground && map.keyframe_end() < kGroundSearch;
+}
 
 /// Measures the steps from the last keyframes before `id` to it on the ground that the images show
 /// (MeasureGroundStep), and stores them in the keyframe. `mask` removes what moves with the camera

@@ -79,6 +79,7 @@ void CullRedundantKeyframes(KeyframeId newest, const MapperOptions& options, Map
 KeyframeId IntegrateKeyframe(const TrackedFrame& frame, std::shared_ptr<const SpherePyramid> image,
                              const MapperOptions& options, const std::optional<KnownGround>& ground,
                              const std::optional<cv::Mat>& ground_mask, Map* map) {
+  const bool seeks_ground = ground_mask && SeeksGround(*map, ground.has_value());
   const KeyframeId id =
       map->AddKeyframe(frame.index, frame.timestamp, frame.world_from_camera, frame.features);
   for (size_t f = 0; f < frame.landmarks.size(); ++f) {
@@ -100,7 +101,6 @@ KeyframeId IntegrateKeyframe(const TrackedFrame& frame, std::shared_ptr<const Sp
   AlignObservations(id, ground, map);
   FindByPatches(id, options.max_fusion_neighbours, map);
   AdjustLocally(id, options.bundle, ground, map);
-  const bool seeks_ground = ground_mask && !ground && id < kGroundSearch;
   if (!seeks_ground) CullRedundantKeyframes(id, options, map);
   map->ForgetImages(options.kept_images);
   return id;

@@ -48,7 +48,7 @@ void Pipeline::StartMapping(const cv::Mat& image) {
   const std::optional<KnownGround> ground = atlas_.ReliableGround();
   // The sooner a keyframe is in the map, the sooner there is the next one.
   const bool seeks_ground =
-      options_.scale.from_ground && !ground && atlas_.map().keyframe_end() < kGroundSearch;
+      options_.scale.from_ground && SeeksGround(atlas_.map(), ground.has_value());
   KeyframeMapping job{.active = atlas_.Lend(),
                       .finished = atlas_.finished(),
                       .frame = std::move(frame),

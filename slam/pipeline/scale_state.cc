@@ -166,9 +166,9 @@ EstimatedScale EstimateScale(std::span<const Map> maps,
   EstimatedScale result;
   MetricScale& whole = result.whole;
   whole.is_height_assumed = options.camera_height == 0;
-  const double height_sigma = whole.is_height_assumed
-                                  ? AssumedHeightSigma(RiseOfSurroundings(maps, grounds))
-                                  : options.camera_height_sigma;
+  whole.surroundings_rise = RiseOfSurroundings(maps, grounds);
+  const double height_sigma = whole.is_height_assumed ? AssumedHeightSigma(whole.surroundings_rise)
+                                                      : options.camera_height_sigma;
   const EstimatedLensDistance lenses = EstimateLensDistance(maps);
   int num_steps = 0;
   int num_planes = 0;

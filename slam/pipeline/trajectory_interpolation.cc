@@ -48,6 +48,7 @@ TrajectoryInterpolation::TrajectoryInterpolation(const Map& map) {
     Node& node = nodes_[i];
     const double elapsed = node.timestamp - before.timestamp;
     if (!IsShort(elapsed) || !IsShort(after.timestamp - node.timestamp)) continue;
+    if (IsCut(i) || IsCut(i + 1)) continue;
     const double fraction = elapsed / (after.timestamp - before.timestamp);
     const Eigen::Vector3d expected =
         OnArc(before.world_from_camera, after.world_from_camera, fraction);

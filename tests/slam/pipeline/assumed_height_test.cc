@@ -38,20 +38,27 @@ std::vector<Eigen::Vector3d> Wall(double height) {
   return points;
 }
 
-double RiseOf(const std::vector<Eigen::Vector3d>& points) {
-  const Map map = Observe(points);
+double RiseOf(const Map& map) {
   const std::optional<KnownGround> ground = kGround;
   return RiseOfSurroundings(std::span(&map, 1), std::span(&ground, 1));
 }
 
 TEST(RiseOfSurroundings, IsTheirHeightOverTheGroundInHeightsOfTheCamera) {
-  EXPECT_NEAR(RiseOf(Wall(9.0)), 0.9 * 9.0 / kHeight, 0.05);
+  EXPECT_NEAR(RiseOf(Observe(Wall(9.0))), 0.9 * 9.0 / kHeight, 0.05);
 }
 
 TEST(RiseOfSurroundings, IgnoresWhatIsFarFromTheKeyframesThatObserveIt) {
   std::vector<Eigen::Vector3d> points = Wall(3.0);
   for (int i = 0; i < 200; ++i) points.emplace_back(0, 0, 40);  // near the first keyframe
-  EXPECT_NEAR(RiseOf(points), 0.9 * 3.0 / kHeight, 0.05);
+  EXPECT_NEAR(RiseOf(Observe(points)), 0.9 * 3.0 / kHeight, 0.05);
+}
+
+TEST(RiseOfSurroundings, IsMeasuredFromTheNearestKeyframe) {
+  Map map = Observe(Wall(9.0));
+  for (LandmarkId id = 0; id < map.landmark_end(); ++id) map.AddObservation(id, 0, id);
+  // The road climbs by 5 m from the first to the second keyframe.
+  map.keyframe(0).world_from_camera.translation = {20, 0, kHeight - 5};
+  EXPECT_NEAR(RiseOf(map), 0.9 * 9.0 / kHeight, 0.05);
 }
 
 TEST(RiseOfSurroundings, IsUnknownFromFewLandmarksOrWithoutGround) {
@@ -60,7 +67,7 @@ TEST(RiseOfSurroundings, IsUnknownFromFewLandmarksOrWithoutGround) {
   const std::optional<KnownGround> none;
   EXPECT_EQ(RiseOfSurroundings(std::span(&map, 1), std::span(&none, 1)), 0.0);
   points.resize(99);
-  EXPECT_EQ(RiseOf(points), 0.0);
+  EXPECT_EQ(RiseOf(Observe(points)), 0.0);
 }
 
 TEST(AssumedHeightSigma, IsThatOfCarriersWhereSurroundingsRiseHighAboveTheCamera) {

@@ -58,16 +58,7 @@ TEST(AlignFirstKeyframes, TurnsThemAndTriangulatesWhatTheySeeAnew) {
         TrueGroundStep(id - 1, TruePose(id - 1), TruePose(id), kHeight));
   }
   const std::vector<Eigen::Vector3d> points = {{4, 3, 1}, {6, -2, 2}, {2, 5, 3}, {9, 1, 4}};
-  for (KeyframeId id = 0; id < 5; ++id) {
-    auto features = std::make_shared<Features>();
-    for (const Eigen::Vector3d& point : points) {
-      features->bearings.push_back((TruePose(id).Inverse() * point).normalized());
-      features->keypoints.push_back({Eigen::Vector2f::Zero(), 0.0F, 0.004F, 0, 50});
-      features->descriptors.emplace_back();
-    }
-    map.keyframe(id).features = features;
-    map.keyframe(id).landmarks.assign(points.size(), kNoId);
-  }
+  SeePoints(points, 0.7, &map);
   // Up to the third keyframe tracking has missed a turn of 3 degrees and half of the way.
   const Rigid3 pivot = TruePose(2);
   const Rigid3 wrong{ExpSo3({0, 0, 0.05}), Eigen::Vector3d::Zero()};
@@ -75,12 +66,6 @@ TEST(AlignFirstKeyframes, TurnsThemAndTriangulatesWhatTheySeeAnew) {
     Rigid3& pose = map.keyframe(id).world_from_camera;
     const Eigen::Vector3d offset = wrong.rotation * (pose.translation - pivot.translation);
     pose = {wrong.rotation * pose.rotation, pivot.translation + 0.5 * offset};
-  }
-  for (size_t i = 0; i < points.size(); ++i) {
-    const LandmarkId landmark = map.AddLandmark(0.7 * points[i], Color{});
-    for (KeyframeId id = 0; id < 5; ++id) {
-      map.AddObservation(landmark, id, static_cast<int>(i));
-    }
   }
   AlignFirstKeyframes({Eigen::Vector3d::UnitZ(), kHeight}, {}, &map);
   for (KeyframeId id = 0; id < 5; ++id) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "tests/slam/scale/ground_scene.h"
 #include <orb360/slam/geometry/so3.h>
@@ -27,6 +28,27 @@ inline Map Drive(int count, double scale, const Ground& ground) {
     map.keyframe(id).image = image;
   }
   return map;
+}
+
+/// Lets all keyframes see the same points of the world, from their true poses: feature i sees point
+/// i, and landmark i lies at `scale` times point i.
+inline void SeePoints(std::span<const Eigen::Vector3d> points, double scale, Map* map) {
+  for (KeyframeId id = 0; id < map->keyframe_end(); ++id) {
+    auto features = std::make_shared<Features>();
+    for (const Eigen::Vector3d& point : points) {
+      features->bearings.push_back((TruePose(id).Inverse() * point).normalized());
+      features->keypoints.push_back({Eigen::Vector2f::Zero(), 0.0F, 0.004F, 0, 50});
+      features->descriptors.emplace_back();
+    }
+    map->keyframe(id).features = features;
+    map->keyframe(id).landmarks.assign(points.size(), kNoId);
+  }
+  for (size_t i = 0; i < points.size(); ++i) {
+    const LandmarkId landmark = map->AddLandmark(scale * points[i], Color{});
+    for (KeyframeId id = 0; id < map->keyframe_end(); ++id) {
+      map->AddObservation(landmark, id, static_cast<int>(i));
+    }
+  }
 }
 
 /// Ground whose texture is in heights of the camera.

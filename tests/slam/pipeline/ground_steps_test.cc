@@ -65,17 +65,25 @@ TEST(MeasureGroundSteps, KeepsTheTrackedRotationOverBoards) {
   EXPECT_EQ(map.keyframe(1).ground_steps.size(), 1u);
 }
 
-TEST(MeasureGroundSteps, SeeksTheStepAroundTheLastSpeed) {
-  for (const double last_ratio : {0.9, 0.3}) {  // of the true step, and of one far shorter
+TEST(MeasureGroundSteps, SeeksTheStepAroundTheLastSpeedAsFarAsACarAccelerates) {
+  struct Case {
+    double last_ratio;  // of the last step, relative to the true one
+    double period;      // between keyframes, s
+    bool is_measured;
+  };
+  for (const auto& [last_ratio, period, is_measured] :
+       {Case{0.9, 0.1, true}, Case{0.3, 0.1, false}, Case{0.3, 0.5, true}, Case{2.5, 0.1, false},
+        Case{2.5, 0.8, true}}) {
     Map map = Drive(3, 1.0, Scaled(Asphalt(7)));
+    for (const KeyframeId id : {0, 1, 2}) map.keyframe(id).timestamp = period * id;
     map.keyframe(1).ground_steps.push_back({.keyframe = 0,
                                             .ratio = last_ratio * kStep / kHeight,
                                             .sigma = 0.002,
                                             .direction2 = Eigen::Vector3d(-1, 0, 0)});
     MeasureGroundSteps(2, std::nullopt, {}, &map);
     const std::vector<GroundStepFrom>& steps = map.keyframe(2).ground_steps;
-    const bool is_measured = !steps.empty() && steps.front().keyframe == 1;
-    EXPECT_EQ(is_measured, last_ratio > 0.5);
+    EXPECT_EQ(!steps.empty() && steps.front().keyframe == 1, is_measured)
+        << last_ratio << " of the step in " << period << " s";
   }
 }
 

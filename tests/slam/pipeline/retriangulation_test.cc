@@ -1,6 +1,8 @@
 #include "slam/pipeline/retriangulation.h"
 
 #include <memory>
+#include <span>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -9,24 +11,12 @@
 namespace orb360 {
 namespace {
 
-/// Three keyframes of a drive that see the same points of the world, each a landmark in its place.
 Map DrivePast(std::span<const Eigen::Vector3d> points) {
   Map map;
   for (int i = 0; i < 3; ++i) {
-    auto features = std::make_shared<Features>();
-    for (const Eigen::Vector3d& point : points) {
-      features->bearings.push_back((TruePose(i).Inverse() * point).normalized());
-      features->keypoints.push_back({Eigen::Vector2f::Zero(), 0.0F, 0.004F, 0, 50});
-      features->descriptors.emplace_back();
-    }
-    map.AddKeyframe(i, 0.1 * i, TruePose(i), features);
+    map.AddKeyframe(i, 0.1 * i, TruePose(i), std::make_shared<Features>());
   }
-  for (size_t p = 0; p < points.size(); ++p) {
-    const LandmarkId id = map.AddLandmark(points[p], Color{});
-    for (const KeyframeId keyframe : {0, 1, 2}) {
-      map.AddObservation(id, keyframe, static_cast<int>(p));
-    }
-  }
+  SeePoints(points, 1.0, &map);
   return map;
 }
 
@@ -53,7 +43,8 @@ TEST(Retriangulate, RemovesWhatMovesWithTheCamera) {
   Map map = DrivePast(std::vector{kWall});
   auto features = std::make_shared<Features>(*map.keyframe(0).features);
   for (const KeyframeId id : {0, 1, 2}) map.keyframe(id).features = features;
-  for (const KeyframeId id : {0, 1, 2}) {  // turns alone would look like motion
+  // Without turns: what turns with the camera has a parallax.
+  for (const KeyframeId id : {0, 1, 2}) {
     map.keyframe(id).world_from_camera.rotation = TruePose(0).rotation;
   }
   Retriangulate(0, &map);

@@ -81,6 +81,7 @@ TEST(ScaleState, AnAssumedHeightIsNeverMetric) {
   EXPECT_EQ(scale.whole.state, ScaleState::kRough);
   EXPECT_TRUE(scale.whole.is_height_assumed);
   EXPECT_GT(scale.whole.sigma, 0.2);
+  EXPECT_GT(scale.whole.surroundings_rise, 1.0);
 }
 
 TEST(ScaleState, SaysByHowMuchThePathContradictsTheSteps) {

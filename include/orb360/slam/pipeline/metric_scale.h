@@ -31,6 +31,10 @@ struct MetricScale {
   /// has left it near the ground, metres; 0 where the images show none beyond doubt. It has been
   /// taken out of the steps over the ground.
   double lens_distance = 0;
+  /// How far the surroundings rise above the ground, in heights of the camera: 90 % quantile over
+  /// the landmarks nearby; 0 where too few tell. An assumed height is as uncertain as that makes
+  /// it.
+  double surroundings_rise = 0;
   /// What the scale was measured with, in the order of their weight.
   std::vector<std::string> sources;
 };
