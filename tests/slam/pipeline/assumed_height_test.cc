@@ -54,11 +54,14 @@ TEST(RiseOfSurroundings, IgnoresWhatIsFarFromTheKeyframesThatObserveIt) {
 }
 
 TEST(RiseOfSurroundings, IsMeasuredFromTheNearestKeyframe) {
-  Map map = Observe(Wall(9.0));
-  for (LandmarkId id = 0; id < map.landmark_end(); ++id) map.AddObservation(id, 0, id);
-  // The road climbs by 5 m from the first to the second keyframe.
-  map.keyframe(0).world_from_camera.translation = {20, 0, kHeight - 5};
-  EXPECT_NEAR(RiseOf(map), 0.9 * 9.0 / kHeight, 0.05);
+  for (const KeyframeId near : {0, 1}) {
+    Map map = Observe(Wall(9.0));
+    for (LandmarkId id = 0; id < map.landmark_end(); ++id) map.AddObservation(id, 0, id);
+    // The road climbs by 5 m towards the wall.
+    map.keyframe(near).world_from_camera.translation = {50, 0, kHeight};
+    map.keyframe(1 - near).world_from_camera.translation = {20, 0, kHeight - 5};
+    EXPECT_NEAR(RiseOf(map), 0.9 * 9.0 / kHeight, 0.05) << near;
+  }
 }
 
 TEST(RiseOfSurroundings, IsUnknownFromFewLandmarksOrWithoutGround) {

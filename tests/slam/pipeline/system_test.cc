@@ -192,6 +192,7 @@ TEST(SystemSlow, KeyframesAreCloseToEachOtherWhileTheGroundIsSought) {
     Options options = SmallOptions();
     options.scale.from_ground = from_ground;
     options.loop.enabled = false;
+    options.keyframe.mapping_frames = 10;
     System system(kHallCamera, options, {});
     for (int i = 0; i < 50; ++i) {
       system.Process(MakeFrame(i, Hall().Render(kHallCamera, TruePose(0.25 * i))));
