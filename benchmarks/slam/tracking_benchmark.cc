@@ -2,7 +2,7 @@
 // 2048 x 1024, mapping beside it as in a run.
 #include <benchmark/benchmark.h>
 
-#include "tests/slam/pipeline/box_room.h"
+#include "tests/slam/geometry/box_room.h"
 #include <orb360/slam/io/frame_source.h>
 #include <orb360/slam/pipeline/options.h>
 #include <orb360/slam/pipeline/system.h>

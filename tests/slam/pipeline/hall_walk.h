@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "slam/geometry/alignment.h"
-#include "tests/slam/pipeline/box_room.h"
+#include "tests/slam/geometry/box_room.h"
 #include <orb360/slam/geometry/so3.h>
 #include <orb360/slam/io/frame_source.h>
 #include <orb360/slam/pipeline/options.h>

@@ -11,7 +11,7 @@
 #include "slam/features/feature_index.h"
 #include "slam/features/sphere_pyramid.h"
 #include "slam/geometry/bearing.h"
-#include "tests/slam/pipeline/box_room.h"
+#include "tests/slam/geometry/box_room.h"
 #include <orb360/slam/map/map.h>
 
 namespace orb360 {

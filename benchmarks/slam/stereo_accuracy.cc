@@ -1,0 +1,187 @@
+// How well stereo on the sphere measures ranges: against true poses and depth.
+//
+//   stereo_accuracy SEQUENCE [--images DIR] [GAP...]
+//
+// For the frames of a sequence folder with true depth and the frames GAP after each [1 -1 2 -2]:
+// how much of what has texture and is nearer than 30 m gets a range, by solid angle, and how large
+// its errors are. --images: writes the image, the true ranges and the measured ones below each
+// other, as colours of the logarithm of 0.5 to 50 m.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "nn/base/statistics.h"
+#include "slam/stereo/spherical_stereo.h"
+#include <orb360/slam/io/depth_image.h>
+#include <orb360/slam/io/trajectory.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float kMaxRange = 30.0F;  // metres
+
+std::string NameOf(int index, const char* ending) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06d.%s", index, ending);
+  return name;
+}
+
+cv::Mat ReadGray(const fs::path& sequence, int index) {
+  fs::path path = sequence / "rgb" / NameOf(index, "jpg");
+  if (!fs::exists(path)) path.replace_extension("png");
+  cv::Mat gray = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
+  if (gray.empty()) throw std::runtime_error("cannot read " + path.string());
+  return gray;
+}
+
+/// Where the gray values within 5 x 5 pixels have a standard deviation of at least 3 levels.
+cv::Mat HasTexture(const cv::Mat& gray) {
+  const cv::Size window(5, 5);
+  cv::Mat mean;
+  cv::Mat square;
+  cv::boxFilter(gray, mean, CV_32F, window);
+  cv::sqrBoxFilter(gray, square, CV_32F, window);
+  return square - mean.mul(mean) >= 9.0;
+}
+
+/// Solid angles, in units of a pixel at the equator, and errors of what was measured.
+struct Totals {
+  double textured = 0;
+  double known = 0;
+  double within3 = 0;
+  double within10 = 0;
+  std::vector<double> in_sigmas;
+  std::vector<double> milliseconds;
+
+  void Add(const cv::Mat& gray, const cv::Mat& truth, const orb360::InverseRanges& measured) {
+    const cv::Mat texture = HasTexture(gray);
+    for (int row = 0; row < truth.rows; ++row) {
+      const double weight = std::sin((row + 0.5) / truth.rows * std::numbers::pi);
+      for (int column = 0; column < truth.cols; ++column) {
+        const float range = truth.at<float>(row, column);
+        if (!(range > 0 && range < kMaxRange) || texture.at<uint8_t>(row, column) == 0) continue;
+        textured += weight;
+        const float sigma = measured.sigma.at<float>(row, column);
+        if (!(sigma > 0)) continue;
+        known += weight;
+        const double error = measured.value.at<float>(row, column) - 1 / range;
+        within3 += std::abs(error) * range < 0.03 ? weight : 0;
+        within10 += std::abs(error) * range < 0.1 ? weight : 0;
+        in_sigmas.push_back(std::abs(error) / sigma);
+      }
+    }
+  }
+};
+
+/// Colours of ranges; black where unknown.
+cv::Mat ColorsOf(const cv::Mat& ranges) {
+  cv::Mat logarithm;
+  cv::log(ranges * 2, logarithm);  // 0 at 0.5 m
+  cv::Mat levels;
+  logarithm.convertTo(levels, CV_8U, 255 / std::log(100.0));
+  cv::Mat colors;
+  cv::applyColorMap(levels, colors, cv::COLORMAP_TURBO);
+  colors.setTo(0, ~(ranges > 0));
+  return colors;
+}
+
+void WriteImage(const fs::path& path, const cv::Mat& gray, const cv::Mat& truth,
+                const orb360::InverseRanges& measured) {
+  cv::Mat ranges;
+  cv::divide(1.0, measured.value, ranges);
+  ranges.setTo(0, ~(measured.value > 0));
+  cv::Mat shown;
+  cv::cvtColor(gray, shown, cv::COLOR_GRAY2BGR);
+  cv::vconcat(std::vector<cv::Mat>{shown, ColorsOf(truth), ColorsOf(ranges)}, shown);
+  if (!cv::imwrite(path.string(), shown)) throw std::runtime_error("cannot write " + path.string());
+}
+
+void Measure(const fs::path& sequence, const std::optional<fs::path>& images,
+             const std::vector<int>& gaps) {
+  const auto poses = orb360::ReadTrajectory(sequence / "groundtruth.txt");
+  const auto count = static_cast<int>(poses.size());
+  if (images) fs::create_directories(*images);
+  const orb360::SphericalStereoOptions options;
+  Totals totals;
+  for (int i = 0; i < count; ++i) {
+    const fs::path depth = sequence / "depth" / NameOf(i, "png");
+    if (!fs::exists(depth)) continue;
+    const orb360::StereoView reference{ReadGray(sequence, i), poses[i].world_from_camera};
+    std::vector<orb360::StereoView> sources;
+    for (const int gap : gaps) {
+      if (i + gap < 0 || i + gap >= count) continue;
+      sources.push_back({ReadGray(sequence, i + gap), poses[i + gap].world_from_camera});
+    }
+    if (static_cast<int>(sources.size()) < options.min_support) continue;
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<orb360::InverseRanges> measured;
+    for (const orb360::StereoView& source : sources) {
+      measured.push_back(MatchSphere(reference, source, options, 2));
+    }
+    const orb360::InverseRanges fused = FuseInverseRanges(measured, options);
+    totals.milliseconds.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+            .count());
+    const cv::Mat truth = orb360::ReadDepthImage(depth);
+    totals.Add(reference.gray, truth, fused);
+    if (images) WriteImage(*images / NameOf(i, "png"), reference.gray, truth, fused);
+  }
+  if (totals.in_sigmas.empty()) throw std::runtime_error("no frame with depth has a range");
+  std::printf("%zu frames, %.0f ms each\n", totals.milliseconds.size(),
+              orb360::Median(totals.milliseconds));
+  std::printf("with a range, of what has texture and is nearer than 30 m: %.1f %%\n",
+              100 * totals.known / totals.textured);
+  std::printf("of these within 3 %%: %.1f %%, within 10 %%: %.1f %%\n",
+              100 * totals.within3 / totals.known, 100 * totals.within10 / totals.known);
+  std::printf("|error| in standard deviations: 68 %% below %.2f, 95 %% below %.2f\n",
+              orb360::NearestRankQuantile(totals.in_sigmas, 0.68),
+              orb360::NearestRankQuantile(totals.in_sigmas, 0.95));
+}
+
+constexpr char kUsage[] =
+    "usage: stereo_accuracy SEQUENCE [--images DIR] [GAP...]\n"
+    "SEQUENCE: folder with rgb/, depth/ and groundtruth.txt, 1024 x 512 pixels;\n"
+    "GAP: frames from a reference view to a source view, two or more, not 0 [1 -1 2 -2]\n";
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  std::optional<fs::path> images;
+  std::vector<int> gaps;
+  bool is_valid = !arguments.empty();
+  for (size_t i = 1; i < arguments.size(); ++i) {
+    if (arguments[i] == "--images" && i + 1 < arguments.size()) {
+      images = arguments[++i];
+      continue;
+    }
+    gaps.push_back(std::atoi(arguments[i].c_str()));
+    is_valid = is_valid && gaps.back() != 0;
+  }
+  if (gaps.empty()) gaps = {1, -1, 2, -2};
+  const bool wants_help = arguments.size() == 1 && arguments[0] == "--help";
+  if (wants_help || !is_valid || gaps.size() < 2) {
+    std::fputs(kUsage, wants_help ? stdout : stderr);
+    return wants_help ? 0 : 2;
+  }
+  try {
+    Measure(arguments[0], images, gaps);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "stereo_accuracy: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
