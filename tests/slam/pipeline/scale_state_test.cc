@@ -103,6 +103,10 @@ TEST(ScaleState, IsUnknownWhereNothingShowsTheGround) {
   EXPECT_EQ(by_depth.whole.state, ScaleState::kUnknown);
   EXPECT_GT(by_depth.whole.sigma, 0.3);
   EXPECT_EQ(by_depth.whole.sources, std::vector<std::string>{"completed depth"});
+  // Steps that never agreed on a ground do not make it any better.
+  const EstimatedScale beside = Estimate(WalkOver(std::vector<double>(8, 1.0)), completed);
+  EXPECT_EQ(beside.whole.sources, by_depth.whole.sources);
+  EXPECT_GT(beside.whole.sigma, 0.3);
   // A ground that no keyframe of the finished map shows tells nothing.
   EXPECT_EQ(Estimate(map, kGround).whole.value, 0);
   EXPECT_EQ(EstimateScale({}, {}, {}).whole.state, ScaleState::kUnknown);
