@@ -18,8 +18,7 @@
 #include <string>
 #include <vector>
 
-#include <opencv2/imgcodecs.hpp>
-
+#include "benchmarks/slam/sequence_folder.h"
 #include "nn/base/statistics.h"
 #include "slam/features/sphere_pyramid.h"
 #include "slam/scale/ground_sweep.h"
@@ -32,17 +31,9 @@ namespace {
 namespace fs = std::filesystem;
 using orb360::Rigid3;
 
-std::string NameOf(int index, const char* ending) {
-  char name[32];
-  std::snprintf(name, sizeof name, "%06d.%s", index, ending);
-  return name;
-}
-
 orb360::SpherePyramid ReadPyramid(const fs::path& sequence, int index) {
-  fs::path path = sequence / "rgb" / NameOf(index, "jpg");
-  if (!fs::exists(path)) path.replace_extension("png");
   orb360::SpherePyramid pyramid;
-  orb360::BuildSpherePyramid(cv::imread(path.string(), cv::IMREAD_GRAYSCALE), 8, &pyramid);
+  orb360::BuildSpherePyramid(orb360::ReadGray(sequence, index), 8, &pyramid);
   return pyramid;
 }
 
@@ -98,7 +89,7 @@ void Measure(const fs::path& sequence, int gap) {
   std::printf("%6s %7s %8s %7s %7s %6s %7s %7s %6s %6s %6s\n", "frame", "true", "measured", "error",
               "sigma", "error/", "turn", "sigma", "corr.", "rival", "tiles");
   for (int i = 0; i + gap < static_cast<int>(poses.size()); ++i) {
-    const fs::path depth = sequence / "depth" / NameOf(i, "png");
+    const fs::path depth = sequence / "depth" / orb360::NameOfFrame(i, "png");
     if (!fs::exists(depth)) continue;
     ++num_frames;
     const Rigid3 pose1 = poses[i].world_from_camera;

@@ -16,12 +16,14 @@
 #include <filesystem>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "benchmarks/slam/sequence_folder.h"
 #include "nn/base/statistics.h"
 #include "slam/stereo/spherical_stereo.h"
 #include <orb360/slam/io/depth_image.h>
@@ -32,20 +34,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float kMaxRange = 30.0F;  // metres
-
-std::string NameOf(int index, const char* ending) {
-  char name[32];
-  std::snprintf(name, sizeof name, "%06d.%s", index, ending);
-  return name;
-}
-
-cv::Mat ReadGray(const fs::path& sequence, int index) {
-  fs::path path = sequence / "rgb" / NameOf(index, "jpg");
-  if (!fs::exists(path)) path.replace_extension("png");
-  cv::Mat gray = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
-  if (gray.empty()) throw std::runtime_error("cannot read " + path.string());
-  return gray;
-}
+const cv::Size kSize(1024, 512);    // of four levels of matching
 
 /// Where the gray values within 5 x 5 pixels have a standard deviation of at least 3 levels.
 cv::Mat HasTexture(const cv::Mat& gray) {
@@ -117,13 +106,17 @@ void Measure(const fs::path& sequence, const std::optional<fs::path>& images,
   const orb360::SphericalStereoOptions options;
   Totals totals;
   for (int i = 0; i < count; ++i) {
-    const fs::path depth = sequence / "depth" / NameOf(i, "png");
+    const fs::path depth = sequence / "depth" / orb360::NameOfFrame(i, "png");
     if (!fs::exists(depth)) continue;
-    const orb360::StereoView reference{ReadGray(sequence, i), poses[i].world_from_camera};
+    const cv::Mat truth = orb360::ReadDepthImage(depth);
+    const orb360::StereoView reference{orb360::ReadGray(sequence, i), poses[i].world_from_camera};
+    if (reference.gray.size() != kSize || truth.size() != kSize) {
+      throw std::runtime_error(depth.string() + ": it and its image must be 1024 x 512 pixels");
+    }
     std::vector<orb360::StereoView> sources;
     for (const int gap : gaps) {
       if (i + gap < 0 || i + gap >= count) continue;
-      sources.push_back({ReadGray(sequence, i + gap), poses[i + gap].world_from_camera});
+      sources.push_back({orb360::ReadGray(sequence, i + gap), poses[i + gap].world_from_camera});
     }
     if (static_cast<int>(sources.size()) < options.min_support) continue;
     const auto start = std::chrono::steady_clock::now();
@@ -135,9 +128,8 @@ void Measure(const fs::path& sequence, const std::optional<fs::path>& images,
     totals.milliseconds.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
             .count());
-    const cv::Mat truth = orb360::ReadDepthImage(depth);
     totals.Add(reference.gray, truth, fused);
-    if (images) WriteImage(*images / NameOf(i, "png"), reference.gray, truth, fused);
+    if (images) WriteImage(*images / orb360::NameOfFrame(i, "png"), reference.gray, truth, fused);
   }
   if (totals.in_sigmas.empty()) throw std::runtime_error("no frame with depth has a range");
   std::printf("%zu frames, %.0f ms each\n", totals.milliseconds.size(),

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include <opencv2/imgcodecs.hpp>
+
+namespace orb360 {
+
+/// Name of a frame's file in a sequence folder: six digits and an ending.
+inline std::string NameOfFrame(int index, const char* ending) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06d.%s", index, ending);
+  return name;
+}
+
+/// Reads rgb/NNNNNN.jpg, or .png, of a sequence folder as CV_8U. Throws std::runtime_error where it
+/// cannot be read.
+inline cv::Mat ReadGray(const std::filesystem::path& sequence, int index) {
+  std::filesystem::path path = sequence / "rgb" / NameOfFrame(index, "jpg");
+  if (!std::filesystem::exists(path)) path.replace_extension("png");
+  cv::Mat gray = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
+  if (gray.empty()) throw std::runtime_error(path.string() + ": cannot be read as an image");
+  return gray;
+}
+
+}  // namespace orb360
