@@ -59,10 +59,14 @@ constexpr Row kLoopRows[] = {
 constexpr Row kCloudRows[] = {
     {"points", "cloud, points compared", "", 0},
     {"median_distance", "  median distance from the surface", "m", 3},
-    {"accuracy_10cm", "  accuracy: nearer than 10 cm", "%", 1, 100.0},
-    {"accuracy_25cm", "  nearer than 25 cm", "%", 1, 100.0},
-    {"completeness_10cm", "  completeness of what is within 15 m: 10 cm", "%", 1, 100.0},
-    {"completeness_25cm", "  25 cm", "%", 1, 100.0},
+    {"accuracy_10cm", "  within 15 m: accuracy, nearer than 10 cm", "%", 1, 100.0},
+    {"accuracy_25cm", "      25 cm", "%", 1, 100.0},
+    {"completeness_10cm", "    completeness, nearer than 10 cm", "%", 1, 100.0},
+    {"completeness_25cm", "      25 cm", "%", 1, 100.0},
+    {"f_score_5cm", "    F-score of both, 5 cm", "", 3},
+    {"f_score_10cm", "      10 cm", "", 3},
+    {"f_score_25cm", "      25 cm", "", 3},
+    {"f_score_1_percent", "  within 30 m: F-score, 1 % of the range", "", 3},
 };
 
 constexpr Row kStatedScaleRows[] = {
@@ -181,13 +185,19 @@ nlohmann::json ToJson(const DepthFolderErrors& depth) {
 }
 
 nlohmann::json ToJson(const CloudErrors& errors) {
-  return {{"points", errors.points},
-          {"surfels", errors.surfels},
-          {"median_distance", errors.median_distance},
-          {"accuracy_10cm", errors.accuracy[0]},
-          {"accuracy_25cm", errors.accuracy[1]},
-          {"completeness_10cm", errors.completeness[0]},
-          {"completeness_25cm", errors.completeness[1]}};
+  nlohmann::json json = {{"points", errors.points},
+                         {"surfels", errors.surfels},
+                         {"median_distance", errors.median_distance}};
+  const auto add = [&json](const CloudAgreement& agreement, const std::string& distance) {
+    json["accuracy_" + distance] = agreement.accuracy;
+    json["completeness_" + distance] = agreement.completeness;
+    json["f_score_" + distance] = agreement.f_score;
+  };
+  for (size_t i = 0; i < errors.within.size(); ++i) {
+    add(errors.within[i], std::to_string(std::lround(100 * CloudErrors::kDistances[i])) + "cm");
+  }
+  add(errors.within_relative, "1_percent");
+  return json;
 }
 
 nlohmann::json ToJson(const std::optional<LocalScale>& scale) {

@@ -53,6 +53,7 @@ struct RunOptions {
   std::string weights;
   bool saves_sparse = false;
   bool saves_depth = false;
+  std::string cloud_quality;  // "": as the configuration says
   bool is_quiet = false;
 };
 
@@ -158,8 +159,12 @@ void WriteLargestMap(const std::string& path, int width, const Rigid3& file_worl
 RunOptions Settle(RunOptions options) {
   if (options.localizes) options.weights = "none";  // No keyframes are made.
   if (options.weights.empty()) options.weights = nn::DefaultWeights().string();
-  if (options.saves_depth && options.weights == "none") {
-    throw UserError("--save-depth: without a network there is no dense depth; leave it out");
+  for (const auto& [name, is_given] : {std::pair("--save-depth", options.saves_depth),
+                                       {"--cloud-quality", !options.cloud_quality.empty()}}) {
+    if (is_given && options.weights == "none") {
+      throw UserError(std::string(name) +
+                      ": without a network there is no dense depth; leave it out");
+    }
   }
   return options;
 }
@@ -183,6 +188,9 @@ int Run(const RunOptions& options) {
   SequenceOptions sequence_options = options.sequence;
   sequence_options.resize = ParseSize(options.resize);
   if (options.loops == "off") system_options.loop.enabled = false;
+  if (!options.cloud_quality.empty()) {
+    system_options.depth.stereo = options.cloud_quality == "normal";
+  }
   const std::unique_ptr<Sequence> sequence = OpenInput(options.input, sequence_options);
   double& camera_height = system_options.scale.camera_height;
   if (options.camera_height > 0) camera_height = options.camera_height;
@@ -323,6 +331,13 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
   command->add_flag(
       "--save-depth", options->saves_depth,
       "Also write each keyframe's dense depth to DIR/depth (16-bit PNG, metres * 256)");
+  command
+      ->add_option("--cloud-quality", options->cloud_quality,
+                   "draft: of what the network completes from landmarks; normal: also of what is "
+                   "seen by stereo between the keyframes (takes longer)")
+      ->check(CLI::IsMember({"draft", "normal"}))
+      ->type_name("draft|normal")
+      ->default_str("normal");
   command->add_flag("--quiet", options->is_quiet, "Show no progress");
   command->callback([options, chosen] { *chosen = [options] { return Run(Settle(*options)); }; });
 }

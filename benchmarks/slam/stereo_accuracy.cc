@@ -5,7 +5,7 @@
 // For the frames of a sequence folder with true depth and the frames GAP after each [1 -1 2 -2]:
 // how much of what has texture and is nearer than 30 m gets a range, by solid angle, and how large
 // its errors are. --images: writes the image, the true ranges and the measured ones below each
-// other, as colours of the logarithm of 0.5 to 50 m.
+// other, as colours of the logarithm of 0.5 to 50 m, and the errors.
 
 #include <algorithm>
 #include <chrono>
@@ -34,7 +34,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float kMaxRange = 30.0F;  // metres
-const cv::Size kSize(1024, 512);    // of four levels of matching
 
 /// Where the gray values within 5 x 5 pixels have a standard deviation of at least 3 levels.
 cv::Mat HasTexture(const cv::Mat& gray) {
@@ -87,6 +86,24 @@ cv::Mat ColorsOf(const cv::Mat& ranges) {
   return colors;
 }
 
+/// Colours of the relative errors: blue too far, red too near by 10 % or more, white right; black
+/// where unknown.
+cv::Mat ColorsOfErrors(const cv::Mat& truth, const orb360::InverseRanges& measured) {
+  cv::Mat colors(truth.size(), CV_8UC3, cv::Scalar(0, 0, 0));
+  for (int row = 0; row < truth.rows; ++row) {
+    for (int column = 0; column < truth.cols; ++column) {
+      const float range = truth.at<float>(row, column);
+      const float inverse = measured.value.at<float>(row, column);
+      if (!(range > 0) || !(inverse > 0)) continue;
+      const double error = std::clamp((inverse * range - 1) / 0.1, -1.0, 1.0);
+      const auto rest = static_cast<uint8_t>(255 * (1 - std::abs(error)));
+      colors.at<cv::Vec3b>(row, column) =
+          error > 0 ? cv::Vec3b(rest, rest, 255) : cv::Vec3b(255, rest, rest);
+    }
+  }
+  return colors;
+}
+
 void WriteImage(const fs::path& path, const cv::Mat& gray, const cv::Mat& truth,
                 const orb360::InverseRanges& measured) {
   cv::Mat ranges;
@@ -94,7 +111,9 @@ void WriteImage(const fs::path& path, const cv::Mat& gray, const cv::Mat& truth,
   ranges.setTo(0, ~(measured.value > 0));
   cv::Mat shown;
   cv::cvtColor(gray, shown, cv::COLOR_GRAY2BGR);
-  cv::vconcat(std::vector<cv::Mat>{shown, ColorsOf(truth), ColorsOf(ranges)}, shown);
+  cv::vconcat(std::vector<cv::Mat>{shown, ColorsOf(truth), ColorsOf(ranges),
+                                   ColorsOfErrors(truth, measured)},
+              shown);
   if (!cv::imwrite(path.string(), shown)) throw std::runtime_error("cannot write " + path.string());
 }
 
@@ -110,21 +129,17 @@ void Measure(const fs::path& sequence, const std::optional<fs::path>& images,
     if (!fs::exists(depth)) continue;
     const cv::Mat truth = orb360::ReadDepthImage(depth);
     const orb360::StereoView reference{orb360::ReadGray(sequence, i), poses[i].world_from_camera};
-    if (reference.gray.size() != kSize || truth.size() != kSize) {
-      throw std::runtime_error(depth.string() + ": it and its image must be 1024 x 512 pixels");
+    if (reference.gray.size() != truth.size()) {
+      throw std::runtime_error(depth.string() + ": has another size than its image");
     }
     std::vector<orb360::StereoView> sources;
     for (const int gap : gaps) {
       if (i + gap < 0 || i + gap >= count) continue;
       sources.push_back({orb360::ReadGray(sequence, i + gap), poses[i + gap].world_from_camera});
     }
-    if (static_cast<int>(sources.size()) < options.min_support) continue;
+    if (static_cast<int>(sources.size()) < options.fusion.min_support) continue;
     const auto start = std::chrono::steady_clock::now();
-    std::vector<orb360::InverseRanges> measured;
-    for (const orb360::StereoView& source : sources) {
-      measured.push_back(MatchSphere(reference, source, options, 2));
-    }
-    const orb360::InverseRanges fused = FuseInverseRanges(measured, options);
+    const orb360::InverseRanges fused = MatchSpheres(reference, sources, options, 2);
     totals.milliseconds.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
             .count());
@@ -145,7 +160,7 @@ void Measure(const fs::path& sequence, const std::optional<fs::path>& images,
 
 constexpr char kUsage[] =
     "usage: stereo_accuracy SEQUENCE [--images DIR] [GAP...]\n"
-    "SEQUENCE: folder with rgb/, depth/ and groundtruth.txt, 1024 x 512 pixels;\n"
+    "SEQUENCE: folder with rgb/, depth/ and groundtruth.txt;\n"
     "GAP: frames from a reference view to a source view, two or more, not 0 [1 -1 2 -2]\n";
 
 }  // namespace

@@ -6,27 +6,14 @@
 #define HWY_TARGET_INCLUDE "slam/depth/source_view.cc"
 #include <hwy/foreach_target.h>
 // foreach_target must come first.
-#include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
 #include "slam/depth/row_lanes-inl.h"
+#include "slam/geometry/angle-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orb360 {
 namespace HWY_NAMESPACE {
-
-/// The angle of (x, y) from the x axis, in -pi..pi; 0 for the origin.
-HWY_INLINE V Angle(V y, V x) {
-  const D d;
-  const V run = hn::Abs(x);
-  const V rise = hn::Abs(y);
-  const V longer = hn::Max(hn::Max(run, rise), Constant(1e-30f));
-  const V acute = hn::Atan(d, hn::Div(hn::Min(run, rise), longer));
-  constexpr float kPi = std::numbers::pi_v<float>;
-  const V first = hn::IfThenElse(hn::Gt(rise, run), hn::Sub(Constant(0.5f * kPi), acute), acute);
-  const V upper = hn::IfThenElse(hn::Lt(x, hn::Zero(d)), hn::Sub(Constant(kPi), first), first);
-  return hn::CopySign(upper, y);
-}
 
 /// What a keyframe sees in the direction of each point.
 struct Sighting {
@@ -47,8 +34,8 @@ HWY_INLINE Sighting LookAlong(const DepthView& view, V x, V y, V z) {
   const VI zero = hn::Zero(di);
   const VI one = hn::Set(di, 1);
   const VI bottom_row = hn::Set(di, view.height() - 1);
-  const V longitude = Angle(y, hn::Neg(x));
-  const V latitude = Angle(z, hn::Sqrt(hn::MulAdd(x, x, hn::Mul(y, y))));
+  const V longitude = Angle(d, y, hn::Neg(x));
+  const V latitude = Angle(d, z, hn::Sqrt(hn::MulAdd(x, x, hn::Mul(y, y))));
   // Coordinates in pixels whose centres are at integers.
   const V u = hn::MulAdd(longitude, Constant(static_cast<float>(view.width()) / (2 * kPi)),
                          Constant(0.5f * static_cast<float>(view.width() - 1)));

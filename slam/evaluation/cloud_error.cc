@@ -71,17 +71,68 @@ float DistanceFrom(const Surfel& surfel, const Eigen::Vector3f& point) {
 
 size_t StepFor(size_t count) { return count / kMaxCompared + 1; }
 
-/// Returns the fraction of the distances that are not larger, for each of kDistances.
-std::array<double, 2> FractionsWithin(std::span<const float> distances) {
-  std::array<double, 2> fractions{};
-  for (size_t i = 0; i < fractions.size(); ++i) {
-    const auto within = std::ranges::count_if(distances, [i](float distance) {
-      return distance <= static_cast<float>(CloudErrors::kDistances[i]);
-    });
-    fractions[i] = static_cast<double>(within) / static_cast<double>(distances.size());
+/// The largest distance that is told from larger ones, metres: kRelativeDistance of kFarRange.
+constexpr auto kFarthest =
+    static_cast<float>(CloudErrors::kRelativeDistance * CloudErrors::kFarRange);
+static_assert(CloudErrors::kDistances.back() <= kFarthest);
+
+/// A point or a disc, and its distance from the other side, both in metres.
+struct Compared {
+  float range;
+  float distance;
+};
+
+/// The fraction of those up to `max_range` whose distance is at most `distance` plus `relative`
+/// times the range.
+double FractionWithin(std::span<const Compared> all, double max_range, double distance,
+                      double relative) {
+  size_t count = 0;
+  size_t within = 0;
+  for (const Compared& one : all) {
+    if (one.range > max_range) continue;
+    ++count;
+    if (one.distance <= distance + relative * one.range) ++within;
   }
-  return fractions;
+  return static_cast<double>(within) / static_cast<double>(count);
 }
+
+CloudAgreement AgreementWithin(std::span<const Compared> points, std::span<const Compared> surfels,
+                               double max_range, double distance, double relative) {
+  CloudAgreement agreement;
+  agreement.accuracy = FractionWithin(points, max_range, distance, relative);
+  agreement.completeness = FractionWithin(surfels, max_range, distance, relative);
+  const double sum = agreement.accuracy + agreement.completeness;
+  agreement.f_score = sum > 0 ? 2 * agreement.accuracy * agreement.completeness / sum : sum;
+  return agreement;
+}
+
+/// Distances of places from the nearest camera, each to the half of a cube's diagonal.
+class CameraRanges {
+ public:
+  explicit CameraRanges(std::span<const Eigen::Vector3f> cameras) : cameras_(cameras) {}
+
+  float operator()(const Eigen::Vector3f& place) {
+    constexpr float kCell = 0.5f;  // metres
+    const std::array<int, 3> cell = CellOf(place, kCell);
+    const auto [found, is_new] = ranges_.try_emplace(cell, 0.0f);
+    if (is_new) {
+      const Eigen::Vector3f center =
+          kCell * (Eigen::Vector3f(static_cast<float>(cell[0]), static_cast<float>(cell[1]),
+                                   static_cast<float>(cell[2])) +
+                   Eigen::Vector3f::Constant(0.5f));
+      float nearest = std::numeric_limits<float>::infinity();
+      for (const Eigen::Vector3f& camera : cameras_) {
+        nearest = std::min(nearest, (camera - center).squaredNorm());
+      }
+      found->second = std::sqrt(nearest);
+    }
+    return found->second;
+  }
+
+ private:
+  std::span<const Eigen::Vector3f> cameras_;
+  std::map<std::array<int, 3>, float> ranges_;
+};
 
 }  // namespace
 
@@ -136,46 +187,58 @@ std::vector<Surfel> TrueSurface::TakeSurfels() {
 }
 
 CloudErrors CompareCloud(std::span<const Eigen::Vector3f> cloud, std::span<const Surfel> truth,
-                         int num_threads) {
-  constexpr auto kFarthest = static_cast<float>(CloudErrors::kDistances.back());
-  CloudErrors errors;
-
+                         std::span<const Eigen::Vector3f> cameras, int num_threads) {
   // The cubes are so wide that every disc that can be near enough is in a neighbouring cube.
   const CellIndex surface(truth.size(), kFarthest + kMaxSurfelRadius,
                           [&](size_t i) { return truth[i].position; });
-  const size_t step = StepFor(cloud.size());
-  std::vector<float> distances((cloud.size() + step - 1) / step);
+  CameraRanges range_of(cameras);
+  std::vector<const Eigen::Vector3f*> compared;
+  std::vector<Compared> points;
+  for (size_t i = 0; i < cloud.size(); i += StepFor(cloud.size())) {
+    const float range = range_of(cloud[i]);
+    if (!(range <= CloudErrors::kFarRange)) continue;
+    compared.push_back(&cloud[i]);
+    points.push_back({range, 2.0f * kFarthest});
+  }
 #pragma omp parallel for schedule(dynamic, 1024) num_threads(num_threads)
-  for (size_t i = 0; i < distances.size(); ++i) {
-    float nearest = 2.0f * kFarthest;
-    surface.VisitAround(cloud[i * step], [&](size_t j) {
-      nearest = std::min(nearest, DistanceFrom(truth[j], cloud[i * step]));
+  for (size_t i = 0; i < points.size(); ++i) {
+    surface.VisitAround(*compared[i], [&](size_t j) {
+      points[i].distance = std::min(points[i].distance, DistanceFrom(truth[j], *compared[i]));
     });
-    distances[i] = nearest;
   }
 
-  const CellIndex points(cloud.size(), kFarthest, [&](size_t i) { return cloud[i]; });
+  const CellIndex index(cloud.size(), kFarthest, [&](size_t i) { return cloud[i]; });
   std::vector<const Surfel*> wanted;
   for (const Surfel& surfel : truth) {
-    if (surfel.range <= CloudErrors::kCompleteRange) wanted.push_back(&surfel);
+    if (surfel.range <= CloudErrors::kFarRange) wanted.push_back(&surfel);
   }
-  const size_t wanted_step = StepFor(wanted.size());
-  std::vector<float> gaps((wanted.size() + wanted_step - 1) / wanted_step);
+  const size_t step = StepFor(wanted.size());
+  std::vector<Compared> surfels((wanted.size() + step - 1) / step);
 #pragma omp parallel for schedule(dynamic, 1024) num_threads(num_threads)
-  for (size_t i = 0; i < gaps.size(); ++i) {
-    const Eigen::Vector3f& place = wanted[i * wanted_step]->position;
+  for (size_t i = 0; i < surfels.size(); ++i) {
+    const Surfel& surfel = *wanted[i * step];
     float nearest = 4.0f * kFarthest * kFarthest;
-    points.VisitAround(
-        place, [&](size_t j) { nearest = std::min(nearest, (cloud[j] - place).squaredNorm()); });
-    gaps[i] = std::sqrt(nearest);
+    index.VisitAround(surfel.position, [&](size_t j) {
+      nearest = std::min(nearest, (cloud[j] - surfel.position).squaredNorm());
+    });
+    surfels[i] = {surfel.range, std::sqrt(nearest)};
   }
 
-  errors.points = distances.size();
-  errors.surfels = gaps.size();
-  errors.accuracy = FractionsWithin(distances);
-  errors.completeness = FractionsWithin(gaps);
+  CloudErrors errors;
+  errors.points = points.size();
+  errors.surfels = surfels.size();
+  for (size_t i = 0; i < errors.within.size(); ++i) {
+    errors.within[i] =
+        AgreementWithin(points, surfels, CloudErrors::kNearRange, CloudErrors::kDistances[i], 0.0);
+  }
+  errors.within_relative =
+      AgreementWithin(points, surfels, CloudErrors::kFarRange, 0.0, CloudErrors::kRelativeDistance);
+  std::vector<float> near;
+  for (const Compared& point : points) {
+    if (point.range <= CloudErrors::kNearRange) near.push_back(point.distance);
+  }
   errors.median_distance = std::numeric_limits<double>::quiet_NaN();
-  if (!distances.empty()) errors.median_distance = std::min(Median(distances), kFarthest);
+  if (!near.empty()) errors.median_distance = std::min(Median(near), kFarthest);
   return errors;
 }
 

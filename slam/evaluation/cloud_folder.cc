@@ -54,7 +54,11 @@ CloudErrors CompareCloudFile(const std::filesystem::path& cloud,
     const cv::Mat moving = ReadMoving(sequence / kMovingName / image.filename(), range.size());
     surface.Add(range, moving, truth[*index].world_from_camera);
   }
-  return CompareCloud(points, surface.TakeSurfels(), num_threads);
+  std::vector<Eigen::Vector3f> cameras;
+  for (const PosePair& pair : pairs) {
+    cameras.push_back(pair.truth_from_camera.translation.cast<float>());
+  }
+  return CompareCloud(points, surface.TakeSurfels(), cameras, num_threads);
 }
 
 }  // namespace orb360

@@ -45,17 +45,17 @@ cv::Mat IsPositive(const cv::Mat& values) {
   return (values > 0.0f) & (values <= std::numeric_limits<float>::max());
 }
 
-CodedDepth Encode(const DenseDepth& depth) {
-  const cv::Mat known = IsPositive(depth.range) & IsPositive(depth.confidence);
+CodedDepth Encode(const cv::Mat& range, const cv::Mat& confidence) {
+  const cv::Mat known = IsPositive(range) & IsPositive(confidence);
   const cv::Mat unknown = ~known;
   CodedDepth coded;
-  cv::Mat logarithms(depth.range.size(), CV_32FC1, 1.0f);
-  depth.range.copyTo(logarithms, known);
+  cv::Mat logarithms(range.size(), CV_32FC1, 1.0f);
+  range.copyTo(logarithms, known);
   cv::log(logarithms, logarithms);
   logarithms.convertTo(coded.ranges, CV_16U, kStepsPerUnit, kCodeOfOne);
   coded.ranges = cv::max(coded.ranges, 1);
   coded.ranges.setTo(0, unknown);
-  depth.confidence.convertTo(coded.confidences, CV_8U, 255.0);
+  confidence.convertTo(coded.confidences, CV_8U, 255.0);
   coded.confidences = cv::max(coded.confidences, 1);
   coded.confidences.setTo(0, unknown);
   return coded;
@@ -139,6 +139,34 @@ CodedDepth Unpack(std::string_view packed, int width, int height) {
   return coded;
 }
 
+UserError Damaged(const std::filesystem::path& path) {
+  return UserError(path.string() +
+                   ": is damaged or gone; keep the folder as it is until the run has ended");
+}
+
+struct StoredBytes {
+  std::string bytes;
+  Header header;
+
+  std::string_view packed() const {
+    return std::string_view(bytes).substr(sizeof header, header.packed_bytes);
+  }
+  std::string_view color() const {
+    return std::string_view(bytes).substr(sizeof header + header.packed_bytes);
+  }
+};
+
+StoredBytes ReadBytes(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  StoredBytes stored{{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}, {}};
+  if (stored.bytes.size() < sizeof(Header)) throw Damaged(path);
+  std::memcpy(&stored.header, stored.bytes.data(), sizeof(Header));
+  const std::uint64_t expected =
+      sizeof(Header) + std::uint64_t{stored.header.packed_bytes} + stored.header.color_bytes;
+  if (expected != stored.bytes.size()) throw Damaged(path);
+  return stored;
+}
+
 cv::Mat DecodeColor(std::string_view jpeg) {
   const cv::Mat bytes(1, static_cast<int>(jpeg.size()), CV_8UC1, const_cast<char*>(jpeg.data()));
   try {
@@ -168,22 +196,38 @@ std::filesystem::path DepthMapStore::PathOf(int frame_index) const {
 
 void DepthMapStore::Put(int frame_index, const DenseDepth& depth) const {
   const cv::Size size = depth.range.size();
-  ORB360_CHECK(depth.range.type() == CV_32FC1 && depth.confidence.type() == CV_32FC1 &&
-                   depth.color.type() == CV_8UC3,
-               depth.range.type(), depth.confidence.type(), depth.color.type());
-  ORB360_CHECK(!size.empty() && depth.confidence.size() == size && depth.color.size() == size, size,
-               depth.confidence.size(), depth.color.size());
-  const std::string packed = Pack(Encode(depth));
+  ORB360_CHECK(depth.color.type() == CV_8UC3 && depth.color.size() == size, depth.color.type(),
+               depth.color.size(), size);
   std::vector<unsigned char> color;
   cv::imencode(".jpg", depth.color, color, {cv::IMWRITE_JPEG_QUALITY, kColorQuality});
+  Write(frame_index, depth.range, depth.confidence,
+        {reinterpret_cast<const char*>(color.data()), color.size()});
+}
+
+void DepthMapStore::PutRanges(int frame_index, const cv::Mat& range,
+                              const cv::Mat& confidence) const {
+  const StoredBytes stored = ReadBytes(PathOf(frame_index));
+  ORB360_CHECK(range.cols == static_cast<int>(stored.header.width) &&
+                   range.rows == static_cast<int>(stored.header.height),
+               range.size());
+  Write(frame_index, range, confidence, stored.color());
+}
+
+void DepthMapStore::Write(int frame_index, const cv::Mat& range, const cv::Mat& confidence,
+                          std::string_view color) const {
+  ORB360_CHECK(range.type() == CV_32FC1 && confidence.type() == CV_32FC1, range.type(),
+               confidence.type());
+  ORB360_CHECK(!range.empty() && confidence.size() == range.size(), range.size(),
+               confidence.size());
+  const std::string packed = Pack(Encode(range, confidence));
   const Header header{
-      static_cast<std::uint32_t>(size.width), static_cast<std::uint32_t>(size.height),
+      static_cast<std::uint32_t>(range.cols), static_cast<std::uint32_t>(range.rows),
       static_cast<std::uint32_t>(packed.size()), static_cast<std::uint32_t>(color.size())};
   // These files are useless after a crash, so the disk is not synced.
   OutputFile file(PathOf(frame_index));
   file.Write({reinterpret_cast<const char*>(&header), sizeof header});
   file.Write(packed);
-  file.Write({reinterpret_cast<const char*>(color.data()), color.size()});
+  file.Write(color);
 }
 
 bool DepthMapStore::Contains(int frame_index) const {
@@ -192,27 +236,16 @@ bool DepthMapStore::Contains(int frame_index) const {
 
 DenseDepth DepthMapStore::Get(int frame_index) const {
   const std::filesystem::path path = PathOf(frame_index);
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  const auto damaged = [&path] {
-    return UserError(path.string() +
-                     ": is damaged or gone; keep the folder as it is until the run has ended");
-  };
-  Header header{};
-  if (bytes.size() < sizeof header) throw damaged();
-  std::memcpy(&header, bytes.data(), sizeof header);
-  const std::string_view rest = std::string_view(bytes).substr(sizeof header);
-  if (std::uint64_t{header.packed_bytes} + header.color_bytes != rest.size()) throw damaged();
+  const StoredBytes stored = ReadBytes(path);
   DenseDepth depth;
-  depth.color = DecodeColor(rest.substr(header.packed_bytes));
+  depth.color = DecodeColor(stored.color());
   const cv::Size size = depth.color.size();
-  if (size.empty() ||
-      size != cv::Size(static_cast<int>(header.width), static_cast<int>(header.height))) {
-    throw damaged();
+  if (size.empty() || size != cv::Size(static_cast<int>(stored.header.width),
+                                       static_cast<int>(stored.header.height))) {
+    throw Damaged(path);
   }
-  const auto [codes, confidences] =
-      Unpack(rest.substr(0, header.packed_bytes), size.width, size.height);
-  if (codes.empty()) throw damaged();
+  const auto [codes, confidences] = Unpack(stored.packed(), size.width, size.height);
+  if (codes.empty()) throw Damaged(path);
   depth.range.create(codes.size(), CV_32FC1);
   const std::vector<float>& ranges = RangeOfCode();
   for (int row = 0; row < codes.rows; ++row) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include <orb360/slam/depth/dense_depth.h>
 
@@ -31,6 +32,11 @@ class DepthMapStore {
   /// size, and at least one pixel.
   void Put(int frame_index, const DenseDepth& depth) const;
 
+  /// Replaces the ranges and confidences of a stored depth map. Its colours stay as they are.
+  /// Throws UserError for a frame that is not stored or is damaged. Contract: both are CV_32FC1 and
+  /// as large as what is stored.
+  void PutRanges(int frame_index, const cv::Mat& range, const cv::Mat& confidence) const;
+
   bool Contains(int frame_index) const;
 
   /// Throws UserError for a frame that is not stored or is damaged.
@@ -38,6 +44,8 @@ class DepthMapStore {
 
  private:
   std::filesystem::path PathOf(int frame_index) const;
+  void Write(int frame_index, const cv::Mat& range, const cv::Mat& confidence,
+             std::string_view color) const;
 
   const std::filesystem::path folder_;
 };

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "slam/pipeline/stereo_depth.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
@@ -10,6 +11,7 @@ namespace orb360 {
 DenseMapper::DenseMapper(const std::filesystem::path& weights, const std::filesystem::path& folder,
                          const DepthOptions& options, int num_threads)
     : options_(options),
+      num_threads_(num_threads),
       depth_maps_(folder),
       completer_(weights, {.size = {2 * options.height, options.height}, .threads = num_threads}),
       completion_(
@@ -32,6 +34,15 @@ void DenseMapper::Start(const Keyframe& keyframe, const cv::Mat& color,
                         std::vector<SparsePoint> points, int num_frames) {
   if (completion_.Start(keyframe, color, std::move(points), num_frames)) {
     frames_.push_back(keyframe.frame_index);
+  }
+}
+
+void DenseMapper::MeasureDepth(std::span<const DenseView> views) {
+  if (failure_) return;
+  try {
+    orb360::MeasureDepth(views, {}, depth_maps_, &completer_, num_threads_);
+  } catch (const UserError&) {
+    failure_ = std::current_exception();
   }
 }
 

@@ -3,8 +3,10 @@
 #include <exception>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "slam/depth/dense_cloud.h"
 #include "slam/io/depth_map_store.h"
 #include "slam/optimization/local_bundle_adjustment.h"
 #include "slam/pipeline/keyframe_completion.h"
@@ -34,6 +36,9 @@ class DenseMapper {
   CompletedKeyframe Take(double unit_scale) { return completion_.Take(unit_scale); }
   /// Waits until all depth is on disk.
   void Flush() { completion_.Flush(); }
+  /// Measures the ranges of stored keyframes anew with their final poses (orb360::MeasureDepth).
+  /// Contract: Flush has been called.
+  void MeasureDepth(std::span<const DenseView> views);
 
   /// Adds a keyframe's measurement of the ground under the present map, in the map's world frame
   /// and its present unit of length.
@@ -55,6 +60,7 @@ class DenseMapper {
   void Store(int frame_index, const DenseDepth& depth);
 
   const DepthOptions options_;
+  const int num_threads_;
   std::vector<int> frames_;
   std::vector<DenseGround> grounds_;
   std::exception_ptr failure_;

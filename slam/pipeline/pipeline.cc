@@ -10,6 +10,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "slam/pipeline/dense_views.h"
 #include "slam/pipeline/make_reconstruction.h"
 #include "slam/pipeline/scale_state.h"
 #include <orb360/nn/base/check.h>
@@ -208,6 +209,7 @@ Reconstruction Pipeline::Finish(std::span<const PositionFix> positions) {
       const auto anchor = atlas_.anchors().find(frame);  // None where its map was lost.
       if (anchor != atlas_.anchors().end()) result.depth_scales[frame] = anchor->second.unit_scale;
     }
+    if (options_.depth.stereo) dense_->MeasureDepth(MakeDenseViews(result, Rigid3()));
   }
   const FrontEnd::Events& events = front_end_.events();
   result.initialized_at = events.initialized_at;

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "slam/stereo/inverse_ranges.h"
+
 namespace orb360 {
 
 /// Rotates the spheres of two cameras so that their baseline is the polar axis of both. A scene
@@ -17,8 +19,14 @@ Eigen::Matrix3d BaselineAxes(const Eigen::Vector3d& baseline);
 
 /// Samples an equirectangular image (CV_8U) at the pixels of a rectified one, bilinearly. `axes`:
 /// BaselineAxes in the camera's frame. The result has `width` columns and 2 `width` rows.
-cv::Mat RectifySphere(const cv::Mat& gray, const Eigen::Matrix3d& axes, int width,
-                      int num_threads = 1);
+cv::Mat RectifySphere(const cv::Mat& gray, const Eigen::Matrix3d& axes, int width);
+
+/// The opposite: samples ranges that are known by rectified pixel at the pixels of an
+/// equirectangular image of this size. An inverse range is interpolated where the four pixels
+/// around see one surface, because on a plane it is nearly linear between pixels. Otherwise the
+/// nearest pixel's is taken.
+InverseRanges UnrectifySphere(const InverseRanges& rectified, const Eigen::Matrix3d& axes,
+                              const cv::Size& size);
 
 /// The unit vector through a pixel (column, row; continuous, centres at .5) of a rectified image of
 /// this width, in the camera's frame.

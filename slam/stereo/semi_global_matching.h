@@ -2,15 +2,12 @@
 
 #include <opencv2/core.hpp>
 
+#include "slam/stereo/disparity_search.h"
+
 namespace orb360 {
 
 struct SemiGlobalMatchingOptions {
-  /// Number of levels, each of half the size of the one below.
-  int num_levels = 4;
-  /// Penalties for a disparity that leaves the surface of the level above by one pixel more or less
-  /// than its neighbour's, and for any larger step, in bits of the census transform.
-  int small_penalty = 6;
-  int large_penalty = 32;
+  DisparityPenalties penalties;
   /// Least ratio of the costs of the second-best disparity and of the best one.
   double min_uniqueness = 1.05;
   /// Largest difference of the disparities of both views, pixels.
@@ -22,21 +19,21 @@ struct SemiGlobalMatchingOptions {
   double min_gradient = 3.0;
 };
 
-/// Width of the coarsest level, pixels. It is searched for disparities up to half of it.
+/// Width of the coarsest level, pixels. It is searched for disparities up to half of it. Each level
+/// is half as large as the one below.
 inline constexpr int kCoarsestStereoWidth = 64;
 
 /// Disparities of two rectified spheres (RectifySphere; CV_8U of equal size): column in the second
 /// image less column in the first one, pixels, never negative. CV_32F; negative where unknown.
 ///
-/// Semi-global matching of census transforms (Hirschmueller, PAMI 2008) along four paths, coarse to
-/// fine: each level searches 16 disparities around what the level above has found (Rothermel et
-/// al., LC3D 2012). Neighbours are penalized for leaving that surface, not for unequal disparities
-/// (Scharstein, Taniai, Sinha, 3DV 2017), because on the ground below a camera the disparity
-/// changes by more than a pixel from pixel to pixel. The result does not depend on the number of
-/// threads.
+/// Semi-global matching of census transforms (Hirschmueller, PAMI 2008), coarse to fine (Rothermel
+/// et al., LC3D 2012). On each level the second image is warped by the surface that the level above
+/// has found, and disparities of -8 to 7 pixels from it are searched. Windows and penalties thereby
+/// follow the surface (Scharstein, Taniai, Sinha, 3DV 2017): on the ground below a camera the
+/// disparity changes by more than a pixel from pixel to pixel.
 ///
-/// Throws ContractError unless the width is kCoarsestStereoWidth times 2^(num_levels - 1).
+/// Throws ContractError unless the width is kCoarsestStereoWidth times a power of two.
 cv::Mat MatchSemiGlobally(const cv::Mat& first, const cv::Mat& second,
-                          const SemiGlobalMatchingOptions& options, int num_threads = 1);
+                          const SemiGlobalMatchingOptions& options);
 
 }  // namespace orb360

@@ -4,6 +4,8 @@
 
 #include <opencv2/core.hpp>
 
+#include "slam/stereo/disparity_refinement.h"
+#include "slam/stereo/inverse_ranges.h"
 #include "slam/stereo/semi_global_matching.h"
 #include <orb360/slam/geometry/rigid3.h>
 
@@ -17,35 +19,27 @@ struct StereoView {
 
 struct SphericalStereoOptions {
   SemiGlobalMatchingOptions matching;
+  DisparityRefinementOptions refinement;
   /// Least angle between a bearing and the baseline, rad: towards the epipoles there is no
   /// parallax.
   double min_epipolar_angle = 0.1;
-  /// Standard deviation of a disparity, pixels.
-  double disparity_sigma = 0.5;
-  /// Number of sources that must agree on a range, and the largest difference between two of them
-  /// in standard deviations.
-  int min_support = 2;
-  double max_sigmas = 3.0;
-  /// Largest standard deviation of ln(range). Farther points are unknown.
-  double max_sigma = 0.1;
+  /// Standard deviation of a disparity: this one, pixels, for what resampling does, and that of the
+  /// refinement times this factor, because neighbouring pixels of a window are not independent.
+  /// Both were measured with stereo_accuracy.
+  double min_disparity_sigma = 0.15;
+  double disparity_sigma_factor = 1.8;
+  InverseRangeFusionOptions fusion;
 };
 
-/// What is seen of the range in each pixel, CV_32F: its inverse, 1 / world units, and the standard
-/// deviation of that; 0 where unknown.
-struct InverseRanges {
-  cv::Mat value;
-  cv::Mat sigma;
-};
-
-/// Measures the inverse ranges of `reference` from another view. Throws ContractError unless both
-/// are as large, their width is
-/// 2^(num_levels + 6), and they were taken from different places.
+/// Measures the inverse ranges of `reference` from another view. Both are matched at the resolution
+/// that is nearest to theirs and that MatchSemiGlobally takes. Throws ContractError unless both are
+/// as large and were taken from different places.
 InverseRanges MatchSphere(const StereoView& reference, const StereoView& source,
-                          const SphericalStereoOptions& options, int num_threads = 1);
+                          const SphericalStereoOptions& options);
 
-/// Joins measurements of the same pixels from several sources: the largest set that agrees,
-/// weighted by variance. Where fewer than min_support agree the range is unknown.
-InverseRanges FuseInverseRanges(std::span<const InverseRanges> measured,
-                                const SphericalStereoOptions& options);
+/// Measures the inverse ranges of `reference` from several views and joins them
+/// (FuseInverseRanges). The result does not depend on the number of threads.
+InverseRanges MatchSpheres(const StereoView& reference, std::span<const StereoView> sources,
+                           const SphericalStereoOptions& options, int num_threads = 1);
 
 }  // namespace orb360

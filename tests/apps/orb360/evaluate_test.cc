@@ -209,7 +209,7 @@ TEST_F(EvaluateTest, TellsHowNearTheCloudIsToTheTrueSurface) {
   EXPECT_EQ(cloud["accuracy_10cm"], 1.0);
   EXPECT_NEAR(cloud["completeness_10cm"], 0.5, 0.05);
   EXPECT_THAT(RunOrb360({"evaluate", folder_.path(), folder_.path()}).out,
-              HasSubstr("accuracy: nearer than 10 cm"));
+              HasSubstr("accuracy, nearer than 10 cm"));
 }
 
 }  // namespace

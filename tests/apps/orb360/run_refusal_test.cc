@@ -18,6 +18,8 @@ using ::testing::HasSubstr;
 TEST_F(RunTest, DepthThatIsNotMadeCannotBeSaved) {
   WriteBlanks();
   EXPECT_THAT(Refusal({"--save-depth", "--weights", "none"}), HasSubstr("--save-depth"));
+  EXPECT_THAT(Refusal({"--cloud-quality", "draft", "--weights", "none"}),
+              HasSubstr("--cloud-quality"));
 }
 
 TEST_F(RunTest, AMapThatCannotBeWrittenIsRefusedBeforeAnyWork) {

@@ -53,16 +53,21 @@ TEST(TrueSurface, LeavesOutWhatIsExcluded) {
   for (const Surfel& surfel : surface.TakeSurfels()) EXPECT_LT(surfel.position.z(), 0.0f);
 }
 
+const std::vector<Eigen::Vector3f> kCenter = {Eigen::Vector3f::Zero()};
+
 TEST(CompareCloud, AccuracyIsTheDistanceFromTheSurfaceNotFromItsPixels) {
   const std::vector<Surfel> walls = Walls({});
-  const auto accuracy = [&](double inward) { return CompareCloud(OnTheWall(inward, 2.6), walls); };
-  EXPECT_EQ(accuracy(0.0).accuracy[0], 1.0);
-  EXPECT_LT(accuracy(0.0).median_distance, 1e-3);
-  EXPECT_EQ(accuracy(0.09).accuracy[0], 1.0);
-  EXPECT_NEAR(accuracy(0.09).median_distance, 0.09, 2e-3);
-  EXPECT_LT(accuracy(0.12).accuracy[0], 0.15);  // The edges of the room are near floor and ceiling.
-  EXPECT_EQ(accuracy(0.12).accuracy[1], 1.0);
-  EXPECT_LT(accuracy(0.30).accuracy[1], 0.3);
+  const auto errors = [&](double inward) {
+    return CompareCloud(OnTheWall(inward, 2.6), walls, kCenter);
+  };
+  EXPECT_EQ(errors(0.0).within[0].accuracy, 1.0);
+  EXPECT_LT(errors(0.0).median_distance, 1e-3);
+  EXPECT_EQ(errors(0.09).within[1].accuracy, 1.0);
+  EXPECT_LT(errors(0.09).within[0].accuracy, 0.15);  // The edges are near floor and ceiling.
+  EXPECT_NEAR(errors(0.09).median_distance, 0.09, 2e-3);
+  EXPECT_LT(errors(0.12).within[1].accuracy, 0.15);
+  EXPECT_EQ(errors(0.12).within[2].accuracy, 1.0);
+  EXPECT_LT(errors(0.30).within[2].accuracy, 0.3);
 }
 
 TEST(CompareCloud, CompletenessIsTheFractionOfTheSurface) {
@@ -71,13 +76,27 @@ TEST(CompareCloud, CompletenessIsTheFractionOfTheSurface) {
   for (const Surfel& surfel : Walls({})) {
     if (surfel.position.x() > 3.99f) wall.push_back(surfel);
   }
-  const CloudErrors half = CompareCloud(OnTheWall(0.0, 1.5), wall);
-  EXPECT_NEAR(half.completeness[0], 0.54, 0.06);
-  EXPECT_GT(half.completeness[1], half.completeness[0]);
+  const CloudErrors half = CompareCloud(OnTheWall(0.0, 1.5), wall, kCenter);
+  EXPECT_NEAR(half.within[1].completeness, 0.54, 0.06);
+  EXPECT_GT(half.within[2].completeness, half.within[1].completeness);
+  const double completeness = half.within[1].completeness;
+  EXPECT_NEAR(half.within[1].f_score, 2 * completeness / (1 + completeness), 1e-12);
   EXPECT_EQ(half.surfels, wall.size());
-  EXPECT_EQ(CompareCloud(OnTheWall(0.3, 2.6), wall).completeness[1], 0.0);
-  EXPECT_EQ(CompareCloud({}, wall).completeness[1], 0.0);
-  EXPECT_TRUE(std::isnan(CompareCloud({}, wall).accuracy[0]));
+  EXPECT_EQ(CompareCloud(OnTheWall(0.3, 2.6), wall, kCenter).within[2].completeness, 0.0);
+  EXPECT_EQ(CompareCloud({}, wall, kCenter).within[2].completeness, 0.0);
+  EXPECT_TRUE(std::isnan(CompareCloud({}, wall, kCenter).within[1].accuracy));
+}
+
+TEST(CompareCloud, ComparesPointsByTheirDistanceFromTheCameras) {
+  const std::vector<Surfel> walls = Walls({});
+  const std::vector<Eigen::Vector3f> cloud = OnTheWall(0.06, 2.6);
+  // From 24 m away 1 % of the range is four times the error, from 4 m less than it.
+  const std::vector<Eigen::Vector3f> far = {{-20, 0, 0}};
+  EXPECT_GT(CompareCloud(cloud, walls, far).within_relative.accuracy, 0.95);
+  EXPECT_TRUE(std::isnan(CompareCloud(cloud, walls, far).within[1].accuracy));
+  EXPECT_LT(CompareCloud(cloud, walls, kCenter).within_relative.accuracy, 0.2);
+  const std::vector<Eigen::Vector3f> farther = {{-30, 0, 0}};
+  EXPECT_EQ(CompareCloud(cloud, walls, farther).points, 0u);
 }
 
 TEST(AlignLocally, UndoesADriftThatGrowsAlongThePath) {

@@ -46,7 +46,8 @@ class KeyframeCompletionTest : public testing::Test {
   }
   cv::Mat Image() const { return {64, 128, CV_8UC3, cv::Scalar::all(90)}; }
   KeyframeCompletion Make() {
-    return {&completer_, [this](int frame, DenseDepth depth) { sunk_.emplace_back(frame, depth); },
+    return {&completer_,
+            [this](int frame, DenseDepth depth) { sunk_.emplace_back(frame, std::move(depth)); },
             options_};
   }
 

@@ -119,7 +119,8 @@ std::vector<std::string> RegisteredOptions() {
     } else {
       value = plain(*std::get<double*>(option.variable));
     }
-    result.push_back(option.key + " = " + value + " (" + range + ")");
+    result.push_back(option.key);
+    result.back().append(" = ").append(value).append(" (").append(range).append(")");
   }
   return result;
 }

@@ -21,7 +21,7 @@ inline std::filesystem::path WritePropagation(const TempFolder& folder) {
   net.Node("sure", "clamp", {"near"}, {{"minimum", 0.0}, {"maximum", 0.9}});
   net.Output("confidence", "sure");
   net.Output("scale", "points.2");
-  const std::filesystem::path path = folder / "propagation.h5";
+  std::filesystem::path path = folder / "propagation.h5";
   net.Write(path);
   return path;
 }

@@ -1,4 +1,6 @@
-#include <cstring>
+#include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <filesystem>
 #include <utility>
 #include <vector>
@@ -17,10 +19,16 @@
 namespace orb360 {
 namespace {
 
+// Not a == b: 0 and -0 differ.
+template <int kSize>
+bool SameBytes(const Eigen::Matrix<double, kSize, 1>& a, const Eigen::Matrix<double, kSize, 1>& b) {
+  return std::ranges::equal(a, b, {}, std::bit_cast<uint64_t, double>,
+                            std::bit_cast<uint64_t, double>);
+}
+
 bool SameBytes(const Rigid3& a, const Rigid3& b) {
-  return std::memcmp(a.rotation.coeffs().data(), b.rotation.coeffs().data(), 4 * sizeof(double)) ==
-             0 &&
-         std::memcmp(a.translation.data(), b.translation.data(), 3 * sizeof(double)) == 0;
+  return SameBytes(a.rotation.coeffs(), b.rotation.coeffs()) &&
+         SameBytes(a.translation, b.translation);
 }
 
 void ExpectSame(const Reconstruction& a, const Reconstruction& b) {
@@ -36,9 +44,7 @@ void ExpectSame(const Reconstruction& a, const Reconstruction& b) {
   }
   ASSERT_EQ(a.landmarks.size(), b.landmarks.size());
   for (size_t i = 0; i < a.landmarks.size(); ++i) {
-    ASSERT_EQ(std::memcmp(a.landmarks[i].position.data(), b.landmarks[i].position.data(),
-                          3 * sizeof(double)),
-              0);
+    ASSERT_TRUE(SameBytes(a.landmarks[i].position, b.landmarks[i].position));
     ASSERT_EQ(a.landmarks[i].color, b.landmarks[i].color);
   }
 }

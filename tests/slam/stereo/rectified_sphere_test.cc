@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "slam/geometry/bearing.h"
+#include "tests/dispatch_targets.h"
 #include <orb360/slam/geometry/camera.h>
 
 namespace orb360 {
@@ -62,13 +63,62 @@ TEST(RectifySphere, ShowsEachDirectionWhereItsPixelIs) {
   }
   for (const Eigen::Vector3d& baseline : kDirections) {
     const Eigen::Matrix3d axes = BaselineAxes(baseline);
-    const cv::Mat rectified = RectifySphere(gray, axes, kWidth, 2);
+    const cv::Mat rectified = RectifySphere(gray, axes, kWidth);
     ASSERT_EQ(rectified.size(), cv::Size(kWidth, 2 * kWidth));
     for (int y = 0; y < rectified.rows; ++y) {
       for (int x = 0; x < rectified.cols; ++x) {
         const double expected = 128 + light.dot(RectifiedBearing({x + 0.5, y + 0.5}, axes, kWidth));
         ASSERT_NEAR(rectified.at<uint8_t>(y, x), expected, 1.1) << x << ", " << y;
       }
+    }
+  }
+}
+
+TEST(UnrectifySphere, GivesBackWhatIsKnownByDirectionOnEveryInstructionSet) {
+  // 1 / range of a plane is linear in the direction.
+  const Eigen::Vector3d plane(0.3, -0.2, 0.5);
+  const EquirectangularCamera camera(256, 128);
+  ForEachDispatchTarget([&] {
+    for (const Eigen::Vector3d& baseline : kDirections) {
+      const Eigen::Matrix3d axes = BaselineAxes(baseline);
+      InverseRanges rectified{cv::Mat::zeros(2 * kWidth, kWidth, CV_32F),
+                              cv::Mat::zeros(2 * kWidth, kWidth, CV_32F)};
+      for (int y = 0; y < 2 * kWidth; ++y) {
+        for (int x = 0; x < kWidth; ++x) {
+          const double value = plane.dot(RectifiedBearing({x + 0.5, y + 0.5}, axes, kWidth));
+          if (value < 0.02) continue;
+          rectified.value.at<float>(y, x) = static_cast<float>(value);
+          rectified.sigma.at<float>(y, x) = 0.01f;
+        }
+      }
+      const InverseRanges ranges = UnrectifySphere(rectified, axes, {256, 128});
+      for (int v = 0; v < 128; ++v) {
+        for (int u = 0; u < 256; ++u) {
+          const Eigen::Vector3d bearing = camera.Bearing({u + 0.5, v + 0.5});
+          const double value = plane.dot(bearing);
+          const double from_pole = axes.col(0).cross(bearing).norm();
+          if (value < -0.02) {
+            ASSERT_EQ(ranges.sigma.at<float>(v, u), 0) << u << ", " << v;
+          } else if (value > 0.3 && from_pole > 0.03) {
+            ASSERT_NEAR(ranges.value.at<float>(v, u), value, 0.002) << u << ", " << v;
+            ASSERT_EQ(ranges.sigma.at<float>(v, u), 0.01f);
+          }
+        }
+      }
+    }
+  });
+}
+
+TEST(UnrectifySphere, DoesNotMixTwoSurfaces) {
+  const Eigen::Matrix3d axes = BaselineAxes({1, 0, 0});
+  InverseRanges rectified{cv::Mat(2 * kWidth, kWidth, CV_32F, 0.1),
+                          cv::Mat(2 * kWidth, kWidth, CV_32F, 0.01)};
+  rectified.value.colRange(0, kWidth / 2) = 0.5;
+  const InverseRanges ranges = UnrectifySphere(rectified, axes, {256, 128});
+  for (int v = 0; v < 128; ++v) {
+    for (int u = 0; u < 256; ++u) {
+      const float value = ranges.value.at<float>(v, u);
+      EXPECT_TRUE(std::abs(value - 0.1f) < 1e-5 || std::abs(value - 0.5f) < 1e-5) << value;
     }
   }
 }

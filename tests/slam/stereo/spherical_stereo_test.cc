@@ -8,18 +8,13 @@
 
 #include "nn/base/statistics.h"
 #include "tests/slam/geometry/box_room.h"
+#include <orb360/nn/base/check.h>
 #include <orb360/slam/geometry/so3.h>
 
 namespace orb360 {
 namespace {
 
 const EquirectangularCamera kCamera(512, 256);
-
-SphericalStereoOptions SmallOptions() {
-  SphericalStereoOptions options;
-  options.matching.num_levels = 3;
-  return options;
-}
 
 StereoView ViewFrom(const BoxRoom& room, const Rigid3& pose) {
   cv::Mat gray;
@@ -65,7 +60,7 @@ Comparison CompareWithTruth(const InverseRanges& measured) {
 
 TEST(MatchSphere, MeasuresTheRangeOfWallsAllAround) {
   const InverseRanges measured =
-      MatchSphere(ViewFrom(kRoom, kReference), SourceAt({0.15, 0.2, 0.02}), SmallOptions(), 2);
+      MatchSphere(ViewFrom(kRoom, kReference), SourceAt({0.15, 0.2, 0.02}), {});
   Comparison comparison = CompareWithTruth(measured);
   EXPECT_GT(comparison.known, 0.6);
   EXPECT_LT(Median(comparison.errors), 0.03);
@@ -74,8 +69,7 @@ TEST(MatchSphere, MeasuresTheRangeOfWallsAllAround) {
 
 TEST(MatchSphere, KnowsNothingAlongTheBaseline) {
   const Eigen::Vector3d offset(0.0, 0.25, 0.0);
-  const InverseRanges measured =
-      MatchSphere(ViewFrom(kRoom, kReference), SourceAt(offset), SmallOptions(), 2);
+  const InverseRanges measured = MatchSphere(ViewFrom(kRoom, kReference), SourceAt(offset), {});
   const Eigen::Vector3d axis = kReference.rotation.conjugate() * offset.normalized();
   int num_near = 0;
   for (int row = 0; row < kCamera.height(); ++row) {
@@ -89,38 +83,30 @@ TEST(MatchSphere, KnowsNothingAlongTheBaseline) {
   EXPECT_GT(num_near, 50);
 }
 
-TEST(FuseInverseRanges, TwoSourcesThatAgreeAreMoreExactThanOne) {
+const std::vector<Eigen::Vector3d> kOffsets = {{0.15, 0.2, 0.02}, {-0.2, 0.15, 0}, {0, 0, 0.25}};
+
+TEST(MatchSpheres, SourcesThatAgreeAreMoreExactThanOneForAnyNumberOfThreads) {
   const StereoView reference = ViewFrom(kRoom, kReference);
-  std::vector<InverseRanges> measured;
-  for (const Eigen::Vector3d& offset :
-       {Eigen::Vector3d(0.15, 0.2, 0.02), Eigen::Vector3d(-0.2, 0.15, 0),
-        Eigen::Vector3d(0, 0, 0.25)}) {
-    measured.push_back(MatchSphere(reference, SourceAt(offset), SmallOptions(), 2));
-  }
-  Comparison one = CompareWithTruth(measured.front());
-  Comparison fused = CompareWithTruth(FuseInverseRanges(measured, SmallOptions()));
+  std::vector<StereoView> sources;
+  for (const Eigen::Vector3d& offset : kOffsets) sources.push_back(SourceAt(offset));
+  const InverseRanges measured = MatchSpheres(reference, sources, {}, 2);
+  Comparison one = CompareWithTruth(MatchSphere(reference, sources.front(), {}));
+  Comparison fused = CompareWithTruth(measured);
   EXPECT_GT(fused.known, 0.6);
   EXPECT_LT(Median(fused.errors), 0.8 * Median(one.errors));
   EXPECT_LT(NearestRankQuantile(fused.errors, 0.95), 0.5 * NearestRankQuantile(one.errors, 0.95));
+  const InverseRanges again = MatchSpheres(reference, sources, {}, 3);
+  EXPECT_EQ(cv::norm(measured.value, again.value, cv::NORM_INF), 0);
+  EXPECT_EQ(cv::norm(measured.sigma, again.sigma, cv::NORM_INF), 0);
 }
 
-InverseRanges Single(float value, float sigma) {
-  return {cv::Mat(1, 1, CV_32F, cv::Scalar(value)), cv::Mat(1, 1, CV_32F, cv::Scalar(sigma))};
-}
-
-TEST(FuseInverseRanges, TakesTheMeanOfTheLargestSetThatAgreesByVariance) {
-  const std::vector<InverseRanges> measured = {Single(0.5f, 0.01f), Single(0.9f, 0.001f),
-                                               Single(0.52f, 0.02f), Single(0.0f, 0.0f)};
-  const InverseRanges fused = FuseInverseRanges(measured, {});
-  EXPECT_NEAR(fused.value.at<float>(0), (0.5 * 4 + 0.52) / 5, 1e-6);
-  EXPECT_NEAR(fused.sigma.at<float>(0), 0.01 / std::sqrt(1.25), 1e-6);
-}
-
-TEST(FuseInverseRanges, KnowsNothingWhereSourcesContradictEachOtherOrAllAreUncertain) {
-  const std::vector<InverseRanges> contradicting = {Single(0.5f, 0.01f), Single(0.9f, 0.01f)};
-  EXPECT_EQ(FuseInverseRanges(contradicting, {}).sigma.at<float>(0), 0);
-  const std::vector<InverseRanges> far = {Single(0.01f, 0.01f), Single(0.011f, 0.01f)};
-  EXPECT_EQ(FuseInverseRanges(far, {}).sigma.at<float>(0), 0);
+TEST(MatchSpheres, ChecksTheViews) {
+  const StereoView reference = ViewFrom(kRoom, kReference);
+  const std::vector<StereoView> same_place = {reference};
+  EXPECT_THROW(MatchSpheres(reference, same_place, {}, 2), ContractError);
+  StereoView small = SourceAt({0.1, 0, 0});
+  small.gray = small.gray.rowRange(0, 100);
+  EXPECT_THROW(MatchSpheres(reference, {&small, 1}, {}, 2), ContractError);
 }
 
 }  // namespace

@@ -22,6 +22,9 @@ struct DepthOptions {
   /// Number of frames after which the depth of a keyframe is used in mapping. It is completed
   /// meanwhile.
   int adoption_frames = 4;
+  /// Whether ranges are measured by multi-view stereo with the final poses at the end of a run.
+  /// Otherwise the dense cloud is made of what the network completes from landmarks.
+  bool stereo = true;
 };
 
 /// Registers the keys of the section `depth`.

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "slam/depth/dense_cloud.h"
+#include "slam/io/depth_map_store.h"
+#include "slam/stereo/spherical_stereo.h"
+#include <orb360/slam/depth/depth_completer.h>
+
+namespace orb360 {
+
+struct StereoDepthOptions {
+  /// Distances of the source views from the reference view, as multiples of its median range. On
+  /// each side of the path the view is taken whose distance is nearest to each of these by ratio.
+  std::vector<double> baselines = {0.12, 0.4};
+  /// Largest ratio between that distance and the one wanted.
+  double max_baseline_ratio = 2.7;
+  /// Side of the squares of pixels of which one with a range by stereo, if there is one, is given
+  /// to the network.
+  int sparse_spacing = 6;
+  /// Least number of pixels that are given; a keyframe with fewer stays as it was completed.
+  int min_points = 500;
+  /// Standard deviation of ln(range) at which the confidence of such a pixel is 1/2.
+  double half_confidence_error = 0.1;
+  /// Number by which the errors that the network expects are multiplied: where it has not been
+  /// trained, they are larger than it says (docs/results/stereo.md).
+  double completion_error_factor = 3.0;
+  SphericalStereoOptions stereo = {};
+};
+
+/// Returns the neighbours of a view from which its ranges are measured (StereoDepthOptions), in the
+/// order of preference.
+std::vector<size_t> ChooseStereoSources(std::span<const DenseView> views, size_t reference,
+                                        double median_range, const StereoDepthOptions& options);
+
+/// Measures the ranges of stored keyframes by multi-view stereo with their final poses, and
+/// completes them from these. What is seen is kept; the network fills the rest. A keyframe without
+/// source views or of which little is seen stays as it is. The result does not depend on the number
+/// of threads. Throws UserError where the disk fails.
+void MeasureDepth(std::span<const DenseView> views, const StereoDepthOptions& options,
+                  const DepthMapStore& store, DepthCompleter* completer, int num_threads);
+
+}  // namespace orb360

@@ -1,0 +1,99 @@
+#include "slam/pipeline/stereo_depth.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "nn/base/statistics.h"
+#include "tests/slam/geometry/box_room.h"
+#include "tests/slam/pipeline/propagation_network.h"
+#include <orb360/slam/geometry/so3.h>
+
+namespace orb360 {
+namespace {
+
+// Views along the x axis at these places, in the order of the path; all are neighbours.
+std::vector<DenseView> ViewsAt(const std::vector<double>& places) {
+  std::vector<DenseView> views;
+  for (size_t i = 0; i < places.size(); ++i) {
+    const auto angle = static_cast<double>(i);
+    views.push_back({.frame_index = static_cast<int>(10 * i),
+                     .world_from_camera = {ExpSo3({0.1, 0.2, 0.3 * angle}), {places[i], 0, 0}},
+                     .scale = 2.0,
+                     .neighbours = {}});
+    for (size_t j = 0; j < places.size(); ++j) {
+      if (j != i) views.back().neighbours.push_back(j);
+    }
+  }
+  return views;
+}
+
+TEST(ChooseStereoSources, TakesTheNearestToEachBaselineOnBothSides) {
+  const std::vector<DenseView> views = ViewsAt({-5, -1.4, -0.5, -0.02, 0, 0.02, 0.5, 1.4, 5});
+  const StereoDepthOptions options{.baselines = {0.1, 0.3}, .max_baseline_ratio = 2.0};
+  EXPECT_EQ(ChooseStereoSources(views, 4, 5.0, options), (std::vector<size_t>{2, 6, 1, 7}));
+  EXPECT_EQ(ChooseStereoSources(views, 0, 5.0, options), std::vector<size_t>{});
+}
+
+TEST(ChooseStereoSources, TakesNoViewFromTheSamePlaceNorOneThatSeesNothingOfIt) {
+  std::vector<DenseView> views = ViewsAt({0, 0, 0.5, 0.6});
+  views[0].neighbours = {1, 3};
+  EXPECT_EQ(ChooseStereoSources(views, 0, 5.0, {.baselines = {0.1, 0.12}}), std::vector<size_t>{3});
+}
+
+class MeasureDepthTest : public testing::Test {
+ protected:
+  MeasureDepthTest()
+      : store_(folder_ / "depth"),
+        completer_(WritePropagation(folder_),
+                   {.size = {kCamera.width(), kCamera.height()}, .threads = 1}) {}
+
+  // Stores images of the room, each with the same wrong range everywhere.
+  void Store(const std::vector<DenseView>& views) {
+    for (const DenseView& view : views) {
+      const cv::Size size(kCamera.width(), kCamera.height());
+      store_.Put(view.frame_index, {cv::Mat(size, CV_32F, 1.2), cv::Mat(size, CV_32F, 0.5),
+                                    kRoom.Render(kCamera, view.world_from_camera)});
+    }
+  }
+
+  // Median of |ln| of the ratio of a view's ranges to the truth.
+  double MedianError(const DenseView& view) {
+    const cv::Mat range = store_.Get(view.frame_index).range;
+    std::vector<double> errors;
+    for (int row = 30; row < range.rows - 30; row += 3) {
+      for (int column = 0; column < range.cols; column += 3) {
+        const Eigen::Vector3d ray =
+            view.world_from_camera.rotation * kCamera.Bearing({column + 0.5, row + 0.5});
+        const double truth = kRoom.Range(view.world_from_camera.translation, ray);
+        errors.push_back(std::abs(std::log(view.scale * range.at<float>(row, column) / truth)));
+      }
+    }
+    return Median(errors);
+  }
+
+  static inline const EquirectangularCamera kCamera{256, 128};
+  static inline const BoxRoom kRoom{{4.0, 3.0, 2.0}, 3};
+  TempFolder folder_;
+  DepthMapStore store_;
+  DepthCompleter completer_;
+};
+
+TEST_F(MeasureDepthTest, RangesAreMeasuredInTheUnitOfEachKeyframe) {
+  const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
+  Store(views);
+  EXPECT_GT(MedianError(views[1]), 0.2);
+  MeasureDepth(views, {}, store_, &completer_, 2);
+  for (const DenseView& view : views) EXPECT_LT(MedianError(view), 0.05) << view.frame_index;
+}
+
+TEST_F(MeasureDepthTest, AKeyframeWithoutTwoSourcesStaysAsItWasCompleted) {
+  const std::vector<DenseView> views = ViewsAt({0, 0.3});
+  Store(views);
+  MeasureDepth(views, {}, store_, &completer_, 2);
+  EXPECT_NEAR(store_.Get(0).range.at<float>(60, 100), 1.2, 0.001);
+}
+
+}  // namespace
+}  // namespace orb360
