@@ -25,6 +25,7 @@ int main(int argc, char** argv) try {
   while (const std::optional<orb360::Frame> frame = sequence->Next()) system.Process(*frame);
   const orb360::Reconstruction result = system.Finish();
   if (result.depth_scales.empty()) throw orb360::UserError("no keyframe got dense depth");
+  system.MeasureDepth(result);
   const orb360::Rigid3 file_world_from_map =
       orb360::FileWorldFromMap(result.frames.front().world_from_camera, result.up);
   const orb360::DenseCloudSummary cloud = orb360::WriteDenseCloud(

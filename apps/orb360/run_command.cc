@@ -111,11 +111,11 @@ RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, b
   return record;
 }
 
-/// Fuses the depth of the keyframes. A failure of the disk is recorded and not thrown, so that the
-/// trajectory is written.
-std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction, const System& system,
+/// Measures and fuses the depth of the keyframes. A failure of the disk is recorded and not thrown,
+/// so that the trajectory is written.
+std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
                                      const RunOptions& options, int num_threads,
-                                     const RunOutput& output, RunRecord* record) {
+                                     const RunOutput& output, System* system, RunRecord* record) {
   const auto start = Clock::now();
   std::optional<DenseOutput> dense;
   if (reconstruction.depth_scales.empty()) return dense;  // No keyframe has dense depth.
@@ -125,8 +125,9 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction, const
   malloc_trim(0);
 #endif
   try {
+    system->MeasureDepth(reconstruction);
     dense =
-        output.WriteDense(reconstruction, *system.depth_maps(), options.saves_depth, num_threads);
+        output.WriteDense(reconstruction, *system->depth_maps(), options.saves_depth, num_threads);
   } catch (const std::exception&) {  // The trajectory is written nevertheless.
     if (!record->failure) record->failure = std::current_exception();
   }
@@ -226,7 +227,7 @@ int Run(const RunOptions& options) {
   record.finishing_seconds = SecondsSince(last_frame);
   record.seconds = SecondsSince(start);
   const std::optional<DenseOutput> dense =
-      FuseDepth(reconstruction, system, options, threads, output, &record);
+      FuseDepth(reconstruction, options, threads, output, &system, &record);
   const nlohmann::json summary =
       Summarize(reconstruction, record, dense,
                 {options.input, options.mask, masked_fraction, options.weights, threads});

@@ -38,12 +38,7 @@ void DenseMapper::Start(const Keyframe& keyframe, const cv::Mat& color,
 }
 
 void DenseMapper::MeasureDepth(std::span<const DenseView> views) {
-  if (failure_) return;
-  try {
-    orb360::MeasureDepth(views, {}, depth_maps_, &completer_, num_threads_);
-  } catch (const UserError&) {
-    failure_ = std::current_exception();
-  }
+  if (!failure_) orb360::MeasureDepth(views, {}, depth_maps_, &completer_, num_threads_);
 }
 
 std::optional<KnownGround> DenseMapper::Ground() const {

@@ -37,7 +37,8 @@ class DenseMapper {
   /// Waits until all depth is on disk.
   void Flush() { completion_.Flush(); }
   /// Measures the ranges of stored keyframes anew with their final poses (orb360::MeasureDepth).
-  /// Contract: Flush has been called.
+  /// Nothing happens after a failure. Throws UserError where the disk fails. Contract: Flush has
+  /// been called.
   void MeasureDepth(std::span<const DenseView> views);
 
   /// Adds a keyframe's measurement of the ground under the present map, in the map's world frame

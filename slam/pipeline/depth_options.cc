@@ -13,6 +13,8 @@ void RegisterOptions(OptionSchema* schema, DepthOptions* options) {
               "landmarks that a keyframe must show to be completed", 1, 100000);
   schema->Add("depth.adoption_frames", &options->adoption_frames,
               "frames after which the depth of a keyframe is used in mapping", 1, 1000);
+  schema->Add("depth.guides_mapping", &options->guides_mapping,
+              "use completed ranges in mapping and tracking");
   schema->Add("depth.stereo", &options->stereo,
               "measure ranges by multi-view stereo at the end of a run");
 }

@@ -186,6 +186,10 @@ void Pipeline::CorrectScale(std::span<const PositionFix> positions) {
   }
 }
 
+void Pipeline::MeasureDepth(const Reconstruction& finished) {
+  if (dense_ && options_.depth.stereo) dense_->MeasureDepth(MakeDenseViews(finished, Rigid3()));
+}
+
 Reconstruction Pipeline::Finish(std::span<const PositionFix> positions) {
   for (const PositionFix& fix : positions) ORB360_CHECK(fix.IsValid(), fix.timestamp, fix.sigma);
   if (back_end_.has_map()) AdoptMap();
@@ -209,7 +213,6 @@ Reconstruction Pipeline::Finish(std::span<const PositionFix> positions) {
       const auto anchor = atlas_.anchors().find(frame);  // None where its map was lost.
       if (anchor != atlas_.anchors().end()) result.depth_scales[frame] = anchor->second.unit_scale;
     }
-    if (options_.depth.stereo) dense_->MeasureDepth(MakeDenseViews(result, Rigid3()));
   }
   const FrontEnd::Events& events = front_end_.events();
   result.initialized_at = events.initialized_at;

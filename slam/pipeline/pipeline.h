@@ -29,6 +29,7 @@ class Pipeline {
   void CompleteDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
   FrameReport Process(const Frame& frame);
   Reconstruction Finish(std::span<const PositionFix> positions);
+  void MeasureDepth(const Reconstruction& finished);
 
   const Atlas& atlas() const { return atlas_; }
   const std::optional<DenseMapper>& dense() const { return dense_; }

@@ -97,8 +97,10 @@ void Pipeline::AdoptDepth() {
   for (KeyframeId id = map.keyframe_end() - 1; id >= 0; --id) {
     if (!map.HasKeyframe(id) || map.keyframe(id).frame_index != frame_index) continue;
     Keyframe& keyframe = map.keyframe(id);
-    keyframe.range_priors = std::move(completed.priors);
-    front_end_.UseDepth(keyframe);
+    if (options_.depth.guides_mapping) {
+      keyframe.range_priors = std::move(completed.priors);
+      front_end_.UseDepth(keyframe);
+    }
     if (!atlas_.ground() && completed.ground) {
       completed.ground->up = keyframe.world_from_camera.rotation * completed.ground->up;
       dense_->AddGround(*completed.ground);

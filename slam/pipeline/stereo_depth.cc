@@ -121,7 +121,10 @@ void MeasureDepth(std::span<const DenseView> views, const StereoDepthOptions& op
   for (size_t i = 0; i < views.size(); ++i) {
     const DenseDepth stored = store.Get(views[i].frame_index);
     const double scale = views[i].scale;
-    const double median_range = scale * MedianRange(stored.range);
+    // The network gives the sky ranges too, with little confidence.
+    cv::Mat trusted = stored.range.clone();
+    trusted.setTo(0, ~(stored.confidence >= options.min_trusted_confidence));
+    const double median_range = scale * MedianRange(trusted);
     if (!(median_range > 0)) continue;
     std::vector<StereoView> sources;
     for (const size_t index : ChooseStereoSources(views, i, median_range, options)) {

@@ -11,8 +11,10 @@
 namespace orb360 {
 
 struct StereoDepthOptions {
-  /// Distances of the source views from the reference view, as multiples of its median range. On
-  /// each side of the path the view is taken whose distance is nearest to each of these by ratio.
+  /// Least confidence of the completed pixels whose ranges have the median.
+  double min_trusted_confidence = 0.8;
+  /// Distances of the source views from the reference view, as multiples of that median. On each
+  /// side of the path the view is taken whose distance is nearest to each of these by ratio.
   std::vector<double> baselines = {0.12, 0.4};
   /// Largest ratio between that distance and the one wanted.
   double max_baseline_ratio = 2.7;

@@ -34,6 +34,8 @@ std::span<const std::optional<KnownGround>> System::grounds() const {
   return pipeline_->atlas().grounds();
 }
 
+void System::MeasureDepth(const Reconstruction& finished) { pipeline_->MeasureDepth(finished); }
+
 const DepthMapStore* System::depth_maps() const {
   const std::optional<DenseMapper>& dense = pipeline_->dense();
   if (!dense) return nullptr;

@@ -53,7 +53,7 @@ class MeasureDepthTest : public testing::Test {
   void Store(const std::vector<DenseView>& views) {
     for (const DenseView& view : views) {
       const cv::Size size(kCamera.width(), kCamera.height());
-      store_.Put(view.frame_index, {cv::Mat(size, CV_32F, 1.2), cv::Mat(size, CV_32F, 0.5),
+      store_.Put(view.frame_index, {cv::Mat(size, CV_32F, 1.2), cv::Mat(size, CV_32F, 0.9),
                                     kRoom.Render(kCamera, view.world_from_camera)});
     }
   }

@@ -22,6 +22,9 @@ struct DepthOptions {
   /// Number of frames after which the depth of a keyframe is used in mapping. It is completed
   /// meanwhile.
   int adoption_frames = 4;
+  /// Whether completed ranges guide mapping and tracking. They helped in rendered towns and harmed
+  /// elsewhere (docs/concepts/depth_completion.md), so that by default they do not.
+  bool guides_mapping = false;
   /// Whether ranges are measured by multi-view stereo with the final poses at the end of a run.
   /// Otherwise the dense cloud is made of what the network completes from landmarks.
   bool stereo = true;

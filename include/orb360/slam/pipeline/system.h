@@ -29,14 +29,12 @@ class System {
   /// `mask` is CV_8U of the frames' size, 0 where features are left out, or empty.
   System(const EquirectangularCamera& camera, const Options& options, const cv::Mat& mask);
   ~System();
-
   /// Before the first frame: continues a stored map, in which the camera has to be relocalized.
   void LoadMap(const StoredMap& stored);
   /// The same, but frames are only localized in the map, which does not change.
   void Localize(const StoredMap& stored);
-  /// Before the first frame: keyframes get dense depth beside tracking, by the network in
-  /// `weights`, kept in `folder` while the system lives. Throws UserError where one of them cannot
-  /// be used.
+  /// Before the first frame: keyframes get dense depth by the network in `weights`, kept in
+  /// `folder` while the system lives. Throws UserError where one of them cannot be used.
   void CompleteDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
 
   /// Processes the next frame; timestamps must grow. Throws ContractError for an image of another
@@ -49,6 +47,8 @@ class System {
   std::span<const Map> maps() const;
   /// Returns the ground under each map, after Finish. A map with ground is metric.
   std::span<const std::optional<KnownGround>> grounds() const;
+  /// Measures depth anew by stereo with final poses. Throws UserError where the disk fails.
+  void MeasureDepth(const Reconstruction& finished);
   /// Returns the depth of the keyframes in Reconstruction::depth_scales, after Finish, or null
   /// without CompleteDepth. Throws UserError where the depth could not be stored.
   const DepthMapStore* depth_maps() const;
