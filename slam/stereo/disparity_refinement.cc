@@ -17,7 +17,7 @@
 namespace orb360 {
 
 // Columns before and after those of a row, so that windows and vectors may reach beyond them.
-constexpr int kMargin = 16;
+constexpr int kMargin = 32;
 constexpr int kRadius = 2;
 constexpr int kSide = 2 * kRadius + 1;
 
