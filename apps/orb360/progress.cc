@@ -36,6 +36,15 @@ size_t TerminalWidth() {
   return is_known ? size.ws_col : kUsualWidth;
 }
 
+std::string Bar(int done, std::optional<int> count) {
+  if (count.value_or(0) == 0) return {};
+  const size_t length =
+      std::min(kBarWidth, kBarWidth * static_cast<size_t>(done) / static_cast<size_t>(*count));
+  std::string bar = "[";
+  bar.append(length, '=').append(kBarWidth - length, ' ');
+  return bar + "] ";
+}
+
 }  // namespace
 
 Progress::Progress(std::optional<int> frame_count, bool is_quiet)
@@ -53,16 +62,26 @@ void Progress::Update(int index, const FrameReport& report) {
   ++num_frames_;
   if (is_quiet_) return;
   if (report.state != state_ || report.map != map_) ReportEvent(index, report);
+  Show(num_frames_, frame_count_, num_frames_ == frame_count_, Status(report));
+}
+
+void Progress::Update(const std::string& step, int done, int count) {
+  if (is_quiet_) return;
+  Show(done, count, done == count,
+       step + ": " + std::to_string(done) + '/' + std::to_string(count) + " keyframes");
+}
+
+void Progress::Show(int done, std::optional<int> count, bool must, const std::string& status) {
   const Clock::time_point now = Clock::now();
   if (is_terminal_) {
-    if (now - last_shown_ < kBarInterval && num_frames_ != frame_count_) return;
-    std::string line = Bar() + Status(report);
+    if (now - last_shown_ < kBarInterval && !must) return;
+    std::string line = Bar(done, count) + status;
     line.resize(TerminalWidth() - 1, ' ');
     std::cout << '\r' << line << std::flush;
     bar_is_shown_ = true;
   } else {
     if (now - last_shown_ < kLineInterval) return;
-    std::cout << Status(report) << std::endl;
+    std::cout << status << std::endl;
   }
   last_shown_ = now;
 }
@@ -101,15 +120,6 @@ std::string Progress::Status(const FrameReport& report) const {
          << report.num_keyframes << " keyframes, " << report.num_landmarks << " landmarks, "
          << ToString(report.state);
   return status.str();
-}
-
-std::string Progress::Bar() const {
-  if (!frame_count_ || *frame_count_ == 0) return {};
-  const size_t done = std::min(
-      kBarWidth, kBarWidth * static_cast<size_t>(num_frames_) / static_cast<size_t>(*frame_count_));
-  std::string bar = "[";
-  bar.append(done, '=').append(kBarWidth - done, ' ');
-  return bar + "] ";
 }
 
 }  // namespace orb360

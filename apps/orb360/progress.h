@@ -23,6 +23,9 @@ class Progress {
   /// Shows the state after a frame; `index` is its Frame::index.
   void Update(int index, const FrameReport& report);
 
+  /// Shows how many keyframes a step after the last frame has done.
+  void Update(const std::string& step, int done, int count);
+
   /// Prints a line on standard error and keeps it apart from the bar.
   void Warn(const std::string& line);
 
@@ -32,7 +35,8 @@ class Progress {
   void ReportEvent(int index, const FrameReport& report);
   void ClearBar();
   std::string Status(const FrameReport& report) const;
-  std::string Bar() const;
+  /// Shows a line of status if the last one is long enough ago, or if it `must` be shown.
+  void Show(int done, std::optional<int> count, bool must, const std::string& status);
 
   const std::optional<int> frame_count_;
   const bool is_quiet_;

@@ -125,7 +125,12 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
   malloc_trim(0);
 #endif
   try {
-    system->MeasureDepth(reconstruction);
+    // An interrupt leaves the rest of the keyframes as they are.
+    Progress progress(std::nullopt, options.is_quiet);
+    record->measured_keyframes = system->MeasureDepth(reconstruction, [&](int done, int count) {
+      progress.Update("measuring depth", done, count);
+      return CaughtInterrupt() == 0;
+    });
     dense =
         output.WriteDense(reconstruction, *system->depth_maps(), options.saves_depth, num_threads);
   } catch (const std::exception&) {  // The trajectory is written nevertheless.

@@ -115,6 +115,7 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
   if (dense) {
     summary["cloud"] = {{"points", dense->cloud.points},
                         {"keyframes", dense->cloud.fusion.views},
+                        {"measured_keyframes", record.measured_keyframes},
                         {"voxel_size", dense->cloud.fusion.voxel_size},
                         {"seconds", record.fusion_seconds}};
   }
@@ -145,12 +146,23 @@ std::string StateScale(const nlohmann::json& scale) {
   return text.str();
 }
 
+/// Says where the ranges of the cloud come from, if that is not mostly from the images.
+std::string StateCloud(const nlohmann::json& summary) {
+  if (!summary.contains("cloud")) return {};
+  const nlohmann::json& cloud = summary["cloud"];
+  const int measured = cloud["measured_keyframes"];
+  if (2 * measured > cloud["keyframes"]) return {};
+  return "\ncloud: stereo has measured " + std::to_string(measured) + " of " +
+         std::to_string(cloud["keyframes"].get<int>()) +
+         " keyframes; the others are the network's estimate";
+}
+
 void PrintResult(const nlohmann::json& summary, const std::filesystem::path& folder) {
   std::cout << summary["tracked"] << " of " << summary["frames"] << " frames tracked in "
             << summary["maps"] << (summary["maps"] == 1 ? " map, " : " maps, ")
             << summary["keyframes"] << " keyframes, " << summary["landmarks"] << " landmarks, "
             << std::lround(summary["frames_per_second"].get<double>()) << " frames a second\n"
-            << StateScale(summary["scale"])
+            << StateScale(summary["scale"]) << StateCloud(summary)
             << "\nwrote trajectory.txt, keyframes.txt, scale.txt, cloud.ply, map.svg, summary.json "
                "and report/report.html to "
             << folder.string() << std::endl;

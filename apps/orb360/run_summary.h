@@ -22,7 +22,9 @@ struct RunRecord {
   double seconds = 0.0;
   /// The part of it after the last frame, s.
   double finishing_seconds = 0.0;
-  /// Wall time of fusing the dense cloud, s.
+  /// Number of keyframes whose depth stereo has measured.
+  int measured_keyframes = 0;
+  /// Wall time of measuring the depth and of fusing the dense cloud, s.
   double fusion_seconds = 0.0;
   StageTimes times;
   std::vector<std::string> warnings;

@@ -89,6 +89,11 @@ double RangeError(const Map& map, const Landmark& landmark) {
   return std::sqrt(2.0 * squared / count) / std::sin(std::min(parallax, 1.5));
 }
 
+double SparseConfidence(double relative_error, const SparseDepthOptions& options) {
+  const double error = relative_error / options.half_confidence_error;
+  return 1.0 / (1.0 + error * error);
+}
+
 std::vector<SparsePoint> ProjectLandmarks(const Map& map, KeyframeId id,
                                           const EquirectangularCamera& camera,
                                           const SparseDepthOptions& options) {
@@ -111,9 +116,8 @@ std::vector<SparsePoint> ProjectLandmarks(const Map& map, KeyframeId id,
   for (size_t i = 0; i < projections.size(); ++i) {
     if (hidden[i]) continue;
     const Projection& projection = projections[i];
-    const double error =
-        RangeError(map, map.landmark(projection.landmark)) / options.half_confidence_error;
-    const double confidence = 1.0 / (1.0 + error * error);
+    const double confidence =
+        SparseConfidence(RangeError(map, map.landmark(projection.landmark)), options);
     if (!(confidence >= options.min_confidence)) continue;
     const Eigen::Vector2d pixel = camera.Project(projection.bearing);
     int& slot = nearest.at<int>(std::min(static_cast<int>(pixel.y()), camera.height() - 1),

@@ -37,8 +37,10 @@ void DenseMapper::Start(const Keyframe& keyframe, const cv::Mat& color,
   }
 }
 
-void DenseMapper::MeasureDepth(std::span<const DenseView> views) {
-  if (!failure_) orb360::MeasureDepth(views, {}, depth_maps_, &completer_, num_threads_);
+int DenseMapper::MeasureDepth(std::span<const DenseView> views, const KeyframeProgress& progress) {
+  if (failure_) return 0;
+  return orb360::MeasureDepth(views, {.sparse = options_.sparse}, depth_maps_, &completer_,
+                              num_threads_, progress);
 }
 
 std::optional<KnownGround> DenseMapper::Ground() const {

@@ -10,6 +10,7 @@
 #include "slam/io/depth_map_store.h"
 #include "slam/optimization/local_bundle_adjustment.h"
 #include "slam/pipeline/keyframe_completion.h"
+#include <orb360/slam/pipeline/frame_report.h>
 
 namespace orb360 {
 
@@ -36,10 +37,10 @@ class DenseMapper {
   CompletedKeyframe Take(double unit_scale) { return completion_.Take(unit_scale); }
   /// Waits until all depth is on disk.
   void Flush() { completion_.Flush(); }
-  /// Measures the ranges of stored keyframes anew with their final poses (orb360::MeasureDepth).
-  /// Nothing happens after a failure. Throws UserError where the disk fails. Contract: Flush has
-  /// been called.
-  void MeasureDepth(std::span<const DenseView> views);
+  /// Measures the ranges of stored keyframes anew with their final poses (orb360::MeasureDepth) and
+  /// returns of how many. Nothing happens after a failure. Throws UserError where the disk fails.
+  /// Contract: Flush has been called.
+  int MeasureDepth(std::span<const DenseView> views, const KeyframeProgress& progress);
 
   /// Adds a keyframe's measurement of the ground under the present map, in the map's world frame
   /// and its present unit of length.

@@ -186,8 +186,9 @@ void Pipeline::CorrectScale(std::span<const PositionFix> positions) {
   }
 }
 
-void Pipeline::MeasureDepth(const Reconstruction& finished) {
-  if (dense_ && options_.depth.stereo) dense_->MeasureDepth(MakeDenseViews(finished, Rigid3()));
+int Pipeline::MeasureDepth(const Reconstruction& finished, const KeyframeProgress& progress) {
+  if (!dense_ || !options_.depth.stereo) return 0;
+  return dense_->MeasureDepth(MakeDenseViews(finished, Rigid3()), progress);
 }
 
 Reconstruction Pipeline::Finish(std::span<const PositionFix> positions) {

@@ -29,7 +29,7 @@ class Pipeline {
   void CompleteDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
   FrameReport Process(const Frame& frame);
   Reconstruction Finish(std::span<const PositionFix> positions);
-  void MeasureDepth(const Reconstruction& finished);
+  int MeasureDepth(const Reconstruction& finished, const KeyframeProgress& progress);
 
   const Atlas& atlas() const { return atlas_; }
   const std::optional<DenseMapper>& dense() const { return dense_; }

@@ -41,15 +41,18 @@ class GrayImages {
 
 float ConfidenceOf(float relative_error) { return 1.0f / (1.0f + relative_error); }
 
-// One pixel of each square that has any: the first one by rows from the middle on.
-SparseDepth SampleSquares(const InverseRanges& seen, const StereoDepthOptions& options,
-                          int* count) {
+// One pixel of each square that has any: the first one by rows from the middle on. None where too
+// few squares have one.
+std::optional<SparseDepth> SampleSquares(const InverseRanges& seen,
+                                         const StereoDepthOptions& options) {
   const cv::Size size = seen.value.size();
   SparseDepth sparse{cv::Mat::zeros(size, CV_32F), cv::Mat::zeros(size, CV_32F)};
   const int side = options.sparse_spacing;
-  *count = 0;
+  int num_squares = 0;
+  int count = 0;
   for (int top = 0; top < size.height; top += side) {
     for (int left = 0; left < size.width; left += side) {
+      ++num_squares;
       for (int i = 0; i < side * side; ++i) {
         const int at = (i + side * side / 2) % (side * side);
         const int row = top + at / side;
@@ -57,15 +60,15 @@ SparseDepth SampleSquares(const InverseRanges& seen, const StereoDepthOptions& o
         if (row >= size.height || column >= size.width) continue;
         const float value = seen.value.at<float>(row, column);
         if (!(value > 0)) continue;
-        const double error =
-            seen.sigma.at<float>(row, column) / value / options.half_confidence_error;
         sparse.range.at<float>(row, column) = 1 / value;
-        sparse.confidence.at<float>(row, column) = static_cast<float>(1 / (1 + error * error));
-        ++*count;
+        sparse.confidence.at<float>(row, column) = static_cast<float>(
+            SparseConfidence(seen.sigma.at<float>(row, column) / value, options.sparse));
+        ++count;
         break;
       }
     }
   }
+  if (count < options.min_fraction * num_squares) return std::nullopt;
   return sparse;
 }
 
@@ -115,10 +118,14 @@ std::vector<size_t> ChooseStereoSources(std::span<const DenseView> views, size_t
   return chosen;
 }
 
-void MeasureDepth(std::span<const DenseView> views, const StereoDepthOptions& options,
-                  const DepthMapStore& store, DepthCompleter* completer, int num_threads) {
+int MeasureDepth(std::span<const DenseView> views, const StereoDepthOptions& options,
+                 const DepthMapStore& store, DepthCompleter* completer, int num_threads,
+                 const KeyframeProgress& progress) {
   GrayImages images(views, store);
-  for (size_t i = 0; i < views.size(); ++i) {
+  const auto count = static_cast<int>(views.size());
+  int num_measured = 0;
+  for (int i = 0; i < count; ++i) {
+    if (progress && !progress(i, count)) break;
     const DenseDepth stored = store.Get(views[i].frame_index);
     const double scale = views[i].scale;
     // The network gives the sky ranges too, with little confidence.
@@ -132,13 +139,14 @@ void MeasureDepth(std::span<const DenseView> views, const StereoDepthOptions& op
     }
     if (static_cast<int>(sources.size()) < options.stereo.fusion.min_support) continue;
     const InverseRanges seen = MatchSpheres(images.Get(i), sources, options.stereo, num_threads);
-    int count = 0;
-    const SparseDepth sparse = SampleSquares(seen, options, &count);
-    if (count < options.min_points) continue;
-    DenseDepth completed = completer->Complete(stored.color, sparse);
+    const std::optional<SparseDepth> sparse = SampleSquares(seen, options);
+    if (!sparse) continue;
+    DenseDepth completed = completer->Complete(stored.color, *sparse);
     Merge(seen, options.completion_error_factor, &completed);
     store.PutRanges(views[i].frame_index, completed.range / scale, completed.confidence);
+    ++num_measured;
   }
+  return num_measured;
 }
 
 }  // namespace orb360

@@ -7,6 +7,7 @@
 #include "slam/io/depth_map_store.h"
 #include "slam/stereo/spherical_stereo.h"
 #include <orb360/slam/depth/depth_completer.h>
+#include <orb360/slam/pipeline/frame_report.h>
 
 namespace orb360 {
 
@@ -21,10 +22,10 @@ struct StereoDepthOptions {
   /// Side of the squares of pixels of which one with a range by stereo, if there is one, is given
   /// to the network.
   int sparse_spacing = 6;
-  /// Least number of pixels that are given; a keyframe with fewer stays as it was completed.
-  int min_points = 500;
-  /// Standard deviation of ln(range) at which the confidence of such a pixel is 1/2.
-  double half_confidence_error = 0.1;
+  /// Least fraction of the squares that have one; a keyframe with fewer stays as it was completed.
+  double min_fraction = 0.03;
+  /// The confidence of such a pixel follows from the same error as that of a landmark.
+  SparseDepthOptions sparse = {};
   /// Number by which the errors that the network expects are multiplied: where it has not been
   /// trained, they are larger than it says (docs/results/stereo.md).
   double completion_error_factor = 3.0;
@@ -38,9 +39,10 @@ std::vector<size_t> ChooseStereoSources(std::span<const DenseView> views, size_t
 
 /// Measures the ranges of stored keyframes by multi-view stereo with their final poses, and
 /// completes them from these. What is seen is kept; the network fills the rest. A keyframe without
-/// source views or of which little is seen stays as it is. The result does not depend on the number
-/// of threads. Throws UserError where the disk fails.
-void MeasureDepth(std::span<const DenseView> views, const StereoDepthOptions& options,
-                  const DepthMapStore& store, DepthCompleter* completer, int num_threads);
+/// source views or of which little is seen stays as it is. Returns the number of the others. The
+/// result does not depend on the number of threads. Throws UserError where the disk fails.
+int MeasureDepth(std::span<const DenseView> views, const StereoDepthOptions& options,
+                 const DepthMapStore& store, DepthCompleter* completer, int num_threads,
+                 const KeyframeProgress& progress = nullptr);
 
 }  // namespace orb360

@@ -34,7 +34,9 @@ std::span<const std::optional<KnownGround>> System::grounds() const {
   return pipeline_->atlas().grounds();
 }
 
-void System::MeasureDepth(const Reconstruction& finished) { pipeline_->MeasureDepth(finished); }
+int System::MeasureDepth(const Reconstruction& finished, const KeyframeProgress& progress) {
+  return pipeline_->MeasureDepth(finished, progress);
+}
 
 const DepthMapStore* System::depth_maps() const {
   const std::optional<DenseMapper>& dense = pipeline_->dense();

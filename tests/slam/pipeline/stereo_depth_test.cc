@@ -84,15 +84,55 @@ TEST_F(MeasureDepthTest, RangesAreMeasuredInTheUnitOfEachKeyframe) {
   const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
   Store(views);
   EXPECT_GT(MedianError(views[1]), 0.2);
-  MeasureDepth(views, {}, store_, &completer_, 2);
+  EXPECT_EQ(MeasureDepth(views, {}, store_, &completer_, 2), 4);
   for (const DenseView& view : views) EXPECT_LT(MedianError(view), 0.05) << view.frame_index;
 }
 
 TEST_F(MeasureDepthTest, AKeyframeWithoutTwoSourcesStaysAsItWasCompleted) {
   const std::vector<DenseView> views = ViewsAt({0, 0.3});
   Store(views);
-  MeasureDepth(views, {}, store_, &completer_, 2);
+  EXPECT_EQ(MeasureDepth(views, {}, store_, &completer_, 2), 0);
   EXPECT_NEAR(store_.Get(0).range.at<float>(60, 100), 1.2, 0.001);
+}
+
+TEST_F(MeasureDepthTest, EndsEarlyAndKeepsWhatIsDone) {
+  const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
+  Store(views);
+  std::vector<int> done;
+  const auto two_of_four = [&done](int number, int count) {
+    EXPECT_EQ(count, 4);
+    done.push_back(number);
+    return number < 2;
+  };
+  EXPECT_EQ(MeasureDepth(views, {}, store_, &completer_, 2, two_of_four), 2);
+  EXPECT_EQ(done, (std::vector<int>{0, 1, 2}));
+  EXPECT_LT(MedianError(views[1]), 0.05);
+  EXPECT_NEAR(store_.Get(20).range.at<float>(60, 100), 1.2, 0.001);
+}
+
+TEST_F(MeasureDepthTest, WhatTheNetworkIsNotSureOfDoesNotPutTheSourcesFartherAway) {
+  // Four of five pixels claim 100 times the range, with little confidence, as those of a sky do.
+  const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
+  Store(views);
+  for (const DenseView& view : views) {
+    DenseDepth depth = store_.Get(view.frame_index);
+    depth.range.rowRange(0, 100) = 120;
+    depth.confidence.rowRange(0, 100) = 0.5;
+    store_.PutRanges(view.frame_index, depth.range, depth.confidence);
+  }
+  EXPECT_EQ(MeasureDepth(views, {}, store_, &completer_, 2), 4);
+}
+
+TEST_F(MeasureDepthTest, CompletedPixelsAreTrustedLessThanTheNetworkTrustsThem) {
+  const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
+  for (const double factor : {1.0, 3.0}) {
+    Store(views);
+    MeasureDepth(views, {.completion_error_factor = factor}, store_, &completer_, 2);
+    // The network of this test is sure of 0.9 at most, and states it where nothing was seen.
+    const DenseDepth depth = store_.Get(10);
+    const cv::Mat is_stated = cv::abs(depth.confidence - 1 / (1 + factor * (1 / 0.9 - 1))) < 0.003;
+    EXPECT_GT(cv::countNonZero(is_stated), 100) << factor;
+  }
 }
 
 }  // namespace

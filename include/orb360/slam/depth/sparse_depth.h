@@ -15,8 +15,7 @@ struct SparsePoint {
   LandmarkId landmark;    ///< The landmark that is projected.
   Eigen::Vector2d pixel;  ///< Continuous pixel of the camera that was asked for.
   double range;           ///< Range along the pixel's ray, in the map's unit.
-  /// 1 / (1 + (e / half_confidence_error)^2), where e is the landmark's RangeError; at least
-  /// min_confidence.
+  /// SparseConfidence of the landmark's RangeError; at least min_confidence.
   double confidence;
 };
 
@@ -25,6 +24,10 @@ struct SparsePoint {
 /// observations, and larger where their residuals exceed the noise. Infinite if all observations
 /// come from one place.
 double RangeError(const Map& map, const Landmark& landmark);
+
+/// Returns 1 / (1 + (e / half_confidence_error)^2), the confidence of a point of sparse depth whose
+/// range has the standard deviation e as a fraction of the range.
+double SparseConfidence(double relative_error, const SparseDepthOptions& options);
 
 /// Generates sparse depth (paper III-B): projects the landmarks of a keyframe and of its neighbours
 /// into it. The nearest landmark of a pixel is kept; hidden and moving landmarks are left out. The

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -29,5 +30,8 @@ struct FrameReport {
   /// "frame" for the whole frame.
   std::map<std::string, double> timing_ms;
 };
+
+/// Receives after each keyframe how many of how many are done. False ends the work early.
+using KeyframeProgress = std::function<bool(int done, int count)>;
 
 }  // namespace orb360

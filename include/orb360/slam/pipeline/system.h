@@ -47,8 +47,8 @@ class System {
   std::span<const Map> maps() const;
   /// Returns the ground under each map, after Finish. A map with ground is metric.
   std::span<const std::optional<KnownGround>> grounds() const;
-  /// Measures depth anew by stereo with final poses. Throws UserError where the disk fails.
-  void MeasureDepth(const Reconstruction& finished);
+  /// Measures depth by stereo with final poses; returns of how many keyframes. Throws UserError.
+  int MeasureDepth(const Reconstruction& finished, const KeyframeProgress& progress = nullptr);
   /// Returns the depth of the keyframes in Reconstruction::depth_scales, after Finish, or null
   /// without CompleteDepth. Throws UserError where the depth could not be stored.
   const DepthMapStore* depth_maps() const;
