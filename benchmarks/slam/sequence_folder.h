@@ -5,7 +5,9 @@
 #include <stdexcept>
 #include <string>
 
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "slam/io/image_file.h"
 
 namespace orb360 {
 
@@ -21,8 +23,10 @@ inline std::string NameOfFrame(int index, const char* ending) {
 inline cv::Mat ReadGray(const std::filesystem::path& sequence, int index) {
   std::filesystem::path path = sequence / "rgb" / NameOfFrame(index, "jpg");
   if (!std::filesystem::exists(path)) path.replace_extension("png");
-  cv::Mat gray = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
-  if (gray.empty()) throw std::runtime_error(path.string() + ": cannot be read as an image");
+  const LoadedImage loaded = LoadImage(path);
+  if (!loaded.problem.empty()) throw std::runtime_error(path.string() + ": " + loaded.problem);
+  cv::Mat gray;
+  cv::cvtColor(loaded.image, gray, cv::COLOR_BGR2GRAY);
   return gray;
 }
 

@@ -95,6 +95,13 @@ TEST_F(MeasureDepthTest, AKeyframeWithoutTwoSourcesStaysAsItWasCompleted) {
   EXPECT_NEAR(store_.Get(0).range.at<float>(60, 100), 1.2, 0.001);
 }
 
+TEST_F(MeasureDepthTest, AKeyframeOfWhichLittleIsSeenStaysAsItWasCompleted) {
+  const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
+  Store(views);
+  EXPECT_EQ(MeasureDepth(views, {.min_fraction = 0.999}, store_, &completer_, 2), 0);
+  EXPECT_NEAR(store_.Get(0).range.at<float>(60, 100), 1.2, 0.001);
+}
+
 TEST_F(MeasureDepthTest, EndsEarlyAndKeepsWhatIsDone) {
   const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
   Store(views);

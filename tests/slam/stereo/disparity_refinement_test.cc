@@ -83,6 +83,17 @@ TEST(RefineDisparities, StatesTheErrorsThatNoiseMakes) {
   EXPECT_LT(NearestRankQuantile(in_sigmas, 0.68), 1.6);
 }
 
+TEST(RefineDisparities, UnknownNeighboursDoNotCount) {
+  const Pair pair = MakePair(0);
+  cv::Mat disparity(kHeight, kWidth, CV_32F, cv::Scalar(0));
+  for (int x = 0; x < kWidth; x += 2) disparity.col(x).setTo(-1);
+  // Of one image with itself; -1 is within a pixel of 0.
+  const RefinedDisparities refined = RefineDisparities(pair.first, pair.first, disparity, {});
+  for (int x = 5; x < kWidth - 5; x += 2) {
+    EXPECT_EQ(cv::countNonZero(refined.disparity.col(x) != 0), 0) << x;
+  }
+}
+
 TEST(RefineDisparities, KnowsNothingWhereNothingWasKnownOrNothingIsSeen) {
   Pair pair = MakePair(0);
   cv::Mat disparity = Rounded();

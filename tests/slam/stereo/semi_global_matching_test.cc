@@ -99,6 +99,18 @@ TEST(MatchSemiGlobally, FollowsTheGroundBelowTheCameraWhereDisparitiesChangeQuic
   EXPECT_GT(accuracy.right, 0.95);
 }
 
+TEST(MatchSemiGlobally, AddsTheSurfaceOfWhereTheWarpedImageWasMatched) {
+  // The surface of the column itself would leave a median of 0.40 pixels on this slope.
+  const auto disparity = [](double x, double y) {
+    return 2 + 0.8 * x + 3 * std::sin(20 * std::numbers::pi * y / kHeight);
+  };
+  const Pair pair = MakePair(disparity);
+  const Accuracy accuracy =
+      Compare(MatchSemiGlobally(pair.first, pair.second, kOptions), disparity);
+  EXPECT_LT(accuracy.median_error, 0.34);
+  EXPECT_GT(accuracy.right, 0.97);
+}
+
 TEST(MatchSemiGlobally, KeepsTheEdgeBetweenTwoSurfaces) {
   const auto disparity = [](double, double y) { return y < kHeight / 2.0 ? 3.0 : 40.0; };
   const Pair pair = MakePair(disparity);
@@ -122,6 +134,15 @@ TEST(MatchSemiGlobally, KnowsNothingWithoutTextureOrOfWhatOnlyOneViewShows) {
   covered(cv::Rect(100, 100, 60, 60)) = 200;  // something else stands there
   const cv::Mat measured = MatchSemiGlobally(pair.first, covered, kOptions);
   EXPECT_LT(cv::countNonZero(measured(cv::Rect(95, 105, 50, 50)) >= 0), 0.1 * 50 * 50);
+}
+
+TEST(MatchSemiGlobally, KnowsNothingThatIsNotUniqueEnough) {
+  const Pair pair = MakePair([](double, double) { return 10.0; });
+  SemiGlobalMatchingOptions options;
+  const int usual = cv::countNonZero(MatchSemiGlobally(pair.first, pair.second, options) >= 0);
+  options.min_uniqueness = 1000;
+  EXPECT_EQ(cv::countNonZero(MatchSemiGlobally(pair.first, pair.second, options) >= 0), 0);
+  EXPECT_GT(usual, 0.8 * kHeight * kWidth);
 }
 
 TEST(MatchSemiGlobally, KnowsLittleOfNoise) {

@@ -83,6 +83,58 @@ TEST(MatchSphere, KnowsNothingAlongTheBaseline) {
   EXPECT_GT(num_near, 50);
 }
 
+TEST(MatchSphere, KnowsNothingThatTheSourceSeesAlongTheBaseline) {
+  const Eigen::Vector3d offset(0.0, 0.9, 0.0);
+  const InverseRanges measured = MatchSphere(ViewFrom(kRoom, kReference), SourceAt(offset), {});
+  int num_known = 0;
+  for (int row = 0; row < kCamera.height(); ++row) {
+    for (int column = 0; column < kCamera.width(); ++column) {
+      const float value = measured.value.at<float>(row, column);
+      if (!(value > 0)) continue;
+      ++num_known;
+      const Eigen::Vector3d bearing =
+          kReference.rotation * kCamera.Bearing({column + 0.5, row + 0.5});
+      const Eigen::Vector3d from_source = bearing / value - offset;
+      EXPECT_GT(from_source.normalized().cross(offset.normalized()).norm(), 0.09);
+    }
+  }
+  EXPECT_GT(num_known, 10000);
+}
+
+TEST(MatchSphere, StatesNoErrorBelowTheLeastOne) {
+  const StereoView reference = ViewFrom(kRoom, kReference);
+  const StereoView source = SourceAt({0.15, 0.2, 0.02});
+  SphericalStereoOptions options;
+  options.min_disparity_sigma = 0;
+  const InverseRanges usual = MatchSphere(reference, source, options);
+  options.min_disparity_sigma = 5;
+  const InverseRanges coarse = MatchSphere(reference, source, options);
+  const cv::Mat is_known = usual.sigma > 0;
+  ASSERT_GT(cv::countNonZero(is_known), 10000);
+  EXPECT_EQ(cv::countNonZero(is_known & (coarse.sigma <= usual.sigma)), 0);
+  EXPECT_GT(cv::mean(coarse.sigma, is_known)[0], 5 * cv::mean(usual.sigma, is_known)[0]);
+}
+
+TEST(MatchSphere, StatesLargerErrorsTowardsTheBaseline) {
+  const Eigen::Vector3d offset(0.1, 0.3, 0.05);
+  const InverseRanges measured = MatchSphere(ViewFrom(kRoom, kReference), SourceAt(offset), {});
+  const Eigen::Vector3d axis = kReference.rotation.conjugate() * offset.normalized();
+  std::vector<double> in_sigma;
+  for (int row = 0; row < kCamera.height(); ++row) {
+    for (int column = 0; column < kCamera.width(); ++column) {
+      const float sigma = measured.sigma.at<float>(row, column);
+      const Eigen::Vector3d bearing = kCamera.Bearing({column + 0.5, row + 0.5});
+      if (!(sigma > 0) || axis.cross(bearing).norm() > 0.25) continue;
+      const double truth = kRoom.Range(kReference.translation, kReference.rotation * bearing);
+      in_sigma.push_back(std::abs(measured.value.at<float>(row, column) - 1 / truth) / sigma);
+    }
+  }
+  ASSERT_GT(in_sigma.size(), 300u);
+  // The same factor as at right angles to the baseline leaves 0.69 here.
+  EXPECT_LT(NearestRankQuantile(in_sigma, 0.68), 0.55);
+  EXPECT_GT(NearestRankQuantile(in_sigma, 0.68), 0.2);
+}
+
 const std::vector<Eigen::Vector3d> kOffsets = {{0.15, 0.2, 0.02}, {-0.2, 0.15, 0}, {0, 0, 0.25}};
 
 TEST(MatchSpheres, SourcesThatAgreeAreMoreExactThanOneForAnyNumberOfThreads) {
