@@ -50,7 +50,8 @@ DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMap
   CloudImage image(path, kCloudImageSide);
   output.cloud = WriteDenseCloud(folder / "cloud.ply", store, views, options,
                                  [&](std::span<const SurfacePoint> points) { image.Add(points); });
-  output.images = {image.Draw(), DrawKeyframes(store, views)};
+  output.images = {image.Draw(/*is_metric=*/options.voxel_size.has_value()),
+                   DrawKeyframes(store, views)};
   return output;
 }
 

@@ -36,6 +36,7 @@ struct DenseCloudOptions {
 /// A keyframe with dense depth, at the end of a run.
 struct DenseView {
   int frame_index = 0;
+  int map = 0;  ///< Index into Reconstruction::maps.
   Rigid3 world_from_camera;
   /// World units per unit of its ranges: the final scale of the map over its scale when the ranges
   /// were made.

@@ -108,7 +108,7 @@ void CloudImage::Add(std::span<const SurfacePoint> points) {
   }
 }
 
-cv::Mat CloudImage::Draw() const {
+cv::Mat CloudImage::Draw(bool is_metric) const {
   cv::Mat image(size_, CV_8UC3, kGround);
   cv::Mat is_known(size_, CV_8UC1, cv::Scalar(0));
   for (int row = 0; row < size_.height; ++row) {
@@ -137,7 +137,7 @@ cv::Mat CloudImage::Draw() const {
                 cv::FILLED);
   cv::line(image, left, left + cv::Point(pixels, 0), white, 3);
   std::string label = Decimal(length, length < 1.0 ? 2 : 0);
-  label += " m";
+  label += is_metric ? " m" : " units";
   cv::putText(image, label, left + cv::Point(0, -10), cv::FONT_HERSHEY_SIMPLEX, 0.6, white, 1,
               cv::LINE_AA);
   return image;

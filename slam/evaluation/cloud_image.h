@@ -26,8 +26,8 @@ class CloudImage {
   void Add(std::span<const SurfacePoint> points);
 
   /// Returns CV_8UC3, BGR: the points with small gaps closed, the path over them, and a scale of
-  /// length.
-  cv::Mat Draw() const;
+  /// length, in metres or, where the cloud is not metric, in its units.
+  cv::Mat Draw(bool is_metric) const;
 
  private:
   struct Pixel {

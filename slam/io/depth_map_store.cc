@@ -10,7 +10,6 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -178,20 +177,8 @@ cv::Mat DecodeColor(std::string_view jpeg) {
 
 }  // namespace
 
-DepthMapStore::DepthMapStore(std::filesystem::path folder) : folder_(std::move(folder)) {
-  std::error_code error;
-  std::filesystem::remove_all(folder_, error);
-  if (!error) std::filesystem::create_directories(folder_, error);
-  if (error) ThrowWriteError(folder_, error.value());
-}
-
-DepthMapStore::~DepthMapStore() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
-}
-
 std::filesystem::path DepthMapStore::PathOf(int frame_index) const {
-  return folder_ / std::to_string(frame_index);
+  return folder_.path() / std::to_string(frame_index);
 }
 
 void DepthMapStore::Put(int frame_index, const DenseDepth& depth) const {

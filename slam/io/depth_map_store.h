@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <string_view>
+#include <utility>
 
+#include "slam/io/temporary_folder.h"
 #include <orb360/slam/depth/dense_depth.h>
 
 namespace orb360 {
@@ -20,13 +22,9 @@ namespace orb360 {
 /// different threads at once.
 class DepthMapStore {
  public:
-  /// Creates the folder and removes what a killed run left in it. Throws UserError, as Put does, if
-  /// it cannot be written.
-  explicit DepthMapStore(std::filesystem::path folder);
-  /// Removes the folder.
-  ~DepthMapStore();
-  DepthMapStore(const DepthMapStore&) = delete;
-  DepthMapStore& operator=(const DepthMapStore&) = delete;
+  /// The folder lives as long as the object. Throws UserError, as Put does, if it cannot be
+  /// written.
+  explicit DepthMapStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   /// Stores or replaces a depth map. Contract: the images have the types of DenseDepth, one common
   /// size, and at least one pixel.
@@ -47,7 +45,7 @@ class DepthMapStore {
   void Write(int frame_index, const cv::Mat& range, const cv::Mat& confidence,
              std::string_view color) const;
 
-  const std::filesystem::path folder_;
+  const TemporaryFolder folder_;
 };
 
 }  // namespace orb360

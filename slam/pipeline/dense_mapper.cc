@@ -1,7 +1,11 @@
 #include "slam/pipeline/dense_mapper.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
+
+#include <opencv2/imgproc.hpp>
 
 #include "slam/pipeline/stereo_depth.h"
 #include <orb360/nn/base/check.h>
@@ -13,6 +17,7 @@ DenseMapper::DenseMapper(const std::filesystem::path& weights, const std::filesy
     : options_(options),
       num_threads_(num_threads),
       depth_maps_(folder),
+      images_(folder / "images"),
       completer_(weights, {.size = {2 * options.height, options.height}, .threads = num_threads}),
       completion_(
           &completer_,
@@ -37,10 +42,46 @@ void DenseMapper::Start(const Keyframe& keyframe, const cv::Mat& color,
   }
 }
 
-int DenseMapper::MeasureDepth(std::span<const DenseView> views, const KeyframeProgress& progress) {
-  if (failure_) return 0;
-  return orb360::MeasureDepth(views, {.sparse = options_.sparse}, depth_maps_, &completer_,
-                              num_threads_, progress);
+void DenseMapper::KeepImage(int frame_index, const cv::Mat& image, const Rigid3& world_from_camera,
+                            double median_range) {
+  // A sixth of the nearest source view's distance (StereoDepthOptions::baselines).
+  constexpr double kMinMotion = 0.02;
+  const Eigen::Vector3d& position = world_from_camera.translation;
+  if (last_kept_ && (position - *last_kept_).norm() < kMinMotion * median_range) return;
+  AwaitImage();
+  if (image_failure_) return;
+  last_kept_ = position;
+  cv::Mat small;
+  cv::resize(image, small, {camera().width(), camera().height()}, 0, 0, cv::INTER_AREA);
+  keeping_ = std::async(std::launch::async, [this, frame_index, small] {
+    cv::Mat gray;
+    cv::cvtColor(small, gray, cv::COLOR_BGR2GRAY);
+    images_.Put(frame_index, gray);
+  });
+}
+
+void DenseMapper::AwaitImage() {
+  if (!keeping_.valid()) return;
+  try {
+    keeping_.get();
+  } catch (const UserError&) {
+    image_failure_ = std::current_exception();
+  }
+}
+
+void DenseMapper::Flush() {
+  AwaitImage();
+  completion_.Flush();
+}
+
+int DenseMapper::MeasureDepth(std::span<const DenseView> views, std::span<const FramePose> frames,
+                              const KeyframeProgress& progress) {
+  if (failure()) return 0;
+  std::vector<FramePose> kept;
+  std::ranges::copy_if(frames, std::back_inserter(kept),
+                       [this](const FramePose& frame) { return images_.Contains(frame.index); });
+  return orb360::MeasureDepth(views, kept, {.sparse = options_.sparse}, depth_maps_, images_,
+                              &completer_, num_threads_, progress);
 }
 
 std::optional<KnownGround> DenseMapper::Ground() const {

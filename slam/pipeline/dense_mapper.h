@@ -2,15 +2,18 @@
 
 #include <exception>
 #include <filesystem>
+#include <future>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "slam/depth/dense_cloud.h"
 #include "slam/io/depth_map_store.h"
+#include "slam/io/gray_image_store.h"
 #include "slam/optimization/local_bundle_adjustment.h"
 #include "slam/pipeline/keyframe_completion.h"
 #include <orb360/slam/pipeline/frame_report.h>
+#include <orb360/slam/pipeline/reconstruction.h>
 
 namespace orb360 {
 
@@ -36,11 +39,16 @@ class DenseMapper {
   bool IsRunning() const { return completion_.IsRunning(); }
   CompletedKeyframe Take(double unit_scale) { return completion_.Take(unit_scale); }
   /// Waits until all depth is on disk.
-  void Flush() { completion_.Flush(); }
-  /// Measures the ranges of stored keyframes anew with their final poses (orb360::MeasureDepth) and
-  /// returns of how many. Nothing happens after a failure. Throws UserError where the disk fails.
-  /// Contract: Flush has been called.
-  int MeasureDepth(std::span<const DenseView> views, const KeyframeProgress& progress);
+  void Flush();
+  /// Keeps the image (CV_8UC3, BGR) of a tracked frame for stereo, unless the camera has moved by
+  /// less than a few hundredths of `median_range`, the surroundings' range, since the last one.
+  void KeepImage(int frame_index, const cv::Mat& image, const Rigid3& world_from_camera,
+                 double median_range);
+  /// Measures the ranges of stored keyframes anew with the final poses of `views` and of all
+  /// `frames` (orb360::MeasureDepth) and returns of how many. Nothing happens after a failure.
+  /// Throws UserError where the disk fails. Contract: Flush has been called.
+  int MeasureDepth(std::span<const DenseView> views, std::span<const FramePose> frames,
+                   const KeyframeProgress& progress);
 
   /// Adds a keyframe's measurement of the ground under the present map, in the map's world frame
   /// and its present unit of length.
@@ -56,20 +64,25 @@ class DenseMapper {
   const DepthMapStore& depth_maps() const { return depth_maps_; }
   /// The error because of which depth could not be stored, such as a full disk; null where there
   /// was none. Contract: Flush has been called.
-  std::exception_ptr failure() const { return failure_; }
+  std::exception_ptr failure() const { return failure_ ? failure_ : image_failure_; }
 
  private:
   void Store(int frame_index, const DenseDepth& depth);
+  void AwaitImage();
 
   const DepthOptions options_;
   const int num_threads_;
   std::vector<int> frames_;
   std::vector<DenseGround> grounds_;
   std::exception_ptr failure_;
+  std::exception_ptr image_failure_;
   DepthMapStore depth_maps_;
+  GrayImageStore images_;
+  std::optional<Eigen::Vector3d> last_kept_;  ///< Where the last image was kept, world frame.
   DepthCompleter completer_;
-  /// Declared last, so that its threads end before the members that they use.
+  /// Declared last, so that their threads end before the members that they use.
   KeyframeCompletion completion_;
+  std::future<void> keeping_;  ///< Stores the newest image.
 };
 
 }  // namespace orb360

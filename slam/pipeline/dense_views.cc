@@ -13,6 +13,7 @@ std::vector<DenseView> MakeDenseViews(const Reconstruction& reconstruction,
     if (scale == reconstruction.depth_scales.end()) continue;
     view_of[i] = views.size();
     views.push_back({.frame_index = keyframes[i].index,
+                     .map = keyframes[i].map,
                      .world_from_camera = target_from_world * keyframes[i].world_from_camera,
                      .scale = scale->second,
                      .neighbours = {}});

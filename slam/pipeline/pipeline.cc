@@ -88,6 +88,11 @@ FrameReport Pipeline::Process(const Frame& frame) {
   } else {
     Initialize(pending);
   }
+  if (const FrontEnd::Tracking* now = front_end_.tracking();
+      now && dense_ && options_.depth.stereo) {
+    dense_->KeepImage(frame.index, frame.image, now->last.world_from_camera,
+                      front_end_.local().median_range);
+  }
   StartDue(frame.image);
   report.timing_ms["tracking"] = MillisecondsSince(tracking);
   report.timing_ms["frame"] = MillisecondsSince(start);
@@ -188,7 +193,7 @@ void Pipeline::CorrectScale(std::span<const PositionFix> positions) {
 
 int Pipeline::MeasureDepth(const Reconstruction& finished, const KeyframeProgress& progress) {
   if (!dense_ || !options_.depth.stereo) return 0;
-  return dense_->MeasureDepth(MakeDenseViews(finished, Rigid3()), progress);
+  return dense_->MeasureDepth(MakeDenseViews(finished, Rigid3()), finished.frames, progress);
 }
 
 Reconstruction Pipeline::Finish(std::span<const PositionFix> positions) {

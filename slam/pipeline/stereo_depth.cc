@@ -10,32 +10,37 @@
 namespace orb360 {
 namespace {
 
-/// The images of the views that were used last.
+/// The images of frames that were used last.
 class GrayImages {
  public:
-  GrayImages(std::span<const DenseView> views, const DepthMapStore& store)
-      : views_(views), store_(store) {}
+  GrayImages(const DepthMapStore& keyframes, const GrayImageStore& frames)
+      : keyframes_(keyframes), frames_(frames) {}
 
-  StereoView Get(size_t index) {
-    const auto found = std::ranges::find(images_, index, &Entry::index);
-    if (found != images_.end()) return {found->gray, views_[index].world_from_camera};
-    cv::Mat gray;
-    cv::cvtColor(store_.Get(views_[index].frame_index).color, gray, cv::COLOR_BGR2GRAY);
+  cv::Mat Get(int frame_index) {
+    const auto found = std::ranges::find(images_, frame_index, &Entry::frame_index);
+    if (found != images_.end()) return found->gray;
     if (images_.size() >= kCapacity) images_.pop_front();
-    images_.push_back({index, gray});
-    return {gray, views_[index].world_from_camera};
+    images_.push_back({frame_index, Load(frame_index)});
+    return images_.back().gray;
   }
 
  private:
   static constexpr size_t kCapacity = 32;
 
   struct Entry {
-    size_t index;
+    int frame_index;
     cv::Mat gray;
   };
 
-  std::span<const DenseView> views_;
-  const DepthMapStore& store_;
+  cv::Mat Load(int frame_index) const {
+    if (!keyframes_.Contains(frame_index)) return frames_.Get(frame_index);
+    cv::Mat gray;
+    cv::cvtColor(keyframes_.Get(frame_index).color, gray, cv::COLOR_BGR2GRAY);
+    return gray;
+  }
+
+  const DepthMapStore& keyframes_;
+  const GrayImageStore& frames_;
   std::deque<Entry> images_;
 };
 
@@ -92,58 +97,83 @@ void Merge(const InverseRanges& seen, double completion_error_factor, DenseDepth
 
 }  // namespace
 
-std::vector<size_t> ChooseStereoSources(std::span<const DenseView> views, size_t reference,
-                                        double median_range, const StereoDepthOptions& options) {
-  std::vector<size_t> chosen;
+std::vector<FramePose> FindStereoCandidates(std::span<const DenseView> views, size_t reference,
+                                            std::span<const FramePose> frames) {
+  std::vector<size_t> near = views[reference].neighbours;
+  near.push_back(reference);
+  std::ranges::sort(near);
+  std::vector<FramePose> candidates;
+  for (size_t i = 0; i < near.size(); ++i) {
+    const DenseView& view = views[near[i]];
+    if (near[i] != reference) {
+      candidates.push_back({view.frame_index, 0, view.map, view.world_from_camera});
+    }
+    if (i + 1 == near.size() || near[i + 1] != near[i] + 1) continue;
+    const int end = views[near[i + 1]].frame_index;
+    for (auto frame = std::ranges::upper_bound(frames, view.frame_index, {}, &FramePose::index);
+         frame != frames.end() && frame->index < end; ++frame) {
+      if (frame->map == view.map) candidates.push_back(*frame);
+    }
+  }
+  return candidates;
+}
+
+std::vector<FramePose> ChooseStereoSources(std::span<const FramePose> candidates,
+                                           const DenseView& reference, double median_range,
+                                           const StereoDepthOptions& options) {
+  std::vector<FramePose> chosen;
   for (const double baseline : options.baselines) {
     for (const bool is_after : {false, true}) {
-      std::optional<size_t> best;
+      const FramePose* best = nullptr;
       double least = std::log(options.max_baseline_ratio);
-      for (const size_t index : views[reference].neighbours) {
-        if ((index > reference) != is_after || std::ranges::find(chosen, index) != chosen.end()) {
+      for (const FramePose& frame : candidates) {
+        if ((frame.index > reference.frame_index) != is_after ||
+            std::ranges::find(chosen, frame.index, &FramePose::index) != chosen.end()) {
           continue;
         }
-        const double distance = (views[index].world_from_camera.translation -
-                                 views[reference].world_from_camera.translation)
-                                    .norm();
+        const double distance =
+            (frame.world_from_camera.translation - reference.world_from_camera.translation).norm();
         if (!(distance > 0)) continue;
         const double difference = std::abs(std::log(distance / (baseline * median_range)));
         if (difference >= least) continue;
         least = difference;
-        best = index;
+        best = &frame;
       }
-      if (best) chosen.push_back(*best);
+      if (best != nullptr) chosen.push_back(*best);
     }
   }
   return chosen;
 }
 
-int MeasureDepth(std::span<const DenseView> views, const StereoDepthOptions& options,
-                 const DepthMapStore& store, DepthCompleter* completer, int num_threads,
+int MeasureDepth(std::span<const DenseView> views, std::span<const FramePose> frames,
+                 const StereoDepthOptions& options, const DepthMapStore& store,
+                 const GrayImageStore& images, DepthCompleter* completer, int num_threads,
                  const KeyframeProgress& progress) {
-  GrayImages images(views, store);
+  GrayImages gray(store, images);
   const auto count = static_cast<int>(views.size());
   int num_measured = 0;
   for (int i = 0; i < count; ++i) {
     if (progress && !progress(i, count)) break;
-    const DenseDepth stored = store.Get(views[i].frame_index);
-    const double scale = views[i].scale;
+    const DenseView& view = views[i];
+    const DenseDepth stored = store.Get(view.frame_index);
     // The network gives the sky ranges too, with little confidence.
     cv::Mat trusted = stored.range.clone();
     trusted.setTo(0, ~(stored.confidence >= options.min_trusted_confidence));
-    const double median_range = scale * MedianRange(trusted);
+    const double median_range = view.scale * MedianRange(trusted);
     if (!(median_range > 0)) continue;
     std::vector<StereoView> sources;
-    for (const size_t index : ChooseStereoSources(views, i, median_range, options)) {
-      sources.push_back(images.Get(index));
+    for (const FramePose& frame :
+         ChooseStereoSources(FindStereoCandidates(views, i, frames), view, median_range, options)) {
+      sources.push_back({gray.Get(frame.index), frame.world_from_camera});
     }
     if (static_cast<int>(sources.size()) < options.stereo.fusion.min_support) continue;
-    const InverseRanges seen = MatchSpheres(images.Get(i), sources, options.stereo, num_threads);
+    const InverseRanges seen = MatchSpheres({gray.Get(view.frame_index), view.world_from_camera},
+                                            sources, options.stereo, num_threads);
     const std::optional<SparseDepth> sparse = SampleSquares(seen, options);
     if (!sparse) continue;
     DenseDepth completed = completer->Complete(stored.color, *sparse);
     Merge(seen, options.completion_error_factor, &completed);
-    store.PutRanges(views[i].frame_index, completed.range / scale, completed.confidence);
+    store.PutRanges(view.frame_index, completed.range / view.scale, completed.confidence);
     ++num_measured;
   }
   return num_measured;

@@ -23,7 +23,7 @@ TEST(CloudImage, ShowsTheHighestBelowTheCamera) {
   const std::vector<SurfacePoint> points = {At(40, 5, 0.5f, 200), At(40, 5, 0, 90),
                                             At(40, 5, 2.5f, 30), At(500, 5, 0, 100)};
   cloud_image.Add(points);
-  const cv::Mat image = cloud_image.Draw();
+  const cv::Mat image = cloud_image.Draw(/*is_metric=*/true);
   EXPECT_EQ(image.cols, 1000);
   std::vector<cv::Point> found;
   for (int row = 0; row < image.rows; ++row) {
@@ -41,9 +41,14 @@ TEST(CloudImage, ShowsTheHighestBelowTheCamera) {
   EXPECT_NEAR(found[0].y, (84 * 0.12 - 5) * pixels_per_unit, 1.0);
 }
 
+TEST(CloudImage, NamesAnotherUnitWhereTheCloudIsNotMetric) {
+  const CloudImage image(Path(), 1000);
+  EXPECT_GT(cv::norm(image.Draw(/*is_metric=*/true), image.Draw(/*is_metric=*/false)), 0);
+}
+
 TEST(CloudImage, SurvivesACameraThatStandsStill) {
   const std::vector<Eigen::Vector3d> path(3, Eigen::Vector3d(1, 2, 3));
-  EXPECT_EQ(CloudImage(path, 200).Draw().size(), cv::Size(200, 200));
+  EXPECT_EQ(CloudImage(path, 200).Draw(/*is_metric=*/true).size(), cv::Size(200, 200));
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ class DenseCloudFileTest : public testing::Test {
     const RangeRoom room;
     for (size_t i = 0; i < 6; ++i) {
       DenseView view{static_cast<int>(10 * i),
+                     0,
                      TurnedCamera({-1.0 + 0.4 * static_cast<double>(i), 0.2, 0.1},
                                   0.1 * static_cast<double>(i)),
                      1.0,

@@ -66,6 +66,38 @@ TEST_F(DenseMapperTest, ADiskThatFailsIsNotedAndMappingGoesOn) {
   EXPECT_THROW(std::rethrow_exception(mapper.failure()), UserError);
 }
 
+TEST_F(DenseMapperTest, KeepsImagesOfAMovingCameraOnly) {
+  DenseMapper mapper = Make();
+  const auto keep = [&](int frame_index, double place) {
+    mapper.KeepImage(frame_index, Image(), {Eigen::Quaterniond::Identity(), {place, 0, 0}}, 5.0);
+  };
+  keep(0, 0.0);
+  keep(1, 0.05);
+  keep(2, 0.11);
+  keep(3, 0.15);
+  mapper.Flush();
+  const auto is_kept = [&](const char* name) {
+    return std::filesystem::exists(folder_ / "depth" / "images" / name);
+  };
+  EXPECT_TRUE(is_kept("0.jpg"));
+  EXPECT_FALSE(is_kept("1.jpg"));
+  EXPECT_TRUE(is_kept("2.jpg"));
+  EXPECT_FALSE(is_kept("3.jpg"));
+}
+
+TEST_F(DenseMapperTest, ADiskThatTakesNoImageIsNotedAndTrackingGoesOn) {
+  DenseMapper mapper = Make();
+  std::filesystem::remove_all(folder_ / "depth" / "images");
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NO_THROW(mapper.KeepImage(
+        i, Image(), {Eigen::Quaterniond::Identity(), Eigen::Vector3d(i, 0, 0)}, 5.0));
+  }
+  mapper.Flush();
+  ASSERT_NE(mapper.failure(), nullptr);
+  EXPECT_THROW(std::rethrow_exception(mapper.failure()), UserError);
+  EXPECT_EQ(mapper.MeasureDepth({}, {}, nullptr), 0);
+}
+
 TEST_F(DenseMapperTest, TellsTheGroundFromTenAgreeingKeyframesOnly) {
   DenseMapper mapper = Make();
   const DenseGround seen{.up = {0, 0, 1}, .log_height = std::log(1.7), .sigma = 0.02};

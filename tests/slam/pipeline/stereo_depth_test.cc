@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
 #include "nn/base/statistics.h"
 #include "tests/slam/geometry/box_room.h"
@@ -29,23 +30,50 @@ std::vector<DenseView> ViewsAt(const std::vector<double>& places) {
   return views;
 }
 
+std::vector<int> Indices(const std::vector<FramePose>& frames) {
+  std::vector<int> indices;
+  for (const FramePose& frame : frames) indices.push_back(frame.index);
+  return indices;
+}
+
+FramePose FrameAt(int index, double place, int map = 0) {
+  return {index, 0.1 * index, map, {Eigen::Quaterniond::Identity(), {place, 0, 0}}};
+}
+
 TEST(ChooseStereoSources, TakesTheNearestToEachBaselineOnBothSides) {
   const std::vector<DenseView> views = ViewsAt({-5, -1.4, -0.5, -0.02, 0, 0.02, 0.5, 1.4, 5});
   const StereoDepthOptions options{.baselines = {0.1, 0.3}, .max_baseline_ratio = 2.0};
-  EXPECT_EQ(ChooseStereoSources(views, 4, 5.0, options), (std::vector<size_t>{2, 6, 1, 7}));
-  EXPECT_EQ(ChooseStereoSources(views, 0, 5.0, options), std::vector<size_t>{});
+  const auto choose = [&](size_t view) {
+    return Indices(
+        ChooseStereoSources(FindStereoCandidates(views, view, {}), views[view], 5.0, options));
+  };
+  EXPECT_EQ(choose(4), (std::vector<int>{20, 60, 10, 70}));
+  EXPECT_EQ(choose(0), std::vector<int>{});
 }
 
 TEST(ChooseStereoSources, TakesNoViewFromTheSamePlaceNorOneThatSeesNothingOfIt) {
   std::vector<DenseView> views = ViewsAt({0, 0, 0.5, 0.6});
   views[0].neighbours = {1, 3};
-  EXPECT_EQ(ChooseStereoSources(views, 0, 5.0, {.baselines = {0.1, 0.12}}), std::vector<size_t>{3});
+  EXPECT_EQ(Indices(ChooseStereoSources(FindStereoCandidates(views, 0, {}), views[0], 5.0,
+                                        {.baselines = {0.1, 0.12}})),
+            std::vector<int>{30});
+}
+
+TEST(FindStereoCandidates, AreNeighboursAndTheFramesOfTheMapBetweenThem) {
+  std::vector<DenseView> views = ViewsAt({0, 1, 2, 3, 4, 5});
+  views[1].neighbours = {5, 4, 2};
+  const std::vector<FramePose> frames = {FrameAt(5, 0.5),     FrameAt(10, 1), FrameAt(12, 1.2),
+                                         FrameAt(15, 1.5, 1), FrameAt(20, 2), FrameAt(25, 2.5),
+                                         FrameAt(45, 4.5)};
+  EXPECT_EQ(Indices(FindStereoCandidates(views, 1, frames)),
+            (std::vector<int>{12, 20, 40, 45, 50}));
 }
 
 class MeasureDepthTest : public testing::Test {
  protected:
   MeasureDepthTest()
       : store_(folder_ / "depth"),
+        images_(folder_ / "depth" / "images"),
         completer_(WritePropagation(folder_),
                    {.size = {kCamera.width(), kCamera.height()}, .threads = 1}) {}
 
@@ -77,6 +105,7 @@ class MeasureDepthTest : public testing::Test {
   static inline const BoxRoom kRoom{{4.0, 3.0, 2.0}, 3};
   TempFolder folder_;
   DepthMapStore store_;
+  GrayImageStore images_;
   DepthCompleter completer_;
 };
 
@@ -84,21 +113,33 @@ TEST_F(MeasureDepthTest, RangesAreMeasuredInTheUnitOfEachKeyframe) {
   const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
   Store(views);
   EXPECT_GT(MedianError(views[1]), 0.2);
-  EXPECT_EQ(MeasureDepth(views, {}, store_, &completer_, 2), 4);
+  EXPECT_EQ(MeasureDepth(views, {}, {}, store_, images_, &completer_, 2), 4);
   for (const DenseView& view : views) EXPECT_LT(MedianError(view), 0.05) << view.frame_index;
 }
 
 TEST_F(MeasureDepthTest, AKeyframeWithoutTwoSourcesStaysAsItWasCompleted) {
   const std::vector<DenseView> views = ViewsAt({0, 0.3});
   Store(views);
-  EXPECT_EQ(MeasureDepth(views, {}, store_, &completer_, 2), 0);
+  EXPECT_EQ(MeasureDepth(views, {}, {}, store_, images_, &completer_, 2), 0);
   EXPECT_NEAR(store_.Get(0).range.at<float>(60, 100), 1.2, 0.001);
+}
+
+TEST_F(MeasureDepthTest, FramesThatAreNoKeyframesAreSources) {
+  const std::vector<DenseView> views = ViewsAt({0, 0.6});
+  Store(views);
+  EXPECT_EQ(MeasureDepth(views, {}, {}, store_, images_, &completer_, 2), 0);
+  const FramePose between = FrameAt(5, 0.3);
+  cv::Mat gray;
+  cv::cvtColor(kRoom.Render(kCamera, between.world_from_camera), gray, cv::COLOR_BGR2GRAY);
+  images_.Put(between.index, gray);
+  EXPECT_EQ(MeasureDepth(views, {{between}}, {}, store_, images_, &completer_, 2), 2);
+  for (const DenseView& view : views) EXPECT_LT(MedianError(view), 0.05) << view.frame_index;
 }
 
 TEST_F(MeasureDepthTest, AKeyframeOfWhichLittleIsSeenStaysAsItWasCompleted) {
   const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
   Store(views);
-  EXPECT_EQ(MeasureDepth(views, {.min_fraction = 0.999}, store_, &completer_, 2), 0);
+  EXPECT_EQ(MeasureDepth(views, {}, {.min_fraction = 0.999}, store_, images_, &completer_, 2), 0);
   EXPECT_NEAR(store_.Get(0).range.at<float>(60, 100), 1.2, 0.001);
 }
 
@@ -111,7 +152,7 @@ TEST_F(MeasureDepthTest, EndsEarlyAndKeepsWhatIsDone) {
     done.push_back(number);
     return number < 2;
   };
-  EXPECT_EQ(MeasureDepth(views, {}, store_, &completer_, 2, two_of_four), 2);
+  EXPECT_EQ(MeasureDepth(views, {}, {}, store_, images_, &completer_, 2, two_of_four), 2);
   EXPECT_EQ(done, (std::vector<int>{0, 1, 2}));
   EXPECT_LT(MedianError(views[1]), 0.05);
   EXPECT_NEAR(store_.Get(20).range.at<float>(60, 100), 1.2, 0.001);
@@ -127,14 +168,14 @@ TEST_F(MeasureDepthTest, WhatTheNetworkIsNotSureOfDoesNotPutTheSourcesFartherAwa
     depth.confidence.rowRange(0, 100) = 0.5;
     store_.PutRanges(view.frame_index, depth.range, depth.confidence);
   }
-  EXPECT_EQ(MeasureDepth(views, {}, store_, &completer_, 2), 4);
+  EXPECT_EQ(MeasureDepth(views, {}, {}, store_, images_, &completer_, 2), 4);
 }
 
 TEST_F(MeasureDepthTest, CompletedPixelsAreTrustedLessThanTheNetworkTrustsThem) {
   const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
   for (const double factor : {1.0, 3.0}) {
     Store(views);
-    MeasureDepth(views, {.completion_error_factor = factor}, store_, &completer_, 2);
+    MeasureDepth(views, {}, {.completion_error_factor = factor}, store_, images_, &completer_, 2);
     // The network of this test is sure of 0.9 at most, and states it where nothing was seen.
     const DenseDepth depth = store_.Get(10);
     const cv::Mat is_stated = cv::abs(depth.confidence - 1 / (1 + factor * (1 / 0.9 - 1))) < 0.003;
