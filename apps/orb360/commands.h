@@ -26,6 +26,7 @@ inline const CLI::Validator kIsNumber(
 /// `*chosen` receives the command to run.
 void AddRunCommand(CLI::App* app, Command* chosen);
 void AddEvaluateCommand(CLI::App* app, Command* chosen);
+void AddFuseCommand(CLI::App* app, Command* chosen);
 void AddConfigCommand(CLI::App* app, Command* chosen);
 void AddCompleteCommand(CLI::App* app, Command* chosen);
 void AddWeightsCommand(CLI::App* app, Command* chosen);

@@ -37,6 +37,7 @@ int Main(int argc, char** argv) {
   orb360::Command command;
   orb360::AddRunCommand(&app, &command);
   orb360::AddEvaluateCommand(&app, &command);
+  orb360::AddFuseCommand(&app, &command);
   orb360::AddConfigCommand(&app, &command);
   orb360::AddCompleteCommand(&app, &command);
   orb360::AddWeightsCommand(&app, &command);

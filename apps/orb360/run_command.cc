@@ -53,6 +53,7 @@ struct RunOptions {
   std::string weights;
   bool saves_sparse = false;
   bool saves_depth = false;
+  bool saves_views = false;
   std::string cloud_quality;  // "": as the configuration says
   bool is_quiet = false;
 };
@@ -131,8 +132,11 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
       progress.Update("measuring depth", done, count);
       return CaughtInterrupt() == 0;
     });
-    dense =
-        output.WriteDense(reconstruction, *system->depth_maps(), options.saves_depth, num_threads);
+    DenseCloudOptions fusion;
+    fusion.num_threads = num_threads;
+    fusion.progress = [&](int done, int count) { progress.Update("fusing depth", done, count); };
+    dense = output.WriteDense(reconstruction, *system->depth_maps(),
+                              {.depth = options.saves_depth, .views = options.saves_views}, fusion);
   } catch (const std::exception&) {  // The trajectory is written nevertheless.
     if (!record->failure) record->failure = std::current_exception();
   }
@@ -166,6 +170,7 @@ RunOptions Settle(RunOptions options) {
   if (options.localizes) options.weights = "none";  // No keyframes are made.
   if (options.weights.empty()) options.weights = nn::DefaultWeights().string();
   for (const auto& [name, is_given] : {std::pair("--save-depth", options.saves_depth),
+                                       {"--save-views", options.saves_views},
                                        {"--cloud-quality", !options.cloud_quality.empty()}}) {
     if (is_given && options.weights == "none") {
       throw UserError(std::string(name) +
@@ -337,6 +342,9 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
   command->add_flag(
       "--save-depth", options->saves_depth,
       "Also write each keyframe's dense depth to DIR/depth (16-bit PNG, metres * 256)");
+  command->add_flag("--save-views", options->saves_views,
+                    "Also keep in DIR/views what the dense cloud is made of (about 0.5 MB a "
+                    "keyframe), so that `orb360 fuse DIR` can make it again");
   command
       ->add_option("--cloud-quality", options->cloud_quality,
                    "draft: of what the network completes from landmarks; normal: also of what is "

@@ -5,6 +5,7 @@
 #include <system_error>
 #include <vector>
 
+#include "apps/orb360/saved_views.h"
 #include "slam/evaluation/map_plot.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/ply.h"
@@ -90,10 +91,14 @@ Rigid3 RunOutput::WorldOf(const Reconstruction& reconstruction) const {
 }
 
 DenseOutput RunOutput::WriteDense(const Reconstruction& reconstruction, const DepthMapStore& store,
-                                  bool saves_depth, int num_threads) const {
+                                  DenseFiles files, DenseCloudOptions options) const {
   const std::vector<DenseView> views = MakeDenseViews(reconstruction, WorldOf(reconstruction));
-  if (saves_depth) SaveDepth(folder_, store, views);
-  return WriteDenseOutput(folder_, store, views, CloudOptionsFor(reconstruction, num_threads));
+  options.voxel_size = CloudOptionsFor(reconstruction, options.num_threads).voxel_size;
+  if (files.depth) SaveDepth(folder_, store, views);
+  if (files.views) {
+    SaveViews(folder_ / kViewsName, store, {options.voxel_size.has_value(), views});
+  }
+  return WriteDenseOutput(folder_, store, views, options);
 }
 
 Rigid3 RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,

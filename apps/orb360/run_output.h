@@ -31,10 +31,15 @@ class RunOutput {
   /// world frame of the journal is that of the first pose, which is not levelled.
   void Append(double timestamp, const Rigid3& map_from_camera);
 
-  /// Writes cloud.ply, the dense cloud of the keyframes in the store, and with `saves_depth` the
-  /// ranges of the keyframes (SaveDepth).
+  /// What WriteDense writes beside the cloud.
+  struct DenseFiles {
+    bool depth = false;  ///< The ranges of the keyframes (SaveDepth).
+    bool views = false;  ///< All that the cloud is made of (SaveViews).
+  };
+  /// Writes cloud.ply, the dense cloud of the keyframes in the store, fused with `options` and
+  /// voxels as CloudOptionsFor chooses them.
   DenseOutput WriteDense(const Reconstruction& reconstruction, const DepthMapStore& store,
-                         bool saves_depth, int num_threads) const;
+                         DenseFiles files, DenseCloudOptions options) const;
 
   /// Writes trajectory.txt, keyframes.txt, scale.txt, the landmarks as cloud.ply (as landmarks.ply
   /// where there is a dense cloud), map.svg (where there is a keyframe), summary.json and the

@@ -73,7 +73,8 @@ struct Comparison {
   std::vector<std::shared_ptr<const LoadedView>> others;
 };
 
-/// A hundredth of the median of a few views' median ranges.
+}  // namespace
+
 double ChooseVoxelSize(std::span<const DenseView> views, const DepthLoader& load) {
   constexpr size_t kSamples = 15;
   std::vector<double> medians;
@@ -85,8 +86,6 @@ double ChooseVoxelSize(std::span<const DenseView> views, const DepthLoader& load
   if (medians.empty()) return 1.0;  // There will be no point.
   return 0.01 * Median(medians);
 }
-
-}  // namespace
 
 double MedianRange(const cv::Mat& range) {
   ORB360_CHECK(range.type() == CV_32FC1, range.type());
@@ -176,6 +175,7 @@ DenseCloudStatistics FuseCloud(std::span<const DenseView> views, const DepthLoad
   std::future<Comparison> next;
   std::future<void> collecting;
   for (size_t i = 0; i < views.size(); ++i) {
+    if (options.progress) options.progress(static_cast<int>(i), static_cast<int>(views.size()));
     const Comparison now = next.valid() ? next.get() : prepare(i);
     if (i + 1 < views.size()) next = std::async(std::launch::async, prepare, i + 1);
     if (!(now.view->median_range > 0)) continue;

@@ -31,6 +31,8 @@ struct DenseCloudOptions {
   /// released first.
   size_t max_voxels = 1'400'000;
   int num_threads = 1;  // of OpenMP; the cloud does not depend on it
+  /// Receives the number of keyframes done, and of all, before each one. May be null.
+  std::function<void(int done, int count)> progress = {};
 };
 
 /// A keyframe with dense depth, at the end of a run.
@@ -58,6 +60,9 @@ using VoxelSink = std::function<void(std::span<const Voxel>)>;
 /// the order of the views. The result is the same for any number of threads.
 DenseCloudStatistics FuseCloud(std::span<const DenseView> views, const DepthLoader& load,
                                const DenseCloudOptions& options, const VoxelSink& sink);
+
+/// Returns a hundredth of the median of a few views' median ranges, or 1 if no view has any.
+double ChooseVoxelSize(std::span<const DenseView> views, const DepthLoader& load);
 
 /// Returns those of a view's neighbours with which it is compared: at distances from an eighth of
 /// `median_range` to twice that range, before and after it. Near ones see the same pixels; far ones

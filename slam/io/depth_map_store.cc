@@ -139,8 +139,7 @@ CodedDepth Unpack(std::string_view packed, int width, int height) {
 }
 
 UserError Damaged(const std::filesystem::path& path) {
-  return UserError(path.string() +
-                   ": is damaged or gone; keep the folder as it is until the run has ended");
+  return UserError(path.string() + ": is damaged or gone; leave the folder as orb360 has made it");
 }
 
 struct StoredBytes {
@@ -178,7 +177,7 @@ cv::Mat DecodeColor(std::string_view jpeg) {
 }  // namespace
 
 std::filesystem::path DepthMapStore::PathOf(int frame_index) const {
-  return folder_.path() / std::to_string(frame_index);
+  return folder_ / std::to_string(frame_index);
 }
 
 void DepthMapStore::Put(int frame_index, const DenseDepth& depth) const {
@@ -215,6 +214,11 @@ void DepthMapStore::Write(int frame_index, const cv::Mat& range, const cv::Mat& 
   file.Write({reinterpret_cast<const char*>(&header), sizeof header});
   file.Write(packed);
   file.Write(color);
+}
+
+void DepthMapStore::CopyTo(int frame_index, const std::filesystem::path& folder) const {
+  const StoredBytes stored = ReadBytes(PathOf(frame_index));
+  OutputFile(folder / std::to_string(frame_index)).Write(stored.bytes);
 }
 
 bool DepthMapStore::Contains(int frame_index) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -9,7 +10,7 @@
 
 namespace orb360 {
 
-/// Depth maps of keyframes, stored on disk while a run lasts. A keyframe of 1024 x 512 pixels takes
+/// Depth maps of keyframes, stored on disk. A keyframe of 1024 x 512 pixels takes
 /// about 0.5 MB of disk and no memory. Frames are named by their index in the sequence, so
 /// keyframes of several maps can use one store.
 ///
@@ -24,7 +25,12 @@ class DepthMapStore {
  public:
   /// The folder lives as long as the object. Throws UserError, as Put does, if it cannot be
   /// written.
-  explicit DepthMapStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  explicit DepthMapStore(const std::filesystem::path& folder)
+      : folder_(folder), temporary_(std::in_place, folder) {}
+  /// Opens a folder to which depth maps have been copied. It stays as it is.
+  static DepthMapStore Open(std::filesystem::path folder) {
+    return {std::move(folder), std::nullopt};
+  }
 
   /// Stores or replaces a depth map. Contract: the images have the types of DenseDepth, one common
   /// size, and at least one pixel.
@@ -37,15 +43,22 @@ class DepthMapStore {
 
   bool Contains(int frame_index) const;
 
+  /// Copies a depth map to another folder. Throws UserError for a frame that is not stored or is
+  /// damaged, and if the disk fails.
+  void CopyTo(int frame_index, const std::filesystem::path& folder) const;
+
   /// Throws UserError for a frame that is not stored or is damaged.
   DenseDepth Get(int frame_index) const;
 
  private:
+  DepthMapStore(std::filesystem::path folder, std::nullopt_t /*is_kept*/)
+      : folder_(std::move(folder)) {}
   std::filesystem::path PathOf(int frame_index) const;
   void Write(int frame_index, const cv::Mat& range, const cv::Mat& confidence,
              std::string_view color) const;
 
-  const TemporaryFolder folder_;
+  const std::filesystem::path folder_;
+  std::optional<TemporaryFolder> temporary_;
 };
 
 }  // namespace orb360

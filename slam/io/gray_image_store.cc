@@ -37,7 +37,7 @@ cv::Mat GrayImageStore::Get(int frame_index) const {
   cv::Mat gray = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
   if (gray.empty()) {
     throw UserError(path.string() +
-                    ": is damaged or gone; keep the folder as it is until the run has ended");
+                    ": is damaged or gone; leave the folder as orb360 has made it");
   }
   return gray;
 }
