@@ -36,8 +36,7 @@ cv::Mat GrayImageStore::Get(int frame_index) const {
   const std::filesystem::path path = PathOf(frame_index);
   cv::Mat gray = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
   if (gray.empty()) {
-    throw UserError(path.string() +
-                    ": is damaged or gone; leave the folder as orb360 has made it");
+    throw UserError(path.string() + ": is damaged or gone; leave the folder as orb360 has made it");
   }
   return gray;
 }
