@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
-#include "slam/depth/occlusion_map.h"
 #include "slam/depth/source_view.h"
 #include "slam/depth/surface_normals.h"
 #include "slam/depth/tested_row.h"
@@ -66,17 +64,6 @@ std::vector<ConsistentPoint> FindConsistentPoints(const DepthView& view,
     sources.push_back({other, other->world_from_camera().Inverse() * world_from_view,
                        options.tolerance_errors, options.relative_tolerance});
   }
-  std::vector<std::optional<OcclusionMap>> occlusions(others.size());
-#pragma omp parallel for schedule(dynamic) num_threads(num_threads)
-  for (size_t i = 0; i < others.size(); ++i) occlusions[i].emplace(*others[i], view);
-  // The number of source views that see a surface in front of a point.
-  const auto count_occlusions = [&](int row, int column, float range) {
-    const auto nearer =
-        range * (1.0f - static_cast<float>(options.tolerance_errors) * view.error(row, column) -
-                 static_cast<float>(options.occlusion_tolerance));
-    return std::ranges::count_if(
-        occlusions, [&](const auto& map) { return map->RangeAt(row, column) < nearer; });
-  };
   // A point keeps at least this fraction of its own error. A single source view may be more certain
   // by the first factor (in variance), and all views together may be more certain than the best one
   // by the second factor.
@@ -89,10 +76,8 @@ std::vector<ConsistentPoint> FindConsistentPoints(const DepthView& view,
     for (size_t i = 0; i < points.size; ++i) {
       if (points.variance[i] == 0) continue;
       const float support = points.support[i];
+      const float conflict = points.conflict[i];
       if (support < static_cast<float>(options.min_support)) continue;
-      const float conflict =
-          points.conflict[i] +
-          static_cast<float>(count_occlusions(points.row, points.column[i], points.range[i]));
       if (conflict > options.max_conflict_fraction * (support + conflict)) continue;
       if (points.best[i] * points.variance[i] > redundant_ratio) continue;
       const float information = std::min(

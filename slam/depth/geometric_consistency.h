@@ -21,9 +21,6 @@ struct GeometricConsistencyOptions {
   /// Additional tolerance as a fraction of the range, for the errors of poses and sampling and for
   /// errors that the confidence does not state.
   double relative_tolerance = 0.01;
-  /// A surface that a source view sees hides a point of the reference view, and thereby contradicts
-  /// it, if it is nearer by tolerance_errors expected errors plus this fraction of the range.
-  double occlusion_tolerance = 0.05;
   /// Least expected error of ln(range), however confident the network is.
   double min_error = 0.01;
   /// A point is left to another keyframe that sees it and has a variance smaller by this factor.

@@ -109,31 +109,6 @@ TEST(FindConsistentPoints, RefusesWhatOneKeyframeInvents) {
   }
 }
 
-TEST(FindConsistentPoints, RefusesWhatLiesBehindASurfaceThatMostSee) {
-  // Some keyframes see a recess in a wall, as they do where something moves along with the camera.
-  const auto points_in_recess = [](const std::vector<size_t>& seen_by) {
-    std::vector<DenseDepth> depths = RenderAll();
-    for (const size_t i : seen_by) {
-      const Rigid3 camera = Cameras()[i];
-      for (int row = 0; row < 128; ++row) {
-        for (int column = 0; column < 256; ++column) {
-          const Eigen::Vector3d ray = camera.rotation * kCamera.Bearing({column + 0.5, row + 0.5});
-          float& range = depths[i].range.at<float>(row, column);
-          const Eigen::Vector3d wall = camera.translation + range * ray;
-          if (wall.y() > -2.999 || std::abs(wall.x()) > 1.2 || std::abs(wall.z()) > 0.9) continue;
-          range *=
-              static_cast<float>((-4.5 - camera.translation.y()) / (-3 - camera.translation.y()));
-        }
-      }
-    }
-    const std::vector<ConsistentPoint> points = ConsistentPointsOfTheMiddle(Views(depths));
-    return std::ranges::count_if(
-        points, [](const ConsistentPoint& point) { return point.position.y() < -4; });
-  };
-  EXPECT_GT(points_in_recess({0, 1, 2, 3, 4, 5, 6}), 150);
-  EXPECT_LT(points_in_recess({2, 3, 4}), 15);
-}
-
 TEST(FindConsistentPoints, RefusesWhatTooFewSee) {
   const std::vector<DenseDepth> depths = RenderAll();
   GeometricConsistencyOptions options;
