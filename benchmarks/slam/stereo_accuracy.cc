@@ -1,11 +1,12 @@
 // How well stereo on the sphere measures ranges: against true poses and depth.
 //
-//   stereo_accuracy SEQUENCE [--images DIR] [GAP...]
+//   stereo_accuracy SEQUENCE [--images DIR] [--opencv] [GAP...]
 //
 // For the frames of a sequence folder with true depth and the frames GAP after each [1 -1 2 -2]:
 // how much of what has texture and is nearer than 30 m gets a range, by solid angle, and how large
 // its errors are. --images: writes the image, the true ranges and the measured ones below each
-// other, as colours of the logarithm of 0.5 to 50 m, and the errors.
+// other, as colours of the logarithm of 0.5 to 50 m, and the errors. --opencv: the same with the
+// semi-global matcher of OpenCV on the same rectified images, for comparison.
 
 #include <algorithm>
 #include <chrono>
@@ -20,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -117,12 +119,39 @@ void WriteImage(const fs::path& path, const cv::Mat& gray, const cv::Mat& truth,
   if (!cv::imwrite(path.string(), shown)) throw std::runtime_error("cannot write " + path.string());
 }
 
-void Measure(const fs::path& sequence, const std::optional<fs::path>& images,
+/// The semi-global matcher of OpenCV, with the penalties that its documentation advises, a check
+/// from left to right, and its filter of speckles.
+orb360::RefinedDisparities MatchByOpenCv(const cv::Mat& first, const cv::Mat& second) {
+  constexpr int kWindow = 5;  // pixels
+  constexpr double kFixedPoint = 16;
+  const int num_disparities = first.cols / 2;  // as many as this project's matcher searches
+  const auto matcher = cv::StereoSGBM::create(
+      0, num_disparities, kWindow, 8 * kWindow * kWindow, 32 * kWindow * kWindow,
+      /*disp12MaxDiff=*/1, /*preFilterCap=*/31, /*uniquenessRatio=*/10, /*speckleWindowSize=*/100,
+      /*speckleRange=*/2, cv::StereoSGBM::MODE_SGBM);
+  // Its disparities are columns of the left image less columns of the right one. With a margin it
+  // searches the first columns, too.
+  cv::Mat left;
+  cv::Mat right;
+  cv::flip(first, left, 1);
+  cv::flip(second, right, 1);
+  cv::copyMakeBorder(left, left, 0, 0, num_disparities, 0, cv::BORDER_REPLICATE);
+  cv::copyMakeBorder(right, right, 0, 0, num_disparities, 0, cv::BORDER_REPLICATE);
+  cv::Mat disparity;
+  matcher->compute(left, right, disparity);
+  disparity = disparity.colRange(num_disparities, disparity.cols);
+  cv::flip(disparity, disparity, 1);
+  disparity.convertTo(disparity, CV_32F, 1 / kFixedPoint);
+  return {disparity, cv::Mat(disparity.size(), CV_32F, cv::Scalar(0.25))};
+}
+
+void Measure(const fs::path& sequence, const std::optional<fs::path>& images, bool uses_opencv,
              const std::vector<int>& gaps) {
   const auto poses = orb360::ReadTrajectory(sequence / "groundtruth.txt");
   const auto count = static_cast<int>(poses.size());
   if (images) fs::create_directories(*images);
-  const orb360::SphericalStereoOptions options;
+  orb360::SphericalStereoOptions options;
+  if (uses_opencv) options.matcher = MatchByOpenCv;
   Totals totals;
   for (int i = 0; i < count; ++i) {
     const fs::path depth = sequence / "depth" / orb360::NameOfFrame(i, "png");
@@ -159,8 +188,8 @@ void Measure(const fs::path& sequence, const std::optional<fs::path>& images,
 }
 
 constexpr char kUsage[] =
-    "usage: stereo_accuracy SEQUENCE [--images DIR] [GAP...]\n"
-    "SEQUENCE: folder with rgb/, depth/ and groundtruth.txt;\n"
+    "usage: stereo_accuracy SEQUENCE [--images DIR] [--opencv] [GAP...]\n"
+    "SEQUENCE: folder with rgb/, depth/ and groundtruth.txt; --opencv: OpenCV's matcher;\n"
     "GAP: frames from a reference view to a source view, two or more, not 0 [1 -1 2 -2]\n";
 
 }  // namespace
@@ -168,11 +197,16 @@ constexpr char kUsage[] =
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   std::optional<fs::path> images;
+  bool uses_opencv = false;
   std::vector<int> gaps;
   bool is_valid = !arguments.empty();
   for (size_t i = 1; i < arguments.size(); ++i) {
     if (arguments[i] == "--images" && i + 1 < arguments.size()) {
       images = arguments[++i];
+      continue;
+    }
+    if (arguments[i] == "--opencv") {
+      uses_opencv = true;
       continue;
     }
     gaps.push_back(std::atoi(arguments[i].c_str()));
@@ -185,7 +219,7 @@ int main(int argc, char** argv) {
     return wants_help ? 0 : 2;
   }
   try {
-    Measure(arguments[0], images, gaps);
+    Measure(arguments[0], images, uses_opencv, gaps);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "stereo_accuracy: %s\n", error.what());
     return 1;

@@ -82,8 +82,11 @@ InverseRanges MatchSphere(const StereoView& reference, const StereoView& source,
   const int width = StereoWidth(reference.gray.cols);
   const cv::Mat first = RectifySphere(reference.gray, reference_axes, width);
   const cv::Mat second = RectifySphere(source.gray, source_axes, width);
-  const RefinedDisparities disparities = RefineDisparities(
-      first, second, MatchSemiGlobally(first, second, options.matching), options.refinement);
+  const RefinedDisparities disparities =
+      options.matcher
+          ? options.matcher(first, second)
+          : RefineDisparities(first, second, MatchSemiGlobally(first, second, options.matching),
+                              options.refinement);
   return UnrectifySphere(TriangulateDisparities(disparities, length, options), reference_axes,
                          reference.gray.size());
 }

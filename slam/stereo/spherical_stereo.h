@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include <opencv2/core.hpp>
@@ -17,6 +18,10 @@ struct StereoView {
   Rigid3 world_from_camera;
 };
 
+/// Finds the disparities of two rectified spheres (RectifySphere).
+using DisparityMatcher =
+    std::function<RefinedDisparities(const cv::Mat& first, const cv::Mat& second)>;
+
 struct SphericalStereoOptions {
   SemiGlobalMatchingOptions matching;
   DisparityRefinementOptions refinement;
@@ -29,6 +34,8 @@ struct SphericalStereoOptions {
   double min_disparity_sigma = 0.15;
   double disparity_sigma_factor = 1.8;
   InverseRangeFusionOptions fusion;
+  /// Takes the place of MatchSemiGlobally and RefineDisparities, for comparisons. May be null.
+  DisparityMatcher matcher = {};
 };
 
 /// Measures the inverse ranges of `reference` from another view. Both are matched at the resolution
