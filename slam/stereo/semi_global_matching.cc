@@ -10,6 +10,7 @@
 
 #include "slam/stereo/census.h"
 #include "slam/stereo/row_warp.h"
+#include "slam/stereo/speckles.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
@@ -89,6 +90,7 @@ cv::Mat MatchSemiGlobally(const cv::Mat& first, const cv::Mat& second,
   const cv::Mat is_seen = (level.found.difference <= options.max_difference) &
                           (level.found.uniqueness >= options.min_uniqueness);
   level.disparity.setTo(-1.0f, ~(is_seen & IsReliable(first, level.found.cost, options)));
+  RemoveSpeckles(options.speckles, &level.disparity);
   return level.disparity;
 }
 

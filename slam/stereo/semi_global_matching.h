@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 
 #include "slam/stereo/disparity_search.h"
+#include "slam/stereo/speckles.h"
 
 namespace orb360 {
 
@@ -13,10 +14,11 @@ struct SemiGlobalMatchingOptions {
   /// Largest difference of the disparities of both views, pixels.
   int max_difference = 1;
   /// Largest mean cost of the disparities within 5 x 5 pixels, bits; 12 are those of noise.
-  double max_cost = 6.5;
+  double max_cost = 6.8;
   /// Least mean difference along the row within 5 x 5 pixels, gray levels over two pixels. Less is
   /// the noise of a surface without texture, whose disparity would be that of its border.
-  double min_gradient = 3.0;
+  double min_gradient = 1.0;
+  SpeckleOptions speckles;
 };
 
 /// Width of the coarsest level, pixels. It is searched for disparities up to half of it. Each level
