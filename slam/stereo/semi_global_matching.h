@@ -14,7 +14,7 @@ struct SemiGlobalMatchingOptions {
   /// Largest difference of the disparities of both views, pixels.
   int max_difference = 1;
   /// Largest mean cost of the disparities within 5 x 5 pixels, bits; 12 are those of noise.
-  double max_cost = 6.8;
+  double max_cost = 7.5;
   /// Least mean difference along the row within 5 x 5 pixels, gray levels over two pixels. Less is
   /// the noise of a surface without texture, whose disparity would be that of its border.
   double min_gradient = 1.0;
