@@ -21,11 +21,11 @@ int main(int argc, char** argv) try {
   options.scale.camera_height = sequence->camera_height().value_or(0);  // metres; 0: not known
   orb360::System system(orb360::EquirectangularCamera(size.width, size.height), options, {});
   const std::filesystem::path depth = std::string(argv[2]) + ".depth";  // removed with the system
-  system.CompleteDepth(orb360::nn::DefaultWeights(), depth);
+  system.EnableDepth(orb360::nn::DefaultWeights(), depth);
   while (const std::optional<orb360::Frame> frame = sequence->Next()) system.Process(*frame);
   const orb360::Reconstruction result = system.Finish();
-  if (result.depth_scales.empty()) throw orb360::UserError("no keyframe got dense depth");
-  system.MeasureDepth(result);
+  if (result.keyframes.empty()) throw orb360::UserError("nothing was tracked");
+  system.ComputeDepth(result);
   const orb360::Rigid3 file_world_from_map =
       orb360::FileWorldFromMap(result.frames.front().world_from_camera, result.up);
   const orb360::DenseCloudSummary cloud = orb360::WriteDenseCloud(

@@ -39,7 +39,8 @@ std::vector<DenseImages::OfKeyframe> DrawKeyframes(const DepthMapStore& store,
 }  // namespace
 
 DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMapStore& store,
-                             std::span<const DenseView> views, const DenseCloudOptions& options) {
+                             std::span<const DenseView> views, const DenseCloudOptions& options,
+                             bool has_mesh) {
   DenseOutput output;
   if (views.empty()) {
     output.cloud = WriteDenseCloud(folder / "cloud.ply", store, views, options);
@@ -48,8 +49,21 @@ DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMap
   std::vector<Eigen::Vector3d> path;
   for (const DenseView& view : views) path.push_back(view.world_from_camera.translation);
   CloudImage image(path, kCloudImageSide);
-  output.cloud = WriteDenseCloud(folder / "cloud.ply", store, views, options,
-                                 [&](std::span<const SurfacePoint> points) { image.Add(points); });
+  DenseCloudOptions fusion = options;
+  if (!fusion.voxel_size) {
+    fusion.voxel_size =
+        ChooseVoxelSize(views, [&store](int frame_index) { return store.Get(frame_index); });
+  }
+  std::optional<MeshWriter> mesh;
+  if (has_mesh) {
+    mesh.emplace(folder / kMeshName, *fusion.voxel_size, SurfaceNetsOptions(), fusion.num_threads);
+  }
+  output.cloud = WriteDenseCloud(folder / "cloud.ply", store, views, fusion,
+                                 [&](std::span<const SurfacePoint> points) {
+                                   image.Add(points);
+                                   if (mesh) mesh->Add(points);
+                                 });
+  if (mesh) output.mesh = mesh->Write();
   output.images = {image.Draw(/*is_metric=*/options.voxel_size.has_value()),
                    DrawKeyframes(store, views)};
   return output;
@@ -64,7 +78,7 @@ void SaveDepth(const std::filesystem::path& folder, const DepthMapStore& store,
   for (const DenseView& view : views) {
     char name[32];
     std::snprintf(name, sizeof name, "%06d.png", view.frame_index);
-    WriteDepthImage(images / name, view.scale * store.Get(view.frame_index).range);
+    WriteDepthImage(images / name, store.Get(view.frame_index).range);
   }
 }
 

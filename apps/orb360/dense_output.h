@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,18 +9,25 @@
 #include "slam/depth/dense_cloud.h"
 #include "slam/io/dense_cloud_file.h"
 #include "slam/io/depth_map_store.h"
+#include "slam/io/mesh_file.h"
 #include "slam/pipeline/dense_views.h"
 
 namespace orb360 {
 
+/// Name of the mesh beside a cloud.
+inline constexpr const char* kMeshName = "mesh.ply";
+
 struct DenseOutput {
   DenseCloudSummary cloud;
+  std::optional<MeshSummary> mesh;
   DenseImages images;
 };
 
-/// Writes cloud.ply, fused from the views, into `folder`, and draws it and a few keyframes.
+/// Writes cloud.ply, fused from the views, into `folder`, and the surface through its points as
+/// mesh.ply where `has_mesh` is true, and draws the cloud and a few keyframes.
 DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMapStore& store,
-                             std::span<const DenseView> views, const DenseCloudOptions& options);
+                             std::span<const DenseView> views, const DenseCloudOptions& options,
+                             bool has_mesh);
 
 /// Writes the ranges of every view, in the final unit of the world, into `folder`/depth as a 16-bit
 /// PNG (WriteDepthImage), which is named by the index of the frame.

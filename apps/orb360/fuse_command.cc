@@ -1,13 +1,17 @@
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <thread>
 
 #include "apps/orb360/commands.h"
+#include "apps/orb360/dense_output.h"
 #include "apps/orb360/interrupt.h"
 #include "apps/orb360/progress.h"
 #include "apps/orb360/saved_views.h"
 #include "slam/io/dense_cloud_file.h"
+#include "slam/io/mesh_file.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
@@ -21,6 +25,7 @@ struct FuseOptions {
   double max_error = 0;   // 0: as in a run
   int min_support = GeometricConsistencyOptions{}.min_support;
   int threads = 0;  // 0: one for each core
+  bool has_mesh = false;
   bool is_quiet = false;
 };
 
@@ -54,7 +59,16 @@ int Fuse(const FuseOptions& options) {
       if (CaughtInterrupt() != 0) throw Interrupted();
       progress.Update("fusing depth", done, count);
     };
-    summary = WriteDenseCloud(out, store, saved.views, fusion);
+    std::optional<MeshWriter> mesh;
+    if (options.has_mesh) {
+      mesh.emplace(out.parent_path() / kMeshName, *fusion.voxel_size, SurfaceNetsOptions(),
+                   fusion.num_threads);
+    }
+    summary = WriteDenseCloud(out, store, saved.views, fusion,
+                              [&mesh](std::span<const SurfacePoint> points) {
+                                if (mesh) mesh->Add(points);
+                              });
+    if (mesh) mesh->Write();
   } catch (const Interrupted&) {
     std::cerr << "orb360: interrupted; " << out.string() << " is as it was\n";
     return 128 + CaughtInterrupt();  // as shells report it
@@ -97,6 +111,8 @@ void AddFuseCommand(CLI::App* app, Command* chosen) {
       ->check(CLI::Range(0, 100))
       ->type_name("N")
       ->capture_default_str();
+  command->add_flag("--mesh", options->has_mesh,
+                    "Also write the surface through the cloud to mesh.ply in the same folder");
   command->add_option("--threads", options->threads, "Threads (default: one for each core)")
       ->check(CLI::Range(1, 1024))
       ->type_name("N");

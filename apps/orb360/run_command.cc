@@ -54,6 +54,7 @@ struct RunOptions {
   bool saves_sparse = false;
   bool saves_depth = false;
   bool saves_views = false;
+  bool has_mesh = false;
   std::string cloud_quality;  // "": as the configuration says
   bool is_quiet = false;
 };
@@ -112,31 +113,33 @@ RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, b
   return record;
 }
 
-/// Measures and fuses the depth of the keyframes. A failure of the disk is recorded and not thrown,
+/// Computes and fuses the depth of the keyframes. A failure of the disk is recorded and not thrown,
 /// so that the trajectory is written.
 std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
                                      const RunOptions& options, int num_threads,
                                      const RunOutput& output, System* system, RunRecord* record) {
   const auto start = Clock::now();
   std::optional<DenseOutput> dense;
-  if (reconstruction.depth_scales.empty()) return dense;  // No keyframe has dense depth.
+  if (options.weights == "none" || reconstruction.keyframes.empty()) return dense;
 #ifdef __GLIBC__
   // Without this the memory of tracking and of the last bundle adjustment would remain in use
   // beside that of fusion.
   malloc_trim(0);
 #endif
   try {
-    // An interrupt leaves the rest of the keyframes as they are.
+    // After an interrupt the rest of the keyframes are left to the network.
     Progress progress(std::nullopt, options.is_quiet);
-    record->measured_keyframes = system->MeasureDepth(reconstruction, [&](int done, int count) {
-      progress.Update("measuring depth", done, count);
+    record->measured_keyframes = system->ComputeDepth(reconstruction, [&](int done, int count) {
+      progress.Update("computing depth", done, count);
       return CaughtInterrupt() == 0;
     });
     DenseCloudOptions fusion;
     fusion.num_threads = num_threads;
     fusion.progress = [&](int done, int count) { progress.Update("fusing depth", done, count); };
-    dense = output.WriteDense(reconstruction, *system->depth_maps(),
-                              {.depth = options.saves_depth, .views = options.saves_views}, fusion);
+    dense = output.WriteDense(
+        reconstruction, *system->depth_maps(),
+        {.depth = options.saves_depth, .views = options.saves_views, .mesh = options.has_mesh},
+        fusion);
   } catch (const std::exception&) {  // The trajectory is written nevertheless.
     if (!record->failure) record->failure = std::current_exception();
   }
@@ -171,6 +174,7 @@ RunOptions Settle(RunOptions options) {
   if (options.weights.empty()) options.weights = nn::DefaultWeights().string();
   for (const auto& [name, is_given] : {std::pair("--save-depth", options.saves_depth),
                                        {"--save-views", options.saves_views},
+                                       {"--mesh", options.has_mesh},
                                        {"--cloud-quality", !options.cloud_quality.empty()}}) {
     if (is_given && options.weights == "none") {
       throw UserError(std::string(name) +
@@ -226,7 +230,7 @@ int Run(const RunOptions& options) {
   system_options.num_threads = threads;
   System system(EquirectangularCamera(size.width, size.height), system_options, mask);
   if (options.weights != "none") {
-    system.CompleteDepth(options.weights, output.folder() / "depth.tmp");
+    system.EnableDepth(options.weights, output.folder() / "depth.tmp");
   }
   if (stored) options.localizes ? system.Localize(*stored) : system.LoadMap(*stored);
   stored.reset();
@@ -345,6 +349,8 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
   command->add_flag("--save-views", options->saves_views,
                     "Also keep in DIR/views what the dense cloud is made of (about 0.5 MB a "
                     "keyframe), so that `orb360 fuse DIR` can make it again");
+  command->add_flag("--mesh", options->has_mesh,
+                    "Also write the surface through the dense cloud to DIR/mesh.ply");
   command
       ->add_option("--cloud-quality", options->cloud_quality,
                    "draft: of what the network completes from landmarks; normal: also of what is "

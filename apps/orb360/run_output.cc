@@ -92,13 +92,14 @@ Rigid3 RunOutput::WorldOf(const Reconstruction& reconstruction) const {
 
 DenseOutput RunOutput::WriteDense(const Reconstruction& reconstruction, const DepthMapStore& store,
                                   DenseFiles files, DenseCloudOptions options) const {
-  const std::vector<DenseView> views = MakeDenseViews(reconstruction, WorldOf(reconstruction));
+  const std::vector<DenseView> views = MakeDenseViews(
+      reconstruction, WorldOf(reconstruction), [&](int index) { return store.Contains(index); });
   options.voxel_size = CloudOptionsFor(reconstruction, options.num_threads).voxel_size;
   if (files.depth) SaveDepth(folder_, store, views);
   if (files.views) {
     SaveViews(folder_ / kViewsName, store, {options.voxel_size.has_value(), views});
   }
-  return WriteDenseOutput(folder_, store, views, options);
+  return WriteDenseOutput(folder_, store, views, options, files.mesh);
 }
 
 Rigid3 RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,

@@ -35,6 +35,7 @@ class RunOutput {
   struct DenseFiles {
     bool depth = false;  ///< The ranges of the keyframes (SaveDepth).
     bool views = false;  ///< All that the cloud is made of (SaveViews).
+    bool mesh = false;   ///< The surface through the cloud (MeshWriter).
   };
   /// Writes cloud.ply, the dense cloud of the keyframes in the store, fused with `options` and
   /// voxels as CloudOptionsFor chooses them.

@@ -118,6 +118,10 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
                         {"measured_keyframes", record.measured_keyframes},
                         {"voxel_size", dense->cloud.fusion.voxel_size},
                         {"seconds", record.fusion_seconds}};
+    if (dense->mesh) {
+      summary["mesh"] = {{"vertices", dense->mesh->vertices},
+                         {"triangles", dense->mesh->triangles}};
+    }
   }
   return summary;
 }

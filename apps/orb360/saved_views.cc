@@ -15,7 +15,7 @@ namespace orb360 {
 namespace {
 
 constexpr const char* kFileName = "views.json";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 nlohmann::json ToJson(const DenseView& view) {
   const Eigen::Vector3d& p = view.world_from_camera.translation;
@@ -23,7 +23,6 @@ nlohmann::json ToJson(const DenseView& view) {
   return {{"frame", view.frame_index},
           {"position", {p.x(), p.y(), p.z()}},
           {"orientation", {q.x(), q.y(), q.z(), q.w()}},
-          {"scale", view.scale},
           {"neighbours", view.neighbours}};
 }
 
@@ -34,7 +33,6 @@ DenseView FromJson(const nlohmann::json& json) {
   const auto q = json.at("orientation").get<std::array<double, 4>>();
   view.world_from_camera.translation = {p[0], p[1], p[2]};
   view.world_from_camera.rotation = Eigen::Quaterniond(q[3], q[0], q[1], q[2]);
-  view.scale = json.at("scale").get<double>();
   view.neighbours = json.at("neighbours").get<std::vector<size_t>>();
   return view;
 }
@@ -44,7 +42,6 @@ bool AreSound(const std::vector<DenseView>& views) {
   for (size_t i = 0; i < views.size(); ++i) {
     const DenseView& view = views[i];
     if (i > 0 && view.frame_index <= views[i - 1].frame_index) return false;
-    if (!(view.scale > 0 && std::isfinite(view.scale))) return false;
     if (!view.world_from_camera.translation.allFinite()) return false;
     if (!(std::abs(view.world_from_camera.rotation.norm() - 1) < 1e-6)) return false;
     for (const size_t neighbour : view.neighbours) {

@@ -31,7 +31,7 @@ void FindConsistentPointsOfKeyframe(benchmark::State& state) {
   const std::vector<DenseDepth> depths = RenderHall(kNeighbours + 1);
   std::vector<DepthView> views;
   for (int i = 0; i <= kNeighbours; ++i) {
-    views.emplace_back(depths[static_cast<size_t>(i)], Camera(i), 1.0,
+    views.emplace_back(depths[static_cast<size_t>(i)], Camera(i),
                        GeometricConsistencyOptions().min_error);
   }
   std::vector<const DepthView*> others;
@@ -53,7 +53,7 @@ void FuseHall(benchmark::State& state) {
   std::vector<DenseView> views;
   for (int i = 0; i < kKeyframes; ++i) {
     store.Put(i, depths[static_cast<size_t>(i)]);
-    views.push_back({i, 0, Camera(i), 1.0, {}});
+    views.push_back({i, 0, Camera(i), {}});
     for (int j = 0; j < kKeyframes; ++j) {
       if (j != i) views.back().neighbours.push_back(static_cast<size_t>(j));
     }

@@ -55,8 +55,8 @@ class ViewCache {
     const DenseView& view = views_[index];
     const DenseDepth depth = load_(view.frame_index);
     return std::make_shared<LoadedView>(
-        LoadedView{DepthView(depth, view.world_from_camera, view.scale, options_.min_error),
-                   view.scale * MedianRange(depth.range), depth.color});
+        LoadedView{DepthView(depth, view.world_from_camera, options_.min_error),
+                   MedianRange(depth.range), depth.color});
   }
 
   std::span<const DenseView> views_;
@@ -80,7 +80,7 @@ double ChooseVoxelSize(std::span<const DenseView> views, const DepthLoader& load
   std::vector<double> medians;
   const size_t step = views.size() / kSamples + 1;
   for (size_t i = 0; i < views.size(); i += step) {
-    const double median = views[i].scale * MedianRange(load(views[i].frame_index).range);
+    const double median = MedianRange(load(views[i].frame_index).range);
     if (median > 0) medians.push_back(median);
   }
   if (medians.empty()) return 1.0;  // There will be no point.

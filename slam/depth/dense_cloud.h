@@ -35,14 +35,11 @@ struct DenseCloudOptions {
   std::function<void(int done, int count)> progress = {};
 };
 
-/// A keyframe with dense depth, at the end of a run.
+/// A keyframe with dense depth, in the unit of its pose.
 struct DenseView {
   int frame_index = 0;
   int map = 0;  ///< Index into Reconstruction::maps.
   Rigid3 world_from_camera;
-  /// World units per unit of its ranges: the final scale of the map over its scale when the ranges
-  /// were made.
-  double scale = 1.0;
   /// Indices of the views that see the same landmarks, so that their poses fit this one's. Only
   /// those are compared.
   std::vector<size_t> neighbours;

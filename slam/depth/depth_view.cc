@@ -25,8 +25,7 @@ int ColumnStep(double cosine_of_latitude) {
   return std::max(1, static_cast<int>(std::lround(1.0 / std::max(cosine_of_latitude, 1e-3))));
 }
 
-DepthView::DepthView(const DenseDepth& depth, const Rigid3& world_from_camera, double scale,
-                     double min_error)
+DepthView::DepthView(const DenseDepth& depth, const Rigid3& world_from_camera, double min_error)
     : width_(depth.range.cols),
       height_(depth.range.rows),
       world_from_camera_(world_from_camera),
@@ -36,18 +35,16 @@ DepthView::DepthView(const DenseDepth& depth, const Rigid3& world_from_camera, d
   ORB360_CHECK(depth.range.size() == depth.confidence.size() && depth.range.rows >= 4 &&
                    depth.range.cols >= 8 && depth.range.cols % 2 == 0,
                depth.range.size(), depth.confidence.size());
-  ORB360_CHECK(scale > 0 && std::isfinite(scale), scale);
   ORB360_CHECK(min_error > 0, min_error);
   inverse_ranges_.assign(depth.range.total(), 0.0f);
   levels_.assign((depth.range.total() + 3) / 4, 0);
-  const auto inverse_scale = static_cast<float>(1.0 / scale);
   size_t index = 0;
   for (int row = 0; row < height(); ++row) {
     const float* range = depth.range.ptr<float>(row);
     const float* confidence = depth.confidence.ptr<float>(row);
     for (int column = 0; column < width(); ++column, ++index) {
       const auto level = cv::saturate_cast<std::uint8_t>(255.0f * confidence[column]);
-      const float inverse = inverse_scale / range[column];
+      const float inverse = 1.0f / range[column];
       if (!(inverse > 0 && std::isfinite(inverse) && level > 0)) continue;
       inverse_ranges_[index] = inverse;
       levels_[index / 4] |= std::uint32_t{level} << (8 * (index % 4));

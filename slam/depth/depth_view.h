@@ -16,11 +16,9 @@ namespace orb360 {
 /// range or without confidence is unknown.
 class DepthView {
  public:
-  /// `scale` is the number of world units per unit of the ranges. `min_error` (positive) is the
-  /// least expected error of ln(range) of a pixel, however confident the network is. Contract:
-  /// images have an even width and at least 8 x 4 pixels.
-  DepthView(const DenseDepth& depth, const Rigid3& world_from_camera, double scale,
-            double min_error);
+  /// `min_error` (positive) is the least expected error of ln(range) of a pixel, however confident
+  /// the network is. Contract: images have an even width and at least 8 x 4 pixels.
+  DepthView(const DenseDepth& depth, const Rigid3& world_from_camera, double min_error);
 
   int width() const { return width_; }
   int height() const { return height_; }

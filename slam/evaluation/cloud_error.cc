@@ -144,7 +144,7 @@ void TrueSurface::Add(const cv::Mat& range, const cv::Mat& excluded,
   const cv::Mat certain(range.size(), CV_32FC1, cv::Scalar(1.0));
   GeometricConsistencyOptions options;
   options.min_support = 0;
-  const DepthView view({range, certain, {}}, world_from_camera, 1.0, options.min_error);
+  const DepthView view({range, certain, {}}, world_from_camera, options.min_error);
   const SamplingOptions sampling{kSurfelSpacing, kMaxTrueRange,
                                  std::numeric_limits<double>::infinity()};
   const float pixel_angle = std::numbers::pi_v<float> / static_cast<float>(range.rows);

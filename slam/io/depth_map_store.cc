@@ -181,30 +181,16 @@ std::filesystem::path DepthMapStore::PathOf(int frame_index) const {
 }
 
 void DepthMapStore::Put(int frame_index, const DenseDepth& depth) const {
-  const cv::Size size = depth.range.size();
-  ORB360_CHECK(depth.color.type() == CV_8UC3 && depth.color.size() == size, depth.color.type(),
-               depth.color.size(), size);
+  const cv::Mat& range = depth.range;
+  const cv::Mat& confidence = depth.confidence;
+  ORB360_CHECK(
+      range.type() == CV_32FC1 && confidence.type() == CV_32FC1 && depth.color.type() == CV_8UC3,
+      range.type(), confidence.type(), depth.color.type());
+  ORB360_CHECK(
+      !range.empty() && confidence.size() == range.size() && depth.color.size() == range.size(),
+      range.size(), confidence.size(), depth.color.size());
   std::vector<unsigned char> color;
   cv::imencode(".jpg", depth.color, color, {cv::IMWRITE_JPEG_QUALITY, kColorQuality});
-  Write(frame_index, depth.range, depth.confidence,
-        {reinterpret_cast<const char*>(color.data()), color.size()});
-}
-
-void DepthMapStore::PutRanges(int frame_index, const cv::Mat& range,
-                              const cv::Mat& confidence) const {
-  const StoredBytes stored = ReadBytes(PathOf(frame_index));
-  ORB360_CHECK(range.cols == static_cast<int>(stored.header.width) &&
-                   range.rows == static_cast<int>(stored.header.height),
-               range.size());
-  Write(frame_index, range, confidence, stored.color());
-}
-
-void DepthMapStore::Write(int frame_index, const cv::Mat& range, const cv::Mat& confidence,
-                          std::string_view color) const {
-  ORB360_CHECK(range.type() == CV_32FC1 && confidence.type() == CV_32FC1, range.type(),
-               confidence.type());
-  ORB360_CHECK(!range.empty() && confidence.size() == range.size(), range.size(),
-               confidence.size());
   const std::string packed = Pack(Encode(range, confidence));
   const Header header{
       static_cast<std::uint32_t>(range.cols), static_cast<std::uint32_t>(range.rows),
@@ -213,7 +199,7 @@ void DepthMapStore::Write(int frame_index, const cv::Mat& range, const cv::Mat& 
   OutputFile file(PathOf(frame_index));
   file.Write({reinterpret_cast<const char*>(&header), sizeof header});
   file.Write(packed);
-  file.Write(color);
+  file.Write({reinterpret_cast<const char*>(color.data()), color.size()});
 }
 
 void DepthMapStore::CopyTo(int frame_index, const std::filesystem::path& folder) const {

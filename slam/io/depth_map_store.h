@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include "slam/io/temporary_folder.h"
@@ -36,11 +35,6 @@ class DepthMapStore {
   /// size, and at least one pixel.
   void Put(int frame_index, const DenseDepth& depth) const;
 
-  /// Replaces the ranges and confidences of a stored depth map. Its colours stay as they are.
-  /// Throws UserError for a frame that is not stored or is damaged. Contract: both are CV_32FC1 and
-  /// as large as what is stored.
-  void PutRanges(int frame_index, const cv::Mat& range, const cv::Mat& confidence) const;
-
   bool Contains(int frame_index) const;
 
   /// Copies a depth map to another folder. Throws UserError for a frame that is not stored or is
@@ -54,8 +48,6 @@ class DepthMapStore {
   DepthMapStore(std::filesystem::path folder, std::nullopt_t /*is_kept*/)
       : folder_(std::move(folder)) {}
   std::filesystem::path PathOf(int frame_index) const;
-  void Write(int frame_index, const cv::Mat& range, const cv::Mat& confidence,
-             std::string_view color) const;
 
   const std::filesystem::path folder_;
   std::optional<TemporaryFolder> temporary_;

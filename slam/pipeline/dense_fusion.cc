@@ -8,8 +8,10 @@ DenseCloudSummary WriteDenseCloud(const std::filesystem::path& path,
                                   const Reconstruction& reconstruction,
                                   const DepthMapStore& depth_maps, const Rigid3& target_from_world,
                                   int num_threads) {
-  return WriteDenseCloud(path, depth_maps, MakeDenseViews(reconstruction, target_from_world),
-                         CloudOptionsFor(reconstruction, num_threads));
+  const std::vector<DenseView> views =
+      MakeDenseViews(reconstruction, target_from_world,
+                     [&](int frame_index) { return depth_maps.Contains(frame_index); });
+  return WriteDenseCloud(path, depth_maps, views, CloudOptionsFor(reconstruction, num_threads));
 }
 
 }  // namespace orb360

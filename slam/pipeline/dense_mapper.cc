@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <utility>
+#include <map>
 
 #include <opencv2/imgproc.hpp>
 
-#include "slam/pipeline/stereo_depth.h"
+#include "slam/pipeline/dense_views.h"
+#include "slam/pipeline/keyframe_depth.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
@@ -19,69 +20,71 @@ DenseMapper::DenseMapper(const std::filesystem::path& weights, const std::filesy
       depth_maps_(folder),
       images_(folder / "images"),
       completer_(weights, {.size = {2 * options.height, options.height}, .threads = num_threads}),
-      completion_(
-          &completer_,
-          [this](int frame_index, const DenseDepth& depth) { Store(frame_index, depth); },
-          options) {}
-
-// It is called on other threads, one call at a time. On a full disk only the dense cloud is lost,
-// not the trajectory.
-void DenseMapper::Store(int frame_index, const DenseDepth& depth) {
-  if (failure_) return;
-  try {
-    depth_maps_.Put(frame_index, depth);
-  } catch (const UserError&) {
-    failure_ = std::current_exception();
-  }
-}
-
-void DenseMapper::Start(const Keyframe& keyframe, const cv::Mat& color,
-                        std::vector<SparsePoint> points, int num_frames) {
-  if (completion_.Start(keyframe, color, std::move(points), num_frames)) {
-    frames_.push_back(keyframe.frame_index);
-  }
-}
+      completion_(&completer_, options) {}
 
 void DenseMapper::KeepImage(int frame_index, const cv::Mat& image, const Rigid3& world_from_camera,
                             double median_range) {
-  // A sixth of the nearest source view's distance (StereoDepthOptions::baselines).
+  // A sixth of the nearest source view's distance (KeyframeDepthOptions::baselines).
   constexpr double kMinMotion = 0.02;
-  const Eigen::Vector3d& position = world_from_camera.translation;
-  if (last_kept_ && (position - *last_kept_).norm() < kMinMotion * median_range) return;
-  AwaitImage();
-  if (image_failure_) return;
-  last_kept_ = position;
-  cv::Mat small;
-  cv::resize(image, small, {camera().width(), camera().height()}, 0, 0, cv::INTER_AREA);
-  keeping_ = std::async(std::launch::async, [this, frame_index, small] {
-    cv::Mat gray;
-    cv::cvtColor(small, gray, cv::COLOR_BGR2GRAY);
-    images_.Put(frame_index, gray);
-  });
+  const Eigen::Vector3d& place = world_from_camera.translation;
+  if (last_place_ && (place - *last_place_).norm() < kMinMotion * median_range) return;
+  last_place_ = place;
+  Keep(frame_index, image);
 }
 
+void DenseMapper::KeepKeyframe(int frame_index, const cv::Mat& image) {
+  keyframes_.push_back(frame_index);
+  Keep(frame_index, image);
+}
+
+void DenseMapper::Keep(int frame_index, const cv::Mat& image) {
+  if (last_frame_ == frame_index) return;
+  AwaitImage();
+  if (failure_) return;
+  last_frame_ = frame_index;
+  cv::Mat small;
+  cv::resize(image, small, {camera().width(), camera().height()}, 0, 0, cv::INTER_AREA);
+  // cv::resize returns the image of the caller itself where the sizes are equal.
+  if (small.data == image.data) small = image.clone();
+  keeping_ = std::async(std::launch::async,
+                        [this, frame_index, small] { images_.Put(frame_index, small); });
+}
+
+// On a full disk only the dense cloud is lost, not the trajectory.
 void DenseMapper::AwaitImage() {
   if (!keeping_.valid()) return;
   try {
     keeping_.get();
   } catch (const UserError&) {
-    image_failure_ = std::current_exception();
+    failure_ = std::current_exception();
   }
 }
 
-void DenseMapper::Flush() {
-  AwaitImage();
-  completion_.Flush();
-}
+void DenseMapper::Flush() { AwaitImage(); }
 
-int DenseMapper::MeasureDepth(std::span<const DenseView> views, std::span<const FramePose> frames,
+int DenseMapper::ComputeDepth(const Reconstruction& finished, std::span<const Map> maps,
                               const KeyframeProgress& progress) {
-  if (failure()) return 0;
-  std::vector<FramePose> kept;
-  std::ranges::copy_if(frames, std::back_inserter(kept),
-                       [this](const FramePose& frame) { return images_.Contains(frame.index); });
-  return orb360::MeasureDepth(views, kept, {.sparse = options_.sparse}, depth_maps_, images_,
-                              &completer_, num_threads_, progress);
+  if (failure_) return 0;
+  const std::vector<DenseView> views = MakeDenseViews(finished, Rigid3(), [this](int frame_index) {
+    return std::ranges::binary_search(keyframes_, frame_index);
+  });
+  std::vector<FramePose> frames;
+  if (options_.stereo) {
+    std::ranges::copy_if(finished.frames, std::back_inserter(frames),
+                         [this](const FramePose& frame) { return images_.Contains(frame.index); });
+  }
+  std::vector<std::map<int, KeyframeId>> id_of(maps.size());  // by frame index
+  for (size_t m = 0; m < maps.size(); ++m) {
+    for (const KeyframeId id : maps[m].KeyframeIds())
+      id_of[m][maps[m].keyframe(id).frame_index] = id;
+  }
+  const auto landmarks_of = [&](const DenseView& view) {
+    return ProjectLandmarks(maps[view.map], id_of[view.map].at(view.frame_index), camera(), {});
+  };
+  KeyframeDepthOptions options{.min_points = options_.min_points};
+  if (!options_.stereo) options.baselines.clear();
+  return orb360::ComputeDepth(views, frames, landmarks_of, options, images_, &completer_,
+                              num_threads_, depth_maps_, progress);
 }
 
 std::optional<KnownGround> DenseMapper::Ground() const {

@@ -7,23 +7,24 @@
 #include <span>
 #include <vector>
 
-#include "slam/depth/dense_cloud.h"
 #include "slam/io/depth_map_store.h"
-#include "slam/io/gray_image_store.h"
-#include "slam/optimization/local_bundle_adjustment.h"
+#include "slam/io/image_store.h"
 #include "slam/pipeline/keyframe_completion.h"
+#include <orb360/slam/map/ground.h>
 #include <orb360/slam/pipeline/frame_report.h>
 #include <orb360/slam/pipeline/reconstruction.h>
 
 namespace orb360 {
 
-/// Completes the depth of keyframes beside tracking and stores it on disk. While no landmarks show
-/// the ground, it collects measurements of the ground from the dense depth.
+/// Keeps the images of tracked frames on disk during a run and computes the dense depth of
+/// keyframes at its end. Where depth guides mapping (DepthOptions::guides_mapping), it also
+/// completes keyframes beside tracking and, while no landmarks show the ground, collects
+/// measurements of the ground from them.
 class DenseMapper {
  public:
-  /// `weights` is a network file. `folder` contains the depth maps during the lifetime of the
-  /// object; it is created here and removed by the destructor. Throws UserError where the network
-  /// cannot be read or the folder cannot be created.
+  /// `weights` is a network file. `folder` contains the images and depth maps during the lifetime
+  /// of the object; it is created here and removed by the destructor. Throws UserError where the
+  /// network cannot be read or the folder cannot be created.
   DenseMapper(const std::filesystem::path& weights, const std::filesystem::path& folder,
               const DepthOptions& options, int num_threads);
 
@@ -31,25 +32,29 @@ class DenseMapper {
   const EquirectangularCamera& camera() const { return completer_.camera(); }
   bool Wants(KeyframeId id) const { return id % options_.every_keyframes == 0; }
 
-  /// Starts the completion of a keyframe (KeyframeCompletion::Start). Contract: none is pending.
-  void Start(const Keyframe& keyframe, const cv::Mat& color, std::vector<SparsePoint> points,
-             int num_frames);
-  std::optional<int> pending() const { return completion_.pending(); }
-  bool IsDue(int num_frames) const { return completion_.IsDue(num_frames); }
-  bool IsRunning() const { return completion_.IsRunning(); }
-  CompletedKeyframe Take(double unit_scale) { return completion_.Take(unit_scale); }
-  /// Waits until all depth is on disk.
-  void Flush();
   /// Keeps the image (CV_8UC3, BGR) of a tracked frame for stereo, unless the camera has moved by
   /// less than a few hundredths of `median_range`, the surroundings' range, since the last one.
   void KeepImage(int frame_index, const cv::Mat& image, const Rigid3& world_from_camera,
                  double median_range);
-  /// Measures the ranges of stored keyframes anew with the final poses of `views` and of all
-  /// `frames` (orb360::MeasureDepth) and returns of how many. Nothing happens after a failure.
-  /// Throws UserError where the disk fails. Contract: Flush has been called.
-  int MeasureDepth(std::span<const DenseView> views, std::span<const FramePose> frames,
+  /// Keeps the image of a frame that becomes a keyframe with dense depth.
+  void KeepKeyframe(int frame_index, const cv::Mat& image);
+  /// Waits until all images are on disk.
+  void Flush();
+  /// Computes the depth of the keyframes that were kept, with the final poses and landmarks of
+  /// `finished` and its `maps` (orb360::ComputeDepth), and returns how many were measured by
+  /// stereo. Nothing happens after a failure. Throws UserError where the disk fails. Contract:
+  /// Flush has been called.
+  int ComputeDepth(const Reconstruction& finished, std::span<const Map> maps,
                    const KeyframeProgress& progress);
 
+  const DepthMapStore& depth_maps() const { return depth_maps_; }
+  /// The error because of which images could not be stored, such as a full disk; null where there
+  /// was none. Contract: Flush has been called.
+  std::exception_ptr failure() const { return failure_; }
+
+  /// Completes keyframes for mapping.
+  KeyframeCompletion& completion() { return completion_; }
+  const KeyframeCompletion& completion() const { return completion_; }
   /// Adds a keyframe's measurement of the ground under the present map, in the map's world frame
   /// and its present unit of length.
   void AddGround(const DenseGround& ground) { grounds_.push_back(ground); }
@@ -59,26 +64,19 @@ class DenseMapper {
   /// uncertain.
   std::optional<KnownGround> Ground() const;
 
-  /// Frame indices of the keyframes that have dense depth, in the order of the keyframes.
-  const std::vector<int>& frames() const { return frames_; }
-  const DepthMapStore& depth_maps() const { return depth_maps_; }
-  /// The error because of which depth could not be stored, such as a full disk; null where there
-  /// was none. Contract: Flush has been called.
-  std::exception_ptr failure() const { return failure_ ? failure_ : image_failure_; }
-
  private:
-  void Store(int frame_index, const DenseDepth& depth);
+  void Keep(int frame_index, const cv::Mat& image);
   void AwaitImage();
 
   const DepthOptions options_;
   const int num_threads_;
-  std::vector<int> frames_;
+  std::vector<int> keyframes_;  ///< Frame indices of those that get depth, in their order.
   std::vector<DenseGround> grounds_;
   std::exception_ptr failure_;
-  std::exception_ptr image_failure_;
   DepthMapStore depth_maps_;
-  GrayImageStore images_;
-  std::optional<Eigen::Vector3d> last_kept_;  ///< Where the last image was kept, world frame.
+  ImageStore images_;
+  std::optional<Eigen::Vector3d> last_place_;  ///< Where the last image was kept, world frame.
+  std::optional<int> last_frame_;              ///< The frame whose image was kept last.
   DepthCompleter completer_;
   /// Declared last, so that their threads end before the members that they use.
   KeyframeCompletion completion_;

@@ -3,19 +3,18 @@
 namespace orb360 {
 
 std::vector<DenseView> MakeDenseViews(const Reconstruction& reconstruction,
-                                      const Rigid3& target_from_world) {
+                                      const Rigid3& target_from_world,
+                                      const std::function<bool(int frame_index)>& is_view) {
   const std::vector<FramePose>& keyframes = reconstruction.keyframes;
   std::vector<DenseView> views;
   constexpr size_t kNone = static_cast<size_t>(-1);
   std::vector<size_t> view_of(keyframes.size(), kNone);
   for (size_t i = 0; i < keyframes.size(); ++i) {
-    const auto scale = reconstruction.depth_scales.find(keyframes[i].index);
-    if (scale == reconstruction.depth_scales.end()) continue;
+    if (!is_view(keyframes[i].index)) continue;
     view_of[i] = views.size();
     views.push_back({.frame_index = keyframes[i].index,
                      .map = keyframes[i].map,
                      .world_from_camera = target_from_world * keyframes[i].world_from_camera,
-                     .scale = scale->second,
                      .neighbours = {}});
   }
   for (const CovisibleFrames& pair : reconstruction.covisibility) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "slam/depth/dense_cloud.h"
@@ -8,10 +9,12 @@
 
 namespace orb360 {
 
-/// Returns the keyframes of a reconstruction that have dense depth, with poses in the world to
-/// which `target_from_world` transforms. Keyframes that see the same landmarks are neighbours.
+/// Returns those keyframes of a reconstruction for whose frame index `is_view` holds, with poses in
+/// the world to which `target_from_world` transforms. Keyframes that see the same landmarks are
+/// neighbours.
 std::vector<DenseView> MakeDenseViews(const Reconstruction& reconstruction,
-                                      const Rigid3& target_from_world);
+                                      const Rigid3& target_from_world,
+                                      const std::function<bool(int frame_index)>& is_view);
 
 /// Returns how the cloud of a reconstruction is fused: with voxels of a fixed size in metres where
 /// its first map is in metres, otherwise of a size that follows from the ranges.

@@ -10,7 +10,6 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "slam/pipeline/dense_views.h"
 #include "slam/pipeline/make_reconstruction.h"
 #include "slam/pipeline/scale_state.h"
 #include <orb360/nn/base/check.h>
@@ -58,8 +57,8 @@ void Pipeline::LoadMap(const StoredMap& stored, bool keeps_map) {
   CountMap();
 }
 
-void Pipeline::CompleteDepth(const std::filesystem::path& weights,
-                             const std::filesystem::path& folder) {
+void Pipeline::EnableDepth(const std::filesystem::path& weights,
+                           const std::filesystem::path& folder) {
   ORB360_CHECK(num_frames_ == 0 && !dense_, num_frames_);
   dense_.emplace(weights, folder, options_.depth, num_threads_);
 }
@@ -118,7 +117,7 @@ void Pipeline::CountMap() {
 // Each running job uses one core. OpenMP threads that wait for one without a core would cost more
 // time than they save.
 int Pipeline::FreeThreads() const {
-  const bool is_mapping = back_end_.IsMapping() || (dense_ && dense_->IsRunning());
+  const bool is_mapping = back_end_.IsMapping() || (dense_ && dense_->completion().IsRunning());
   return std::max(1, num_threads_ - is_mapping - back_end_.IsAdjusting());
 }
 
@@ -167,7 +166,7 @@ void Pipeline::Initialize(const PendingFrame& frame) {
 // --- result -----------------------------------------------------------------------------------
 
 void Pipeline::FinishMap() {
-  if (dense_ && dense_->pending()) AdoptDepth();
+  if (dense_ && dense_->completion().pending()) AdoptDepth();
   if (back_end_.is_adjusting()) AdoptAdjustment();
   if (atlas_.found_loop) {  // The last keyframe has found it.
     StartLoopCorrection();
@@ -191,9 +190,8 @@ void Pipeline::CorrectScale(std::span<const PositionFix> positions) {
   }
 }
 
-int Pipeline::MeasureDepth(const Reconstruction& finished, const KeyframeProgress& progress) {
-  if (!dense_ || !options_.depth.stereo) return 0;
-  return dense_->MeasureDepth(MakeDenseViews(finished, Rigid3()), finished.frames, progress);
+int Pipeline::ComputeDepth(const Reconstruction& finished, const KeyframeProgress& progress) {
+  return dense_ ? dense_->ComputeDepth(finished, atlas_.maps(), progress) : 0;
 }
 
 Reconstruction Pipeline::Finish(std::span<const PositionFix> positions) {
@@ -214,12 +212,6 @@ Reconstruction Pipeline::Finish(std::span<const PositionFix> positions) {
   result.keyframe_scales = std::move(scale.keyframes);
   // The ground of another place is better than none.
   if (!result.up && !grounds.empty() && grounds.front()) result.up = grounds.front()->up;
-  if (dense_) {
-    for (const int frame : dense_->frames()) {
-      const auto anchor = atlas_.anchors().find(frame);  // None where its map was lost.
-      if (anchor != atlas_.anchors().end()) result.depth_scales[frame] = anchor->second.unit_scale;
-    }
-  }
   const FrontEnd::Events& events = front_end_.events();
   result.initialized_at = events.initialized_at;
   result.lost = events.num_lost;

@@ -26,10 +26,10 @@ class Pipeline {
 
   // These are the functions of System.
   void LoadMap(const StoredMap& stored, bool keeps_map);
-  void CompleteDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
+  void EnableDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
   FrameReport Process(const Frame& frame);
   Reconstruction Finish(std::span<const PositionFix> positions);
-  int MeasureDepth(const Reconstruction& finished, const KeyframeProgress& progress);
+  int ComputeDepth(const Reconstruction& finished, const KeyframeProgress& progress);
 
   const Atlas& atlas() const { return atlas_; }
   const std::optional<DenseMapper>& dense() const { return dense_; }

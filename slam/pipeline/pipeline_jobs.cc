@@ -18,7 +18,7 @@ void Pipeline::AdoptDue() {
   const int num_inliers = tracking == nullptr ? 0 : tracking->last.num_inliers;
   if (back_end_.IsMapDue(num_frames_, num_inliers)) AdoptMap();
   if (back_end_.has_map()) return;
-  if (dense_ && dense_->IsDue(num_frames_)) AdoptDepth();
+  if (dense_ && dense_->completion().IsDue(num_frames_)) AdoptDepth();
   if (back_end_.IsAdjustmentDue(num_frames_)) AdoptAdjustment();
   LookForDenseGround();
 }
@@ -45,6 +45,7 @@ void Pipeline::StartMapping(const cv::Mat& image) {
   TrackedFrame frame = front_end_.tracking()->last;
   for (LandmarkId& id : frame.landmarks) id = atlas_.map().Resolve(id);
   const bool is_completed = dense_ && dense_->Wants(atlas_.map().keyframe_end());
+  if (is_completed) dense_->KeepKeyframe(frame.index, image);
   const std::optional<KnownGround> ground = atlas_.ReliableGround();
   // The sooner a keyframe is in the map, the sooner there is the next one.
   const bool seeks_ground =
@@ -55,7 +56,7 @@ void Pipeline::StartMapping(const cv::Mat& image) {
                       .pyramid = std::make_shared<const SpherePyramid>(front_end_.TakePyramid()),
                       .ground = ground,
                       .mask = front_end_.mask()};
-  if (is_completed) {
+  if (is_completed && options_.depth.guides_mapping) {
     job.completed_camera = dense_->camera();
     cv::resize(image, job.color, {dense_->camera().width(), dense_->camera().height()}, 0, 0,
                cv::INTER_AREA);
@@ -79,9 +80,9 @@ void Pipeline::Adopt(MappedKeyframe mapped) {
   Apply(mapped.update);
   front_end_.SetGroundMotion(mapped.ground_motion);
   if (!mapped.color.empty()) {
-    if (dense_->pending()) AdoptDepth();
-    dense_->Start(atlas_.map().keyframe(mapped.update.reference), mapped.color,
-                  std::move(mapped.sparse), num_frames_);
+    if (dense_->completion().pending()) AdoptDepth();
+    dense_->completion().Start(atlas_.map().keyframe(mapped.update.reference), mapped.color,
+                               std::move(mapped.sparse), num_frames_);
   }
   if (mapped.loop) atlas_.found_loop = std::move(mapped.loop);
   if (mapped.ground) FollowGround(*mapped.ground, mapped.changes_unit);
@@ -90,17 +91,16 @@ void Pipeline::Adopt(MappedKeyframe mapped) {
 // --- depth --------------------------------------------------------------------------------------
 
 void Pipeline::AdoptDepth() {
-  const int frame_index = dense_->pending().value();
-  CompletedKeyframe completed = dense_->Take(atlas_.anchors().at(frame_index).unit_scale);
+  const int frame_index = dense_->completion().pending().value();
+  CompletedKeyframe completed =
+      dense_->completion().Take(atlas_.anchors().at(frame_index).unit_scale);
   // The keyframe may have been removed, or belong to another map by now.
   Map& map = atlas_.map();
   for (KeyframeId id = map.keyframe_end() - 1; id >= 0; --id) {
     if (!map.HasKeyframe(id) || map.keyframe(id).frame_index != frame_index) continue;
     Keyframe& keyframe = map.keyframe(id);
-    if (options_.depth.guides_mapping) {
-      keyframe.range_priors = std::move(completed.priors);
-      front_end_.UseDepth(keyframe);
-    }
+    keyframe.range_priors = std::move(completed.priors);
+    front_end_.UseDepth(keyframe);
     if (!atlas_.ground() && completed.ground) {
       completed.ground->up = keyframe.world_from_camera.rotation * completed.ground->up;
       dense_->AddGround(*completed.ground);

@@ -17,9 +17,9 @@ void System::LoadMap(const StoredMap& stored) { pipeline_->LoadMap(stored, false
 
 void System::Localize(const StoredMap& stored) { pipeline_->LoadMap(stored, true); }
 
-void System::CompleteDepth(const std::filesystem::path& weights,
-                           const std::filesystem::path& folder) {
-  pipeline_->CompleteDepth(weights, folder);
+void System::EnableDepth(const std::filesystem::path& weights,
+                         const std::filesystem::path& folder) {
+  pipeline_->EnableDepth(weights, folder);
 }
 
 FrameReport System::Process(const Frame& frame) { return pipeline_->Process(frame); }
@@ -34,8 +34,8 @@ std::span<const std::optional<KnownGround>> System::grounds() const {
   return pipeline_->atlas().grounds();
 }
 
-int System::MeasureDepth(const Reconstruction& finished, const KeyframeProgress& progress) {
-  return pipeline_->MeasureDepth(finished, progress);
+int System::ComputeDepth(const Reconstruction& finished, const KeyframeProgress& progress) {
+  return pipeline_->ComputeDepth(finished, progress);
 }
 
 const DepthMapStore* System::depth_maps() const {

@@ -48,6 +48,17 @@ TEST_F(FuseTest, WritesTheBytesOfTheRunForAnyNumberOfThreads) {
   EXPECT_FALSE(std::filesystem::exists(OutFile("cloud.ply.voxels")));
 }
 
+TEST_F(FuseTest, WritesTheSurfaceThroughTheCloudOnRequest) {
+  EXPECT_FALSE(std::filesystem::exists(OutFile("mesh.ply")));
+  const ProgramResult result = Fuse({"--mesh", "--threads", "2"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  const std::string mesh = ReadText(OutFile("mesh.ply"));
+  EXPECT_GT(mesh.size(), 10000u);
+  EXPECT_EQ(Fuse({"--mesh", "--threads", "1"}).status, 0);
+  EXPECT_EQ(ReadText(OutFile("mesh.ply")), mesh);
+  EXPECT_FALSE(std::filesystem::exists(OutFile("mesh.ply.points")));
+}
+
 TEST_F(FuseTest, ItsOptionsChangeTheCloudAndLeaveThatOfTheRunAlone) {
   const std::string cloud = ReadText(OutFile("cloud.ply"));
   const std::string other = folder_ / "other.ply";
@@ -79,9 +90,9 @@ TEST_F(FuseTest, RefusesWhatIsMissingOrDamagedInOneLine) {
   ExpectRefusal("views.json: is damaged");
   WriteText(views / "views.json", replaced("\"neighbours\": [", "\"neighbours\": [ 9999,"));
   ExpectRefusal("views.json: is damaged");
-  WriteText(views / "views.json", replaced("\"scale\": ", "\"scale\": -"));
+  WriteText(views / "views.json", replaced("\"frame\": ", "\"frame\": 99"));
   ExpectRefusal("views.json: is damaged");
-  WriteText(views / "views.json", replaced("\"version\": 1", "\"version\": 7"));
+  WriteText(views / "views.json", replaced("\"version\": 2", "\"version\": 7"));
   ExpectRefusal("another version");
   WriteText(views / "views.json", description);
   for (const auto& entry : std::filesystem::directory_iterator(views)) {

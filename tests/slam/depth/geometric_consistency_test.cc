@@ -27,7 +27,7 @@ std::vector<DepthView> Views(const std::vector<DenseDepth>& depths,
   std::vector<DepthView> views;
   const std::vector<Rigid3> cameras = Cameras();
   for (size_t i = 0; i < depths.size(); ++i) {
-    views.emplace_back(depths[i], cameras[i], 1.0, options.min_error);
+    views.emplace_back(depths[i], cameras[i], options.min_error);
   }
   return views;
 }

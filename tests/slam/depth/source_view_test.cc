@@ -49,7 +49,7 @@ std::vector<Eigen::Vector3d> RandomBearings(int count) {
   return bearings;
 }
 
-DepthView ViewOf(const DenseDepth& depth) { return {depth, kPose, 1.0, 0.01}; }
+DepthView ViewOf(const DenseDepth& depth) { return {depth, kPose, 0.01}; }
 
 /// The same camera once more.
 SourceView Itself(const DepthView& view) { return {&view, {}, 2.5, 0.01}; }
@@ -160,7 +160,7 @@ TEST(CompareWithSourceView, SaysNothingBesideEdgesOfWhatIsNearAndWhereNothingIsK
 
 TEST(CompareWithSourceView, PosesBringThePointsToTheSourceView) {
   const Rigid3 other = TurnedCamera({-0.8, 0.7, -0.3}, -1.1);
-  const DepthView view(kRoom.Render(kCamera, other), other, 1.0, 0.01);
+  const DepthView view(kRoom.Render(kCamera, other), other, 0.01);
   ForEachDispatchTarget([&] {
     TestedRow points = PointsAt(RandomBearings(1000));
     const SourceView source{&view, other.Inverse() * kPose, 2.5, 0.01};

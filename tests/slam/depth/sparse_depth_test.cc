@@ -59,7 +59,7 @@ TEST(SparseDepth, DropsLandmarksThatAreOftenNotFound) {
   SyntheticScene scene(100);
   Map map = scene.MakeMap(Walk(3, {-0.5, 0.2, 0.0}), 100, 0.0);
   const auto holds = [&](LandmarkId id) {
-    const auto points = ProjectLandmarks(map, 1, kCamera, {});
+    const auto points = ProjectLandmarks(map, 1, kCamera, {.min_found_fraction = 0.8});
     return std::ranges::count(points, id, &SparsePoint::landmark) == 1;
   };
   map.landmark(5).visible = 10;

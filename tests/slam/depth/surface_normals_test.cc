@@ -30,7 +30,7 @@ bool IsOnOneWall(const cv::Mat& color, int row, int column) {
 
 TEST(FitNormals, AreThoseOfTheWallsSeamAndPolesIncluded) {
   const DenseDepth depth = kRoom.Render(kCamera, kPose);
-  const DepthView view(depth, kPose, 1.0, 0.01);
+  const DepthView view(depth, kPose, 0.01);
   ForEachDispatchTarget([&] {
     int tested = 0;
     int at_seam = 0;
@@ -70,7 +70,7 @@ TEST(FitNormals, FaceTheCameraWhereAPixelIsAloneAndAreZeroWhereItIsUnknown) {
   DenseDepth depth = kRoom.Render(kCamera, kPose);
   depth.range(cv::Rect(90, 50, 21, 21)) = 0;
   depth.range.at<float>(60, 100) = 2.0f;
-  const DepthView view(depth, kPose, 1.0, 0.01);
+  const DepthView view(depth, kPose, 0.01);
   ForEachDispatchTarget([&] {
     TestedRow points;
     points.Clear(60);

@@ -21,7 +21,6 @@ class DenseCloudFileTest : public testing::Test {
                      0,
                      TurnedCamera({-1.0 + 0.4 * static_cast<double>(i), 0.2, 0.1},
                                   0.1 * static_cast<double>(i)),
-                     1.0,
                      {}};
       for (size_t j = 0; j < 6; ++j) {
         if (j != i) view.neighbours.push_back(j);

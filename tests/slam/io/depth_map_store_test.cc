@@ -83,21 +83,6 @@ TEST(DepthMapStore, ReplacesAndTellsWhatItHas) {
   EXPECT_EQ(store.Get(3).range.cols, 32);
 }
 
-TEST(DepthMapStore, ReplacesRangesAndKeepsTheColoursByteForByte) {
-  const TempFolder folder;
-  const DepthMapStore store(folder / "store");
-  store.Put(3, Example(32, 16));
-  const cv::Mat color = store.Get(3).color;
-  store.PutRanges(3, cv::Mat(16, 32, CV_32F, 2.0), cv::Mat(16, 32, CV_32F, 0.8));
-  const DenseDepth read = store.Get(3);
-  EXPECT_NEAR(read.range.at<float>(5, 7), 2.0, 0.001);
-  EXPECT_NEAR(read.confidence.at<float>(5, 7), 0.8, 0.002);
-  EXPECT_EQ(cv::norm(read.color, color, cv::NORM_INF), 0);
-  EXPECT_THROW(store.PutRanges(4, read.range, read.confidence), UserError);
-  EXPECT_THROW(store.PutRanges(3, cv::Mat(8, 16, CV_32F, 2.0), cv::Mat(8, 16, CV_32F, 0.8)),
-               ContractError);
-}
-
 TEST(DepthMapStore, LeavesNothingBehindAndTakesNothingOver) {
   const TempFolder folder;
   std::filesystem::create_directories(folder / "store");

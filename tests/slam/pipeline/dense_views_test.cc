@@ -17,24 +17,24 @@ Reconstruction FourKeyframes() {
                                 .map = 0,
                                 .world_from_camera = {Eigen::Quaterniond::Identity(), position}});
   }
-  result.depth_scales = {{0, 2.0}, {20, 3.0}, {30, 4.0}};
   result.covisibility = {{0, 1, 50}, {1, 2, 50}, {2, 3, 50}};
   result.maps.push_back({.is_metric = true});
   return result;
 }
 
+bool HasDepth(int frame_index) { return frame_index != 10; }
+
 TEST(MakeDenseViews, AreTheKeyframesWithDepthInTheGivenWorld) {
   const Rigid3 target{ExpSo3({0, 0, 0.5}), {5, 6, 7}};
-  const std::vector<DenseView> views = MakeDenseViews(FourKeyframes(), target);
+  const std::vector<DenseView> views = MakeDenseViews(FourKeyframes(), target, HasDepth);
   ASSERT_EQ(views.size(), 3u);
   EXPECT_EQ(views[1].frame_index, 20);
-  EXPECT_EQ(views[1].scale, 3.0);
   EXPECT_LT((views[1].world_from_camera.translation - target * Eigen::Vector3d(2, 0, 0)).norm(),
             1e-12);
 }
 
 TEST(MakeDenseViews, AreNeighboursWhereBothHaveDepthAndSeeTheSameLandmarks) {
-  const std::vector<DenseView> views = MakeDenseViews(FourKeyframes(), Rigid3());
+  const std::vector<DenseView> views = MakeDenseViews(FourKeyframes(), Rigid3(), HasDepth);
   EXPECT_TRUE(views[0].neighbours.empty());  // its only neighbour has no depth
   EXPECT_EQ(views[1].neighbours, std::vector<size_t>{2});
   EXPECT_EQ(views[2].neighbours, std::vector<size_t>{1});

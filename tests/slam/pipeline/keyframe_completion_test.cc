@@ -1,14 +1,11 @@
 #include "slam/pipeline/keyframe_completion.h"
 
 #include <cmath>
-#include <future>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "tests/slam/pipeline/propagation_network.h"
-#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {
@@ -45,29 +42,23 @@ class KeyframeCompletionTest : public testing::Test {
     return points;
   }
   cv::Mat Image() const { return {64, 128, CV_8UC3, cv::Scalar::all(90)}; }
-  KeyframeCompletion Make() {
-    return {&completer_,
-            [this](int frame, DenseDepth depth) { sunk_.emplace_back(frame, std::move(depth)); },
-            options_};
-  }
+  KeyframeCompletion Make() { return {&completer_, options_}; }
 
   TempFolder folder_;
   DepthCompleter completer_{WritePropagation(folder_), {.size = {128, 64}}};
   DepthOptions options_;
   Keyframe keyframe_;
-  std::vector<std::pair<int, DenseDepth>> sunk_;
 };
 
 TEST_F(KeyframeCompletionTest, TellsTheRangesOfFeaturesAndTheGroundWhenDue) {
   KeyframeCompletion depth = Make();
   EXPECT_FALSE(depth.pending().has_value());
-  EXPECT_TRUE(depth.Start(keyframe_, Image(), Points(), 100));
+  depth.Start(keyframe_, Image(), Points(), 100);
   EXPECT_EQ(depth.pending(), kFrame);
   EXPECT_FALSE(depth.IsDue(104));
   EXPECT_TRUE(depth.IsDue(105));
   const CompletedKeyframe completed = depth.Take(1.0);
   EXPECT_FALSE(depth.pending().has_value());
-  depth.Flush();
   EXPECT_FALSE(depth.IsRunning());
   EXPECT_EQ(completed.frame_index, kFrame);
   ASSERT_EQ(completed.priors.size(), 1u);
@@ -76,8 +67,6 @@ TEST_F(KeyframeCompletionTest, TellsTheRangesOfFeaturesAndTheGroundWhenDue) {
   ASSERT_TRUE(completed.ground.has_value());
   EXPECT_NEAR(completed.ground->log_height, std::log(kHeight), 0.02);
   EXPECT_GT(completed.ground->up.z(), 0.999);
-  ASSERT_EQ(sunk_.size(), 1u);
-  EXPECT_EQ(sunk_[0].first, kFrame);
 }
 
 TEST_F(KeyframeCompletionTest, FollowsChangesOfTheUnit) {
@@ -92,34 +81,8 @@ TEST_F(KeyframeCompletionTest, LeavesOutAKeyframeWithTooFewPoints) {
   KeyframeCompletion depth = Make();
   std::vector<SparsePoint> points = Points();
   points.resize(static_cast<size_t>(options_.min_points) - 1);
-  EXPECT_FALSE(depth.Start(keyframe_, Image(), points, 0));
+  depth.Start(keyframe_, Image(), points, 0);
   EXPECT_FALSE(depth.pending().has_value());
-}
-
-TEST_F(KeyframeCompletionTest, PassesOnWhatTheSinkThrowsWithTheNextKeyframeOrInTheEnd) {
-  KeyframeCompletion depth(
-      &completer_, [](int, const DenseDepth&) { throw UserError("the disk is full"); }, options_);
-  depth.Start(keyframe_, Image(), Points(), 0);
-  EXPECT_NO_THROW(depth.Take(1.0));
-  EXPECT_FALSE(depth.pending().has_value());
-  depth.Start(keyframe_, Image(), Points(), 0);
-  EXPECT_THROW(depth.Take(1.0), UserError);
-  EXPECT_FALSE(depth.pending().has_value());
-  depth.Start(keyframe_, Image(), Points(), 0);
-  EXPECT_NO_THROW(depth.Take(1.0));
-  EXPECT_THROW(depth.Flush(), UserError);
-}
-
-TEST_F(KeyframeCompletionTest, TellsWhatIsCompletedWhileTheSinkIsStillAtIt) {
-  std::promise<void> may_end;
-  KeyframeCompletion depth(
-      &completer_, [&](int, const DenseDepth&) { may_end.get_future().wait(); }, options_);
-  depth.Start(keyframe_, Image(), Points(), 0);
-  EXPECT_EQ(depth.Take(1.0).frame_index, kFrame);
-  EXPECT_TRUE(depth.IsRunning());
-  may_end.set_value();
-  depth.Flush();
-  EXPECT_FALSE(depth.IsRunning());
 }
 
 }  // namespace

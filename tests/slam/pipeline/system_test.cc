@@ -116,33 +116,28 @@ Completed TrackAndComplete(const BoxRoom& room, const std::vector<double>& frame
   options.num_threads = num_threads;
   System system(kHallCamera, options, {});
   Completed completed;
-  system.CompleteDepth(WritePropagation(folder), folder / "depth");
+  system.EnableDepth(WritePropagation(folder), folder / "depth");
   for (size_t i = 0; i < frames.size(); ++i) {
     system.Process(MakeFrame(static_cast<int>(i), room.Render(kHallCamera, TruePose(frames[i]))));
   }
   completed.result = system.Finish();
-  system.MeasureDepth(completed.result);
-  for (const auto& [frame_index, scale] : completed.result.depth_scales) {
-    completed.depths.emplace_back(frame_index, system.depth_maps()->Get(frame_index));
+  system.ComputeDepth(completed.result);
+  for (const FramePose& keyframe : completed.result.keyframes) {
+    if (!system.depth_maps()->Contains(keyframe.index)) continue;
+    completed.depths.emplace_back(keyframe.index, system.depth_maps()->Get(keyframe.index));
   }
   completed.maps.assign(system.maps().begin(), system.maps().end());
   return completed;
 }
 
-TEST(SystemSlow, CompletesKeyframesInMetresBesideTracking) {
+TEST(SystemSlow, ComputesTheDepthOfKeyframesInMetresAndChangesNoPose) {
   const BoxRoom room = Hall();
   const std::vector<double> frames = Count(60);
   const auto [result, depths, maps] = TrackAndComplete(room, frames);
   ExpectSame(result, Track(room, frames));  // Depth changes no pose unless it guides mapping.
   ASSERT_GE(depths.size(), 5u);
   const EquirectangularCamera camera(256, 128);
-  for (size_t i = 0; i < depths.size(); ++i) {
-    const auto& [frame_index, depth] = depths[i];
-    if (i > 0) {
-      EXPECT_GT(frame_index, depths[i - 1].first);
-    }
-    ASSERT_TRUE(result.depth_scales.contains(frame_index));
-    const double scale = result.depth_scales.at(frame_index);
+  for (const auto& [frame_index, depth] : depths) {
     const Rigid3 pose = TruePose(frame_index);
     std::vector<double> errors;
     for (int y = 0; y < depth.range.rows; ++y) {
@@ -150,7 +145,7 @@ TEST(SystemSlow, CompletesKeyframesInMetresBesideTracking) {
         if (!(depth.confidence.at<float>(y, x) > 0)) continue;  // no point near
         const double truth =
             room.Range(pose.translation, pose.rotation * camera.Bearing({x + 0.5, y + 0.5}));
-        errors.push_back(std::abs(std::log(scale * depth.range.at<float>(y, x) / truth)));
+        errors.push_back(std::abs(std::log(depth.range.at<float>(y, x) / truth)));
       }
     }
     ASSERT_GT(errors.size(), 500u);

@@ -8,8 +8,7 @@ namespace orb360 {
 
 /// Completed depth of a keyframe: equirectangular images of one size.
 struct DenseDepth {
-  /// CV_32FC1: range along each pixel's ray, in the unit that the map had when it was made; 0 where
-  /// unknown.
+  /// CV_32FC1: range along each pixel's ray, in the unit of the map; 0 where unknown.
   cv::Mat range;
   /// CV_32FC1 in 0..1: 1 / confidence - 1 is the expected relative error of the range.
   cv::Mat confidence;

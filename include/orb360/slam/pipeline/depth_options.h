@@ -9,8 +9,8 @@ class OptionSchema;
 
 /// How the depth of keyframes is completed (docs/concepts/depth_completion.md).
 struct DepthOptions {
-  /// How landmarks become sparse depth.
-  SparseDepthOptions sparse = {};
+  /// How landmarks become sparse depth for mapping (guides_mapping).
+  SparseDepthOptions sparse = {.min_found_fraction = 0.8};
   /// How the ground is found in completed depth.
   DenseGroundOptions ground = {};
   /// Height of the images that are completed, pixels; they are twice as wide.

@@ -31,7 +31,8 @@ struct FrameReport {
   std::map<std::string, double> timing_ms;
 };
 
-/// Receives after each keyframe how many of how many are done. False ends the work early.
+/// Receives before each keyframe how many of how many are done. False makes the rest faster and
+/// less exact.
 using KeyframeProgress = std::function<bool(int done, int count)>;
 
 }  // namespace orb360

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <optional>
 #include <vector>
 
@@ -78,9 +77,6 @@ struct Reconstruction {
   /// Mean number of landmarks that a keyframe observes. A corner that has features on several
   /// levels counts once.
   double landmarks_per_keyframe = 0;
-  /// For each keyframe that has dense depth, by frame index, the number of units of the result in
-  /// one unit of that depth.
-  std::map<int, double> depth_scales;
   /// Normal of the ground, unit, world frame, towards the sky. None where no ground was found.
   std::optional<Eigen::Vector3d> up;
 };

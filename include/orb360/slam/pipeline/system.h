@@ -33,9 +33,9 @@ class System {
   void LoadMap(const StoredMap& stored);
   /// The same, but frames are only localized in the map, which does not change.
   void Localize(const StoredMap& stored);
-  /// Before the first frame: keyframes get dense depth by the network in `weights`, kept in
-  /// `folder` while the system lives. Throws UserError where one of them cannot be used.
-  void CompleteDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
+  /// Before the first frame: keeps images for ComputeDepth in `folder` while the system lives.
+  /// Throws UserError where `folder` or the network in the file `weights` cannot be used.
+  void EnableDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
 
   /// Processes the next frame; timestamps must grow. Throws ContractError for an image of another
   /// size or type than 8-bit BGR. After another exception only Finish may be called.
@@ -47,10 +47,11 @@ class System {
   std::span<const Map> maps() const;
   /// Returns the ground under each map, after Finish. A map with ground is metric.
   std::span<const std::optional<KnownGround>> grounds() const;
-  /// Measures depth by stereo with final poses; returns of how many keyframes. Throws UserError.
-  int MeasureDepth(const Reconstruction& finished, const KeyframeProgress& progress = nullptr);
-  /// Returns the depth of the keyframes in Reconstruction::depth_scales, after Finish, or null
-  /// without CompleteDepth. Throws UserError where the depth could not be stored.
+  /// Computes the dense depth of keyframes, after Finish; returns of how many stereo has measured a
+  /// part (0 without EnableDepth). Throws UserError where the disk fails.
+  int ComputeDepth(const Reconstruction& finished, const KeyframeProgress& progress = nullptr);
+  /// Returns the depth of keyframes, after ComputeDepth, or null without EnableDepth. Throws
+  /// UserError where the images could not be stored.
   const DepthMapStore* depth_maps() const;
 
  private:

@@ -1,4 +1,4 @@
-#include "slam/io/gray_image_store.h"
+#include "slam/io/image_store.h"
 
 #include <string>
 #include <vector>
@@ -15,30 +15,36 @@ constexpr int kQuality = 95;  // of JPEG
 
 }  // namespace
 
-std::filesystem::path GrayImageStore::PathOf(int frame_index) const {
+std::filesystem::path ImageStore::PathOf(int frame_index) const {
   return folder_.path() / (std::to_string(frame_index) + ".jpg");
 }
 
-void GrayImageStore::Put(int frame_index, const cv::Mat& gray) const {
-  ORB360_CHECK(gray.type() == CV_8UC1 && !gray.empty(), gray.type(), gray.size());
+void ImageStore::Put(int frame_index, const cv::Mat& image) const {
+  ORB360_CHECK(image.type() == CV_8UC3 && !image.empty(), image.type(), image.size());
   std::vector<unsigned char> jpeg;
-  cv::imencode(".jpg", gray, jpeg, {cv::IMWRITE_JPEG_QUALITY, kQuality});
+  cv::imencode(".jpg", image, jpeg, {cv::IMWRITE_JPEG_QUALITY, kQuality});
   // These files are useless after a crash, so the disk is not synced.
   OutputFile file(PathOf(frame_index));
   file.Write({reinterpret_cast<const char*>(jpeg.data()), jpeg.size()});
 }
 
-bool GrayImageStore::Contains(int frame_index) const {
+bool ImageStore::Contains(int frame_index) const {
   return std::filesystem::exists(PathOf(frame_index));
 }
 
-cv::Mat GrayImageStore::Get(int frame_index) const {
+cv::Mat ImageStore::Read(int frame_index, int flags) const {
   const std::filesystem::path path = PathOf(frame_index);
-  cv::Mat gray = cv::imread(path.string(), cv::IMREAD_GRAYSCALE);
-  if (gray.empty()) {
+  cv::Mat image = cv::imread(path.string(), flags);
+  if (image.empty()) {
     throw UserError(path.string() + ": is damaged or gone; leave the folder as orb360 has made it");
   }
-  return gray;
+  return image;
+}
+
+cv::Mat ImageStore::Get(int frame_index) const { return Read(frame_index, cv::IMREAD_COLOR); }
+
+cv::Mat ImageStore::GetGray(int frame_index) const {
+  return Read(frame_index, cv::IMREAD_GRAYSCALE);
 }
 
 }  // namespace orb360

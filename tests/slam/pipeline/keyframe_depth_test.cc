@@ -1,10 +1,10 @@
-#include "slam/pipeline/stereo_depth.h"
+#include "slam/pipeline/keyframe_depth.h"
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <opencv2/imgproc.hpp>
 
 #include "nn/base/statistics.h"
 #include "tests/slam/geometry/box_room.h"
@@ -21,7 +21,6 @@ std::vector<DenseView> ViewsAt(const std::vector<double>& places) {
     const auto angle = static_cast<double>(i);
     views.push_back({.frame_index = static_cast<int>(10 * i),
                      .world_from_camera = {ExpSo3({0.1, 0.2, 0.3 * angle}), {places[i], 0, 0}},
-                     .scale = 2.0,
                      .neighbours = {}});
     for (size_t j = 0; j < places.size(); ++j) {
       if (j != i) views.back().neighbours.push_back(j);
@@ -42,7 +41,7 @@ FramePose FrameAt(int index, double place, int map = 0) {
 
 TEST(ChooseStereoSources, TakesTheNearestToEachBaselineOnBothSides) {
   const std::vector<DenseView> views = ViewsAt({-5, -1.4, -0.5, -0.02, 0, 0.02, 0.5, 1.4, 5});
-  const StereoDepthOptions options{.baselines = {0.1, 0.3}, .max_baseline_ratio = 2.0};
+  const KeyframeDepthOptions options{.baselines = {0.1, 0.3}, .max_baseline_ratio = 2.0};
   const auto choose = [&](size_t view) {
     return Indices(
         ChooseStereoSources(FindStereoCandidates(views, view, {}), views[view], 5.0, options));
@@ -69,25 +68,30 @@ TEST(FindStereoCandidates, AreNeighboursAndTheFramesOfTheMapBetweenThem) {
             (std::vector<int>{12, 20, 40, 45, 50}));
 }
 
-class MeasureDepthTest : public testing::Test {
+class ComputeDepthTest : public testing::Test {
  protected:
-  MeasureDepthTest()
+  ComputeDepthTest()
       : store_(folder_ / "depth"),
         images_(folder_ / "depth" / "images"),
         completer_(WritePropagation(folder_),
                    {.size = {kCamera.width(), kCamera.height()}, .threads = 1}) {}
 
-  // Stores images of the room, each with the same wrong range everywhere.
-  void Store(const std::vector<DenseView>& views) {
-    for (const DenseView& view : views) {
-      const cv::Size size(kCamera.width(), kCamera.height());
-      store_.Put(view.frame_index, {cv::Mat(size, CV_32F, 1.2), cv::Mat(size, CV_32F, 0.9),
-                                    kRoom.Render(kCamera, view.world_from_camera)});
-    }
+  int Compute(const std::vector<DenseView>& views, const KeyframeDepthOptions& options = {},
+              const std::vector<FramePose>& frames = {},
+              const KeyframeProgress& progress = nullptr) {
+    for (const DenseView& view : views) Show(view.frame_index, view.world_from_camera);
+    return ComputeDepth(
+        views, frames, [this](const DenseView&) { return landmarks_; }, options, images_,
+        &completer_, 2, store_, progress);
+  }
+
+  // Stores an image of the room.
+  void Show(int frame_index, const Rigid3& pose) const {
+    images_.Put(frame_index, kRoom.Render(kCamera, pose));
   }
 
   // Median of |ln| of the ratio of a view's ranges to the truth.
-  double MedianError(const DenseView& view) {
+  double MedianError(const DenseView& view) const {
     const cv::Mat range = store_.Get(view.frame_index).range;
     std::vector<double> errors;
     for (int row = 30; row < range.rows - 30; row += 3) {
@@ -95,87 +99,81 @@ class MeasureDepthTest : public testing::Test {
         const Eigen::Vector3d ray =
             view.world_from_camera.rotation * kCamera.Bearing({column + 0.5, row + 0.5});
         const double truth = kRoom.Range(view.world_from_camera.translation, ray);
-        errors.push_back(std::abs(std::log(view.scale * range.at<float>(row, column) / truth)));
+        errors.push_back(std::abs(std::log(range.at<float>(row, column) / truth)));
       }
     }
     return Median(errors);
+  }
+
+  // Landmarks at every second pixel, all at one wrong range.
+  static std::vector<SparsePoint> WrongLandmarks() {
+    std::vector<SparsePoint> landmarks;
+    for (int i = 0; i < 64 * 128; ++i) {
+      landmarks.push_back({i, {0.5 + 2 * (i % 128), 0.5 + 2 * (i / 128)}, 2.4, 1.0});
+    }
+    return landmarks;
   }
 
   static inline const EquirectangularCamera kCamera{256, 128};
   static inline const BoxRoom kRoom{{4.0, 3.0, 2.0}, 3};
   TempFolder folder_;
   DepthMapStore store_;
-  GrayImageStore images_;
+  ImageStore images_;
   DepthCompleter completer_;
+  std::vector<SparsePoint> landmarks_ = WrongLandmarks();
 };
 
-TEST_F(MeasureDepthTest, RangesAreMeasuredInTheUnitOfEachKeyframe) {
+TEST_F(ComputeDepthTest, RangesAreMeasuredByStereo) {
   const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
-  Store(views);
-  EXPECT_GT(MedianError(views[1]), 0.2);
-  EXPECT_EQ(MeasureDepth(views, {}, {}, store_, images_, &completer_, 2), 4);
+  EXPECT_EQ(Compute(views), 4);
   for (const DenseView& view : views) EXPECT_LT(MedianError(view), 0.05) << view.frame_index;
+  EXPECT_EQ(store_.Get(0).color.size(), cv::Size(256, 128));
 }
 
-TEST_F(MeasureDepthTest, AKeyframeWithoutTwoSourcesStaysAsItWasCompleted) {
-  const std::vector<DenseView> views = ViewsAt({0, 0.3});
-  Store(views);
-  EXPECT_EQ(MeasureDepth(views, {}, {}, store_, images_, &completer_, 2), 0);
-  EXPECT_NEAR(store_.Get(0).range.at<float>(60, 100), 1.2, 0.001);
+TEST_F(ComputeDepthTest, WithoutTwoSourcesTheNetworkCompletesTheLandmarks) {
+  EXPECT_EQ(Compute(ViewsAt({0, 0.3})), 0);
+  EXPECT_NEAR(store_.Get(0).range.at<float>(60, 100), 2.4, 0.01);
 }
 
-TEST_F(MeasureDepthTest, FramesThatAreNoKeyframesAreSources) {
+TEST_F(ComputeDepthTest, AKeyframeWithFewLandmarksAndWithoutStereoGetsNoDepth) {
+  landmarks_.resize(49);
+  EXPECT_EQ(Compute(ViewsAt({0, 0.3})), 0);
+  EXPECT_FALSE(store_.Contains(0));
+  EXPECT_EQ(Compute(ViewsAt({-0.5, 0, 0.5, 1.0})), 4);
+  EXPECT_TRUE(store_.Contains(0));
+}
+
+TEST_F(ComputeDepthTest, FramesThatAreNoKeyframesAreSources) {
   const std::vector<DenseView> views = ViewsAt({0, 0.6});
-  Store(views);
-  EXPECT_EQ(MeasureDepth(views, {}, {}, store_, images_, &completer_, 2), 0);
   const FramePose between = FrameAt(5, 0.3);
-  cv::Mat gray;
-  cv::cvtColor(kRoom.Render(kCamera, between.world_from_camera), gray, cv::COLOR_BGR2GRAY);
-  images_.Put(between.index, gray);
-  EXPECT_EQ(MeasureDepth(views, {{between}}, {}, store_, images_, &completer_, 2), 2);
+  Show(between.index, between.world_from_camera);
+  EXPECT_EQ(Compute(views, {}, {between}), 2);
   for (const DenseView& view : views) EXPECT_LT(MedianError(view), 0.05) << view.frame_index;
 }
 
-TEST_F(MeasureDepthTest, AKeyframeOfWhichLittleIsSeenStaysAsItWasCompleted) {
-  const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
-  Store(views);
-  EXPECT_EQ(MeasureDepth(views, {}, {.min_fraction = 0.999}, store_, images_, &completer_, 2), 0);
-  EXPECT_NEAR(store_.Get(0).range.at<float>(60, 100), 1.2, 0.001);
+TEST_F(ComputeDepthTest, WhereStereoSeesLittleItCountsForNothing) {
+  EXPECT_EQ(Compute(ViewsAt({-0.5, 0, 0.5, 1.0}), {.min_fraction = 0.999}), 0);
+  EXPECT_NEAR(store_.Get(0).range.at<float>(60, 100), 2.4, 0.01);
 }
 
-TEST_F(MeasureDepthTest, EndsEarlyAndKeepsWhatIsDone) {
+TEST_F(ComputeDepthTest, AnInterruptLeavesTheRestToTheNetwork) {
   const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
-  Store(views);
   std::vector<int> done;
   const auto two_of_four = [&done](int number, int count) {
     EXPECT_EQ(count, 4);
     done.push_back(number);
     return number < 2;
   };
-  EXPECT_EQ(MeasureDepth(views, {}, {}, store_, images_, &completer_, 2, two_of_four), 2);
-  EXPECT_EQ(done, (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(Compute(views, {}, {}, two_of_four), 2);
+  EXPECT_EQ(done, (std::vector<int>{0, 1, 2, 3}));
   EXPECT_LT(MedianError(views[1]), 0.05);
-  EXPECT_NEAR(store_.Get(20).range.at<float>(60, 100), 1.2, 0.001);
+  EXPECT_NEAR(store_.Get(20).range.at<float>(60, 100), 2.4, 0.01);
 }
 
-TEST_F(MeasureDepthTest, WhatTheNetworkIsNotSureOfDoesNotPutTheSourcesFartherAway) {
-  // Four of five pixels claim 100 times the range, with little confidence, as those of a sky do.
-  const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
-  Store(views);
-  for (const DenseView& view : views) {
-    DenseDepth depth = store_.Get(view.frame_index);
-    depth.range.rowRange(0, 100) = 120;
-    depth.confidence.rowRange(0, 100) = 0.5;
-    store_.PutRanges(view.frame_index, depth.range, depth.confidence);
-  }
-  EXPECT_EQ(MeasureDepth(views, {}, {}, store_, images_, &completer_, 2), 4);
-}
-
-TEST_F(MeasureDepthTest, CompletedPixelsAreTrustedLessThanTheNetworkTrustsThem) {
+TEST_F(ComputeDepthTest, CompletedPixelsAreTrustedLessThanTheNetworkTrustsThem) {
   const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
   for (const double factor : {1.0, 3.0}) {
-    Store(views);
-    MeasureDepth(views, {}, {.completion_error_factor = factor}, store_, images_, &completer_, 2);
+    Compute(views, {.completion_error_factor = factor});
     // The network of this test is sure of 0.9 at most, and states it where nothing was seen.
     const DenseDepth depth = store_.Get(10);
     const cv::Mat is_stated = cv::abs(depth.confidence - 1 / (1 + factor * (1 / 0.9 - 1))) < 0.003;

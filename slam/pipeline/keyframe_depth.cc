@@ -1,11 +1,8 @@
-#include "slam/pipeline/stereo_depth.h"
+#include "slam/pipeline/keyframe_depth.h"
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <optional>
-
-#include <opencv2/imgproc.hpp>
 
 namespace orb360 {
 namespace {
@@ -13,14 +10,13 @@ namespace {
 /// The images of frames that were used last.
 class GrayImages {
  public:
-  GrayImages(const DepthMapStore& keyframes, const GrayImageStore& frames)
-      : keyframes_(keyframes), frames_(frames) {}
+  explicit GrayImages(const ImageStore& store) : store_(store) {}
 
   cv::Mat Get(int frame_index) {
     const auto found = std::ranges::find(images_, frame_index, &Entry::frame_index);
     if (found != images_.end()) return found->gray;
     if (images_.size() >= kCapacity) images_.pop_front();
-    images_.push_back({frame_index, Load(frame_index)});
+    images_.push_back({frame_index, store_.GetGray(frame_index)});
     return images_.back().gray;
   }
 
@@ -32,29 +28,30 @@ class GrayImages {
     cv::Mat gray;
   };
 
-  cv::Mat Load(int frame_index) const {
-    if (!keyframes_.Contains(frame_index)) return frames_.Get(frame_index);
-    cv::Mat gray;
-    cv::cvtColor(keyframes_.Get(frame_index).color, gray, cv::COLOR_BGR2GRAY);
-    return gray;
-  }
-
-  const DepthMapStore& keyframes_;
-  const GrayImageStore& frames_;
+  const ImageStore& store_;
   std::deque<Entry> images_;
 };
 
+// The median of the ranges that the network is sure of, or of all where there are none. It gives
+// the sky ranges too, with little confidence.
+double TrustedRange(const DenseDepth& depth, double min_confidence) {
+  cv::Mat trusted = depth.range.clone();
+  trusted.setTo(0, ~(depth.confidence >= min_confidence));
+  const double range = MedianRange(trusted);
+  return range > 0 ? range : MedianRange(depth.range);
+}
+
 float ConfidenceOf(float relative_error) { return 1.0f / (1.0f + relative_error); }
 
-// One pixel of each square that has any: the first one by rows from the middle on. None where too
-// few squares have one.
-std::optional<SparseDepth> SampleSquares(const InverseRanges& seen,
-                                         const StereoDepthOptions& options) {
+// Puts one pixel of each square that has any into the sparse depth, in the place of what that has
+// in the square: the first one by rows from the middle on. False, without a change, where too few
+// squares have one.
+bool SampleSquares(const InverseRanges& seen, const KeyframeDepthOptions& options,
+                   SparseDepth* sparse) {
   const cv::Size size = seen.value.size();
-  SparseDepth sparse{cv::Mat::zeros(size, CV_32F), cv::Mat::zeros(size, CV_32F)};
   const int side = options.sparse_spacing;
   int num_squares = 0;
-  int count = 0;
+  std::vector<cv::Point> chosen;
   for (int top = 0; top < size.height; top += side) {
     for (int left = 0; left < size.width; left += side) {
       ++num_squares;
@@ -63,18 +60,24 @@ std::optional<SparseDepth> SampleSquares(const InverseRanges& seen,
         const int row = top + at / side;
         const int column = left + at % side;
         if (row >= size.height || column >= size.width) continue;
-        const float value = seen.value.at<float>(row, column);
-        if (!(value > 0)) continue;
-        sparse.range.at<float>(row, column) = 1 / value;
-        sparse.confidence.at<float>(row, column) = static_cast<float>(
-            SparseConfidence(seen.sigma.at<float>(row, column) / value, options.sparse));
-        ++count;
+        if (!(seen.value.at<float>(row, column) > 0)) continue;
+        chosen.emplace_back(column, row);
         break;
       }
     }
   }
-  if (count < options.min_fraction * num_squares) return std::nullopt;
-  return sparse;
+  if (static_cast<double>(chosen.size()) < options.min_fraction * num_squares) return false;
+  for (const cv::Point& pixel : chosen) {
+    const cv::Rect square =
+        cv::Rect(pixel.x / side * side, pixel.y / side * side, side, side) & cv::Rect({}, size);
+    sparse->range(square) = 0;
+    sparse->confidence(square) = 0;
+    const float value = seen.value.at<float>(pixel);
+    sparse->range.at<float>(pixel) = 1 / value;
+    sparse->confidence.at<float>(pixel) =
+        static_cast<float>(SparseConfidence(seen.sigma.at<float>(pixel) / value, options.sparse));
+  }
+  return true;
 }
 
 // Ranges in the unit of `seen`: those seen, and those completed elsewhere.
@@ -120,7 +123,7 @@ std::vector<FramePose> FindStereoCandidates(std::span<const DenseView> views, si
 
 std::vector<FramePose> ChooseStereoSources(std::span<const FramePose> candidates,
                                            const DenseView& reference, double median_range,
-                                           const StereoDepthOptions& options) {
+                                           const KeyframeDepthOptions& options) {
   std::vector<FramePose> chosen;
   for (const double baseline : options.baselines) {
     for (const bool is_after : {false, true}) {
@@ -145,36 +148,44 @@ std::vector<FramePose> ChooseStereoSources(std::span<const FramePose> candidates
   return chosen;
 }
 
-int MeasureDepth(std::span<const DenseView> views, std::span<const FramePose> frames,
-                 const StereoDepthOptions& options, const DepthMapStore& store,
-                 const GrayImageStore& images, DepthCompleter* completer, int num_threads,
-                 const KeyframeProgress& progress) {
-  GrayImages gray(store, images);
+int ComputeDepth(std::span<const DenseView> views, std::span<const FramePose> frames,
+                 const LandmarkProjector& landmarks_of, const KeyframeDepthOptions& options,
+                 const ImageStore& images, DepthCompleter* completer, int num_threads,
+                 const DepthMapStore& store, const KeyframeProgress& progress) {
+  GrayImages gray(images);
   const auto count = static_cast<int>(views.size());
   int num_measured = 0;
+  bool uses_stereo = true;
+  double range = 0;  // Of the surroundings of the view before.
   for (int i = 0; i < count; ++i) {
-    if (progress && !progress(i, count)) break;
+    if (progress && !progress(i, count)) uses_stereo = false;
     const DenseView& view = views[i];
-    const DenseDepth stored = store.Get(view.frame_index);
-    // The network gives the sky ranges too, with little confidence.
-    cv::Mat trusted = stored.range.clone();
-    trusted.setTo(0, ~(stored.confidence >= options.min_trusted_confidence));
-    const double median_range = view.scale * MedianRange(trusted);
-    if (!(median_range > 0)) continue;
+    const std::vector<SparsePoint> landmarks = landmarks_of(view);
+    SparseDepth sparse = RenderSparseDepth(landmarks, completer->camera());
+    const bool has_landmarks = static_cast<int>(landmarks.size()) >= options.min_points;
+    const cv::Mat color = images.Get(view.frame_index);
+    if (!landmarks.empty() && (i == 0 || view.map != views[i - 1].map || !(range > 0))) {
+      range = TrustedRange(completer->Complete(color, sparse), options.min_trusted_confidence);
+    }
     std::vector<StereoView> sources;
     for (const FramePose& frame :
-         ChooseStereoSources(FindStereoCandidates(views, i, frames), view, median_range, options)) {
+         ChooseStereoSources(FindStereoCandidates(views, i, frames), view, range, options)) {
       sources.push_back({gray.Get(frame.index), frame.world_from_camera});
     }
-    if (static_cast<int>(sources.size()) < options.stereo.fusion.min_support) continue;
-    const InverseRanges seen = MatchSpheres({gray.Get(view.frame_index), view.world_from_camera},
-                                            sources, options.stereo, num_threads);
-    const std::optional<SparseDepth> sparse = SampleSquares(seen, options);
-    if (!sparse) continue;
-    DenseDepth completed = completer->Complete(stored.color, *sparse);
-    Merge(seen, options.completion_error_factor, &completed);
-    store.PutRanges(view.frame_index, completed.range / view.scale, completed.confidence);
-    ++num_measured;
+    InverseRanges seen;
+    bool is_measured =
+        uses_stereo && static_cast<int>(sources.size()) >= options.stereo.fusion.min_support;
+    if (is_measured) {
+      seen = MatchSpheres({gray.Get(view.frame_index), view.world_from_camera}, sources,
+                          options.stereo, num_threads);
+      is_measured = SampleSquares(seen, options, &sparse);
+    }
+    if (!is_measured && !has_landmarks) continue;
+    DenseDepth depth = completer->Complete(color, sparse);
+    range = TrustedRange(depth, options.min_trusted_confidence);
+    if (is_measured) Merge(seen, options.completion_error_factor, &depth);
+    store.Put(view.frame_index, depth);
+    num_measured += is_measured;
   }
   return num_measured;
 }
