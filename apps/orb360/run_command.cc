@@ -129,7 +129,7 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
   try {
     // After an interrupt the rest of the keyframes are left to the network.
     Progress progress(std::nullopt, options.is_quiet);
-    record->measured_keyframes = system->ComputeDepth(reconstruction, [&](int done, int count) {
+    record->depth = system->ComputeDepth(reconstruction, [&](int done, int count) {
       progress.Update("computing depth", done, count);
       return CaughtInterrupt() == 0;
     });

@@ -115,7 +115,9 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
   if (dense) {
     summary["cloud"] = {{"points", dense->cloud.points},
                         {"keyframes", dense->cloud.fusion.views},
-                        {"measured_keyframes", record.measured_keyframes},
+                        {"measured_keyframes", record.depth.measured},
+                        {"keyframes_without_sources", record.depth.without_sources},
+                        {"unseen_keyframes", record.depth.unseen},
                         {"voxel_size", dense->cloud.fusion.voxel_size},
                         {"seconds", record.fusion_seconds}};
     if (dense->mesh) {
@@ -156,9 +158,15 @@ std::string StateCloud(const nlohmann::json& summary) {
   const nlohmann::json& cloud = summary["cloud"];
   const int measured = cloud["measured_keyframes"];
   if (2 * measured > cloud["keyframes"]) return {};
-  return "\ncloud: stereo has measured " + std::to_string(measured) + " of " +
-         std::to_string(cloud["keyframes"].get<int>()) +
-         " keyframes; the others are the network's estimate";
+  std::string text = "\ncloud: stereo has measured " + std::to_string(measured) + " of " +
+                     std::to_string(cloud["keyframes"].get<int>()) + " keyframes";
+  if (const int count = cloud["keyframes_without_sources"]; count > 0) {
+    text += "; " + std::to_string(count) + " have no frames at a distance at which ranges show";
+  }
+  if (const int count = cloud["unseen_keyframes"]; count > 0) {
+    text += "; of " + std::to_string(count) + " too little has texture";
+  }
+  return text + "; the rest is the network's estimate";
 }
 
 void PrintResult(const nlohmann::json& summary, const std::filesystem::path& folder) {

@@ -10,6 +10,7 @@
 
 #include "apps/orb360/dense_output.h"
 #include "apps/orb360/stage_times.h"
+#include <orb360/slam/pipeline/keyframe_depth_report.h>
 #include <orb360/slam/pipeline/reconstruction.h>
 #include <orb360/slam/pipeline/scale_options.h>
 
@@ -22,8 +23,8 @@ struct RunRecord {
   double seconds = 0.0;
   /// The part of it after the last frame, s.
   double finishing_seconds = 0.0;
-  /// Number of keyframes whose depth stereo has measured.
-  int measured_keyframes = 0;
+  /// What stereo has measured.
+  KeyframeDepthReport depth;
   /// Wall time of measuring the depth and of fusing the dense cloud, s.
   double fusion_seconds = 0.0;
   StageTimes times;

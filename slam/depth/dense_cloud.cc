@@ -1,7 +1,9 @@
 #include "slam/depth/dense_cloud.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <future>
 #include <map>
 #include <memory>
@@ -157,13 +159,20 @@ DenseCloudStatistics FuseCloud(std::span<const DenseView> views, const DepthLoad
     }
     return comparison;
   };
+  const std::vector<Eigen::Array3f> gains =
+      options.exposure ? EstimateGains(views, load, *options.exposure)
+                       : std::vector<Eigen::Array3f>(views.size(), Eigen::Array3f::Ones());
   const auto collect = [&](const std::vector<ConsistentPoint>& points, const cv::Mat& color,
                            size_t index) {
     std::vector<VoxelSample> samples;
     samples.reserve(points.size());
     for (const ConsistentPoint& point : points) {
       const cv::Vec3b& bgr = color.at<cv::Vec3b>(point.row, point.column);
-      samples.push_back({point.position, point.normal, {bgr[2], bgr[1], bgr[0]}, point.error});
+      std::array<std::uint8_t, 3> rgb{};
+      for (int i = 0; i < 3; ++i) {
+        rgb[2 - i] = cv::saturate_cast<std::uint8_t>(gains[index][i] * static_cast<float>(bgr[i]));
+      }
+      samples.push_back({point.position, point.normal, rgb, point.error});
     }
     grid.Add(samples, static_cast<int>(index));
     if (grid.num_voxels() > options.max_voxels) sink(grid.TakeOldest());

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
+#include "slam/depth/dense_view.h"
+#include "slam/depth/exposure.h"
 #include "slam/depth/geometric_consistency.h"
 #include "slam/depth/voxel_grid.h"
 #include <orb360/slam/depth/dense_cloud_summary.h>
-#include <orb360/slam/depth/dense_depth.h>
-#include <orb360/slam/geometry/rigid3.h>
 
 namespace orb360 {
 
@@ -23,6 +23,8 @@ struct DenseCloudOptions {
   /// Number of keyframes with which each one is compared.
   int max_neighbours = 10;
   GeometricConsistencyOptions consistency{};
+  /// How the colours of keyframes are brought to one exposure. None: they stay as they are.
+  std::optional<ExposureOptions> exposure = ExposureOptions();
   /// Keyframes held in memory, 4 MB each for 1024 x 512 pixels. Two keyframes and those that they
   /// are compared with are always held. Keyframes are read again if this is less than the part of
   /// the path over which max_neighbours extend.
@@ -35,19 +37,6 @@ struct DenseCloudOptions {
   std::function<void(int done, int count)> progress = {};
 };
 
-/// A keyframe with dense depth, in the unit of its pose.
-struct DenseView {
-  int frame_index = 0;
-  int map = 0;  ///< Index into Reconstruction::maps.
-  Rigid3 world_from_camera;
-  /// Indices of the views that see the same landmarks, so that their poses fit this one's. Only
-  /// those are compared.
-  std::vector<size_t> neighbours;
-};
-
-/// Returns the depth of a frame, possibly several times for the same frame. The images must not
-/// change afterwards. It is called on any thread, one call at a time, possibly while the sink runs.
-using DepthLoader = std::function<DenseDepth(int frame_index)>;
 /// Receives voxels ordered by key. Several calls may give parts of the same voxel
 /// (Voxel::operator+=). It is called on any thread, one call at a time.
 using VoxelSink = std::function<void(std::span<const Voxel>)>;

@@ -1,6 +1,7 @@
 #include "slam/io/image_store.h"
 
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <opencv2/imgcodecs.hpp>
@@ -30,6 +31,11 @@ void ImageStore::Put(int frame_index, const cv::Mat& image) const {
 
 bool ImageStore::Contains(int frame_index) const {
   return std::filesystem::exists(PathOf(frame_index));
+}
+
+void ImageStore::Remove(int frame_index) const {
+  std::error_code ignored;  // What remains is removed with the folder.
+  std::filesystem::remove(PathOf(frame_index), ignored);
 }
 
 cv::Mat ImageStore::Read(int frame_index, int flags) const {

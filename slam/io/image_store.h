@@ -24,6 +24,8 @@ class ImageStore {
   void Put(int frame_index, const cv::Mat& image) const;
 
   bool Contains(int frame_index) const;
+  /// Removes an image if it is stored.
+  void Remove(int frame_index) const;
 
   /// Returns the image (CV_8UC3, BGR). Throws UserError for a frame that is not stored or is
   /// damaged.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <set>
 
 #include <opencv2/imgproc.hpp>
 
@@ -29,12 +30,19 @@ void DenseMapper::KeepImage(int frame_index, const cv::Mat& image, const Rigid3&
   const Eigen::Vector3d& place = world_from_camera.translation;
   if (last_place_ && (place - *last_place_).norm() < kMinMotion * median_range) return;
   last_place_ = place;
+  unplaced_.clear();
   Keep(frame_index, image);
 }
 
-void DenseMapper::KeepKeyframe(int frame_index, const cv::Mat& image) {
-  keyframes_.push_back(frame_index);
+void DenseMapper::KeepKeyframe(int frame_index, const cv::Mat& image) { Keep(frame_index, image); }
+
+void DenseMapper::KeepUnplaced(int frame_index, const cv::Mat& image) {
+  constexpr size_t kMax = 100;
   Keep(frame_index, image);
+  unplaced_.push_back(frame_index);
+  if (unplaced_.size() <= kMax) return;
+  images_.Remove(unplaced_.front());
+  unplaced_.pop_front();
 }
 
 void DenseMapper::Keep(int frame_index, const cv::Mat& image) {
@@ -62,26 +70,33 @@ void DenseMapper::AwaitImage() {
 
 void DenseMapper::Flush() { AwaitImage(); }
 
-int DenseMapper::ComputeDepth(const Reconstruction& finished, std::span<const Map> maps,
-                              const KeyframeProgress& progress) {
-  if (failure_) return 0;
-  const std::vector<DenseView> views = MakeDenseViews(finished, Rigid3(), [this](int frame_index) {
-    return std::ranges::binary_search(keyframes_, frame_index);
-  });
+KeyframeDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished,
+                                              std::span<const Map> maps,
+                                              const KeyframeProgress& progress) {
+  if (failure_) return {};
+  std::vector<std::map<int, KeyframeId>> id_of(maps.size());  // by frame index
+  std::set<int> wanted;
+  for (size_t m = 0; m < maps.size(); ++m) {
+    for (const KeyframeId id : maps[m].KeyframeIds()) {
+      const int frame_index = maps[m].keyframe(id).frame_index;
+      id_of[m][frame_index] = id;
+      if (id % options_.every_keyframes == 0 && images_.Contains(frame_index)) {
+        wanted.insert(frame_index);
+      }
+    }
+  }
+  const std::vector<DenseView> views =
+      MakeDenseViews(finished, Rigid3(), [&wanted](int index) { return wanted.contains(index); });
   std::vector<FramePose> frames;
   if (options_.stereo) {
     std::ranges::copy_if(finished.frames, std::back_inserter(frames),
                          [this](const FramePose& frame) { return images_.Contains(frame.index); });
   }
-  std::vector<std::map<int, KeyframeId>> id_of(maps.size());  // by frame index
-  for (size_t m = 0; m < maps.size(); ++m) {
-    for (const KeyframeId id : maps[m].KeyframeIds())
-      id_of[m][maps[m].keyframe(id).frame_index] = id;
-  }
   const auto landmarks_of = [&](const DenseView& view) {
     return ProjectLandmarks(maps[view.map], id_of[view.map].at(view.frame_index), camera(), {});
   };
-  KeyframeDepthOptions options{.min_points = options_.min_points};
+  KeyframeDepthOptions options{.min_points = options_.min_points,
+                               .keeps_completed = options_.completion};
   if (!options_.stereo) options.baselines.clear();
   return orb360::ComputeDepth(views, frames, landmarks_of, options, images_, &completer_,
                               num_threads_, depth_maps_, progress);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <exception>
 #include <filesystem>
 #include <future>
@@ -11,7 +12,7 @@
 #include "slam/io/image_store.h"
 #include "slam/pipeline/keyframe_completion.h"
 #include <orb360/slam/map/ground.h>
-#include <orb360/slam/pipeline/frame_report.h>
+#include <orb360/slam/pipeline/keyframe_depth_report.h>
 #include <orb360/slam/pipeline/reconstruction.h>
 
 namespace orb360 {
@@ -32,20 +33,22 @@ class DenseMapper {
   const EquirectangularCamera& camera() const { return completer_.camera(); }
   bool Wants(KeyframeId id) const { return id % options_.every_keyframes == 0; }
 
-  /// Keeps the image (CV_8UC3, BGR) of a tracked frame for stereo, unless the camera has moved by
+  /// Keeps the image (CV_8UC3, BGR) of a frame without a pose, which may get one later. Of those
+  /// that follow each other only the last 100 are kept.
+  void KeepUnplaced(int frame_index, const cv::Mat& image);
+  /// Keeps the image of a tracked frame for stereo, unless the camera has moved by
   /// less than a few hundredths of `median_range`, the surroundings' range, since the last one.
   void KeepImage(int frame_index, const cv::Mat& image, const Rigid3& world_from_camera,
                  double median_range);
-  /// Keeps the image of a frame that becomes a keyframe with dense depth.
+  /// Keeps the image of a tracked frame that becomes a keyframe with dense depth.
   void KeepKeyframe(int frame_index, const cv::Mat& image);
   /// Waits until all images are on disk.
   void Flush();
-  /// Computes the depth of the keyframes that were kept, with the final poses and landmarks of
-  /// `finished` and its `maps` (orb360::ComputeDepth), and returns how many were measured by
-  /// stereo. Nothing happens after a failure. Throws UserError where the disk fails. Contract:
-  /// Flush has been called.
-  int ComputeDepth(const Reconstruction& finished, std::span<const Map> maps,
-                   const KeyframeProgress& progress);
+  /// Computes the depth of the keyframes whose images are kept, with the final poses and landmarks
+  /// of `finished` and its `maps` (orb360::ComputeDepth). Nothing happens after a failure. Throws
+  /// UserError where the disk fails. Contract: Flush has been called.
+  KeyframeDepthReport ComputeDepth(const Reconstruction& finished, std::span<const Map> maps,
+                                   const KeyframeProgress& progress);
 
   const DepthMapStore& depth_maps() const { return depth_maps_; }
   /// The error because of which images could not be stored, such as a full disk; null where there
@@ -70,13 +73,13 @@ class DenseMapper {
 
   const DepthOptions options_;
   const int num_threads_;
-  std::vector<int> keyframes_;  ///< Frame indices of those that get depth, in their order.
   std::vector<DenseGround> grounds_;
   std::exception_ptr failure_;
   DepthMapStore depth_maps_;
   ImageStore images_;
   std::optional<Eigen::Vector3d> last_place_;  ///< Where the last image was kept, world frame.
   std::optional<int> last_frame_;              ///< The frame whose image was kept last.
+  std::deque<int> unplaced_;                   ///< The newest frames without a pose.
   DepthCompleter completer_;
   /// Declared last, so that their threads end before the members that they use.
   KeyframeCompletion completion_;

@@ -17,6 +17,8 @@ void RegisterOptions(OptionSchema* schema, DepthOptions* options) {
               "use completed ranges in mapping and tracking");
   schema->Add("depth.stereo", &options->stereo,
               "measure ranges by multi-view stereo at the end of a run");
+  schema->Add("depth.completion", &options->completion,
+              "let the network complete what stereo does not see");
 }
 
 }  // namespace orb360

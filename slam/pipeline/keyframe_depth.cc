@@ -148,13 +148,15 @@ std::vector<FramePose> ChooseStereoSources(std::span<const FramePose> candidates
   return chosen;
 }
 
-int ComputeDepth(std::span<const DenseView> views, std::span<const FramePose> frames,
-                 const LandmarkProjector& landmarks_of, const KeyframeDepthOptions& options,
-                 const ImageStore& images, DepthCompleter* completer, int num_threads,
-                 const DepthMapStore& store, const KeyframeProgress& progress) {
+KeyframeDepthReport ComputeDepth(std::span<const DenseView> views,
+                                 std::span<const FramePose> frames,
+                                 const LandmarkProjector& landmarks_of,
+                                 const KeyframeDepthOptions& options, const ImageStore& images,
+                                 DepthCompleter* completer, int num_threads,
+                                 const DepthMapStore& store, const KeyframeProgress& progress) {
   GrayImages gray(images);
   const auto count = static_cast<int>(views.size());
-  int num_measured = 0;
+  KeyframeDepthReport report;
   bool uses_stereo = true;
   double range = 0;  // Of the surroundings of the view before.
   for (int i = 0; i < count; ++i) {
@@ -162,32 +164,37 @@ int ComputeDepth(std::span<const DenseView> views, std::span<const FramePose> fr
     const DenseView& view = views[i];
     const std::vector<SparsePoint> landmarks = landmarks_of(view);
     SparseDepth sparse = RenderSparseDepth(landmarks, completer->camera());
-    const bool has_landmarks = static_cast<int>(landmarks.size()) >= options.min_points;
     const cv::Mat color = images.Get(view.frame_index);
     if (!landmarks.empty() && (i == 0 || view.map != views[i - 1].map || !(range > 0))) {
       range = TrustedRange(completer->Complete(color, sparse), options.min_trusted_confidence);
     }
-    std::vector<StereoView> sources;
-    for (const FramePose& frame :
-         ChooseStereoSources(FindStereoCandidates(views, i, frames), view, range, options)) {
-      sources.push_back({gray.Get(frame.index), frame.world_from_camera});
-    }
     InverseRanges seen;
-    bool is_measured =
-        uses_stereo && static_cast<int>(sources.size()) >= options.stereo.fusion.min_support;
-    if (is_measured) {
-      seen = MatchSpheres({gray.Get(view.frame_index), view.world_from_camera}, sources,
-                          options.stereo, num_threads);
-      is_measured = SampleSquares(seen, options, &sparse);
+    bool is_measured = false;
+    if (uses_stereo) {
+      std::vector<StereoView> sources;
+      for (const FramePose& frame :
+           ChooseStereoSources(FindStereoCandidates(views, i, frames), view, range, options)) {
+        sources.push_back({gray.Get(frame.index), frame.world_from_camera});
+      }
+      if (static_cast<int>(sources.size()) < options.stereo.fusion.min_support) {
+        ++report.without_sources;
+      } else {
+        seen = MatchSpheres({gray.Get(view.frame_index), view.world_from_camera}, sources,
+                            options.stereo, num_threads);
+        is_measured = SampleSquares(seen, options, &sparse);
+        ++(is_measured ? report.measured : report.unseen);
+      }
     }
-    if (!is_measured && !has_landmarks) continue;
+    const bool is_completed =
+        options.keeps_completed && static_cast<int>(landmarks.size()) >= options.min_points;
+    if (!is_measured && !is_completed) continue;
     DenseDepth depth = completer->Complete(color, sparse);
     range = TrustedRange(depth, options.min_trusted_confidence);
     if (is_measured) Merge(seen, options.completion_error_factor, &depth);
+    if (!options.keeps_completed) depth.confidence.setTo(0, ~(seen.value > 0));
     store.Put(view.frame_index, depth);
-    num_measured += is_measured;
   }
-  return num_measured;
+  return report;
 }
 
 }  // namespace orb360

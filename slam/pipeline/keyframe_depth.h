@@ -9,7 +9,7 @@
 #include "slam/io/image_store.h"
 #include "slam/stereo/spherical_stereo.h"
 #include <orb360/slam/depth/depth_completer.h>
-#include <orb360/slam/pipeline/frame_report.h>
+#include <orb360/slam/pipeline/keyframe_depth_report.h>
 #include <orb360/slam/pipeline/reconstruction.h>
 
 namespace orb360 {
@@ -37,6 +37,8 @@ struct KeyframeDepthOptions {
   /// Number by which the errors that the network expects are multiplied: where it has not been
   /// trained, they are larger than it says (docs/results/stereo.md).
   double completion_error_factor = 3.0;
+  /// Whether the depth has what the network completes. Otherwise it has what stereo measures.
+  bool keeps_completed = true;
   SphericalStereoOptions stereo = {};
 };
 
@@ -57,14 +59,16 @@ using LandmarkProjector = std::function<std::vector<SparsePoint>(const DenseView
 
 /// Computes the depth of keyframes and puts it into `store`. Ranges are measured by multi-view
 /// stereo with the final poses of the keyframes and of the frames around them; the network
-/// completes the rest from these and from landmarks. What is seen is kept. Returns the number of
-/// keyframes of which stereo has measured a part. After `progress` has returned false, the rest is
-/// left to the network. `frames` are those that may be sources; their images and those of the views
-/// are in `images`. The result does not depend on the number of threads. Throws UserError where the
-/// disk fails.
-int ComputeDepth(std::span<const DenseView> views, std::span<const FramePose> frames,
-                 const LandmarkProjector& landmarks_of, const KeyframeDepthOptions& options,
-                 const ImageStore& images, DepthCompleter* completer, int num_threads,
-                 const DepthMapStore& store, const KeyframeProgress& progress = nullptr);
+/// completes the rest from these and from landmarks. What is seen is kept. After `progress` has
+/// returned false, the rest is left to the network. `frames` are those that may be sources; their
+/// images and those of the views are in `images`. The result does not depend on the number of
+/// threads. Throws UserError where the disk fails.
+KeyframeDepthReport ComputeDepth(std::span<const DenseView> views,
+                                 std::span<const FramePose> frames,
+                                 const LandmarkProjector& landmarks_of,
+                                 const KeyframeDepthOptions& options, const ImageStore& images,
+                                 DepthCompleter* completer, int num_threads,
+                                 const DepthMapStore& store,
+                                 const KeyframeProgress& progress = nullptr);
 
 }  // namespace orb360

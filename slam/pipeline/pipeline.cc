@@ -87,11 +87,7 @@ FrameReport Pipeline::Process(const Frame& frame) {
   } else {
     Initialize(pending);
   }
-  if (const FrontEnd::Tracking* now = front_end_.tracking();
-      now && dense_ && options_.depth.stereo) {
-    dense_->KeepImage(frame.index, frame.image, now->last.world_from_camera,
-                      front_end_.local().median_range);
-  }
+  KeepImage(frame);
   StartDue(frame.image);
   report.timing_ms["tracking"] = MillisecondsSince(tracking);
   report.timing_ms["frame"] = MillisecondsSince(start);
@@ -107,6 +103,17 @@ FrameReport Pipeline::Process(const Frame& frame) {
   report.num_keyframes = num_keyframes_;
   report.num_landmarks = num_landmarks_;
   return report;
+}
+
+void Pipeline::KeepImage(const Frame& frame) {
+  if (!dense_) return;
+  const FrontEnd::Tracking* now = front_end_.tracking();
+  if (now == nullptr) {
+    dense_->KeepUnplaced(frame.index, frame.image);
+  } else if (options_.depth.stereo) {
+    dense_->KeepImage(frame.index, frame.image, now->last.world_from_camera,
+                      front_end_.local().median_range);
+  }
 }
 
 void Pipeline::CountMap() {
@@ -190,8 +197,9 @@ void Pipeline::CorrectScale(std::span<const PositionFix> positions) {
   }
 }
 
-int Pipeline::ComputeDepth(const Reconstruction& finished, const KeyframeProgress& progress) {
-  return dense_ ? dense_->ComputeDepth(finished, atlas_.maps(), progress) : 0;
+KeyframeDepthReport Pipeline::ComputeDepth(const Reconstruction& finished,
+                                           const KeyframeProgress& progress) {
+  return dense_ ? dense_->ComputeDepth(finished, atlas_.maps(), progress) : KeyframeDepthReport();
 }
 
 Reconstruction Pipeline::Finish(std::span<const PositionFix> positions) {

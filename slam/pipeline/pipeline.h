@@ -29,7 +29,8 @@ class Pipeline {
   void EnableDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
   FrameReport Process(const Frame& frame);
   Reconstruction Finish(std::span<const PositionFix> positions);
-  int ComputeDepth(const Reconstruction& finished, const KeyframeProgress& progress);
+  KeyframeDepthReport ComputeDepth(const Reconstruction& finished,
+                                   const KeyframeProgress& progress);
 
   const Atlas& atlas() const { return atlas_; }
   const std::optional<DenseMapper>& dense() const { return dense_; }
@@ -38,6 +39,8 @@ class Pipeline {
   // Results that are due are adopted before a frame; jobs are started after it.
   void AdoptDue();
   void StartDue(const cv::Mat& image);
+  /// Keeps the image of a frame for dense depth.
+  void KeepImage(const Frame& frame);
 
   // One function for each state of the front end.
   void Track(const PendingFrame& frame);

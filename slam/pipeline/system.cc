@@ -34,7 +34,8 @@ std::span<const std::optional<KnownGround>> System::grounds() const {
   return pipeline_->atlas().grounds();
 }
 
-int System::ComputeDepth(const Reconstruction& finished, const KeyframeProgress& progress) {
+KeyframeDepthReport System::ComputeDepth(const Reconstruction& finished,
+                                         const KeyframeProgress& progress) {
   return pipeline_->ComputeDepth(finished, progress);
 }
 

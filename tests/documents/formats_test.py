@@ -66,7 +66,8 @@ class Formats(unittest.TestCase):
             town, result = Path(name) / "town", Path(name) / "run"
             run(BUILD / "town", "render", "--town", 7, "--frames", 40, "--width", 512,
                 "--depth-every", 10, "--out", town)
-            run(BUILD / "orb360", "run", town, "--mask", "none", "--quiet", "--out", result)
+            run(BUILD / "orb360", "run", town, "--mask", "none", "--mesh", "--quiet", "--out",
+                result)
             summary = json.loads((result / "summary.json").read_text())
             errors = json.loads(run(BUILD / "orb360", "evaluate", town, result, "--json"))
             # A path of 150 m, because the town's is too short for some figures.

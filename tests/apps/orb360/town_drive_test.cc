@@ -66,13 +66,15 @@ TEST_F(TownDriveSlow, IsTrackedInMetresAndItsCloudLiesOnTheStreet) {
   EXPECT_GT(errors["cloud"]["completeness_25cm"], 0.5);
 }
 
-TEST_F(TownDriveSlow, IsRoughlyInMetresByDenseDepthWhereNoLandmarkLiesOnTheGround) {
+TEST_F(TownDriveSlow, IsRoughlyInMetresByGuidingDepthWhereNoLandmarkLiesOnTheGround) {
   cv::Mat mask(320, 640, CV_8U, cv::Scalar(255));
   mask.rowRange(172, 320) = 0;
   const std::string path = *folder_ / "mask.png";
   cv::imwrite(path, mask);
   // It has been wrong by a factor elsewhere, so that nothing is promised.
-  const nlohmann::json errors = Track({"--mask", path}, "unknown");
+  const std::string config = *folder_ / "guided.yaml";
+  WriteText(config, "depth:\n  guides_mapping: true\n");
+  const nlohmann::json errors = Track({"--mask", path, "--config", config}, "unknown");
   EXPECT_LT(std::abs(errors["stated_scale"]["error_sigmas"].get<double>()), 2);
   EXPECT_EQ(errors["tracked_fraction"], 1);
   // The network has not learned to go without points on the ground; in units of its own, the map's
@@ -94,8 +96,7 @@ TEST_F(TownDriveSlow, TakesItsMetresFromLandmarksAsSoonAsTheyLieOnTheGround) {
     cv::GaussianBlur(road, road, {}, 15);
     cv::imwrite(drive + name, image);
   }
-  // Until then it has no metres, or rough ones by dense depth: whether that is sure enough after so
-  // few keyframes may be one or the other.
+  // Until then it has no metres.
   const nlohmann::json before =
       Run({"--mask", "none", "--max-frames", std::to_string(kSmooth)}, drive);
   EXPECT_NE(before["state"], "metric");

@@ -55,6 +55,17 @@ TEST_F(DenseMapperTest, KeepsEveryKeyframeWhetherOrNotTheCameraMoves) {
   EXPECT_TRUE(IsKept("1.jpg"));
 }
 
+TEST_F(DenseMapperTest, KeepsTheNewestFramesWithoutAPose) {
+  DenseMapper mapper = Make();
+  for (int i = 0; i < 103; ++i) mapper.KeepUnplaced(i, Image());
+  mapper.KeepImage(103, Image(), Rigid3(), 5.0);
+  for (int i = 104; i < 110; ++i) mapper.KeepUnplaced(i, Image());
+  mapper.Flush();
+  EXPECT_FALSE(IsKept("2.jpg"));
+  EXPECT_TRUE(IsKept("3.jpg"));
+  EXPECT_TRUE(IsKept("109.jpg"));
+}
+
 TEST_F(DenseMapperTest, ADiskThatTakesNoImageIsNotedAndTrackingGoesOn) {
   DenseMapper mapper = Make();
   std::filesystem::remove_all(folder_ / "depth" / "images");
@@ -65,7 +76,7 @@ TEST_F(DenseMapperTest, ADiskThatTakesNoImageIsNotedAndTrackingGoesOn) {
   mapper.Flush();
   ASSERT_NE(mapper.failure(), nullptr);
   EXPECT_THROW(std::rethrow_exception(mapper.failure()), UserError);
-  EXPECT_EQ(mapper.ComputeDepth({}, {}, nullptr), 0);
+  EXPECT_EQ(mapper.ComputeDepth({}, {}, nullptr).measured, 0);
 }
 
 TEST_F(DenseMapperTest, TellsTheGroundFromTenAgreeingKeyframesOnly) {

@@ -76,9 +76,10 @@ class ComputeDepthTest : public testing::Test {
         completer_(WritePropagation(folder_),
                    {.size = {kCamera.width(), kCamera.height()}, .threads = 1}) {}
 
-  int Compute(const std::vector<DenseView>& views, const KeyframeDepthOptions& options = {},
-              const std::vector<FramePose>& frames = {},
-              const KeyframeProgress& progress = nullptr) {
+  KeyframeDepthReport Compute(const std::vector<DenseView>& views,
+                              const KeyframeDepthOptions& options = {},
+                              const std::vector<FramePose>& frames = {},
+                              const KeyframeProgress& progress = nullptr) {
     for (const DenseView& view : views) Show(view.frame_index, view.world_from_camera);
     return ComputeDepth(
         views, frames, [this](const DenseView&) { return landmarks_; }, options, images_,
@@ -125,21 +126,21 @@ class ComputeDepthTest : public testing::Test {
 
 TEST_F(ComputeDepthTest, RangesAreMeasuredByStereo) {
   const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
-  EXPECT_EQ(Compute(views), 4);
+  EXPECT_EQ(Compute(views).measured, 4);
   for (const DenseView& view : views) EXPECT_LT(MedianError(view), 0.05) << view.frame_index;
   EXPECT_EQ(store_.Get(0).color.size(), cv::Size(256, 128));
 }
 
 TEST_F(ComputeDepthTest, WithoutTwoSourcesTheNetworkCompletesTheLandmarks) {
-  EXPECT_EQ(Compute(ViewsAt({0, 0.3})), 0);
+  EXPECT_EQ(Compute(ViewsAt({0, 0.3})).without_sources, 2);
   EXPECT_NEAR(store_.Get(0).range.at<float>(60, 100), 2.4, 0.01);
 }
 
 TEST_F(ComputeDepthTest, AKeyframeWithFewLandmarksAndWithoutStereoGetsNoDepth) {
   landmarks_.resize(49);
-  EXPECT_EQ(Compute(ViewsAt({0, 0.3})), 0);
+  EXPECT_EQ(Compute(ViewsAt({0, 0.3})).measured, 0);
   EXPECT_FALSE(store_.Contains(0));
-  EXPECT_EQ(Compute(ViewsAt({-0.5, 0, 0.5, 1.0})), 4);
+  EXPECT_EQ(Compute(ViewsAt({-0.5, 0, 0.5, 1.0})).measured, 4);
   EXPECT_TRUE(store_.Contains(0));
 }
 
@@ -147,12 +148,12 @@ TEST_F(ComputeDepthTest, FramesThatAreNoKeyframesAreSources) {
   const std::vector<DenseView> views = ViewsAt({0, 0.6});
   const FramePose between = FrameAt(5, 0.3);
   Show(between.index, between.world_from_camera);
-  EXPECT_EQ(Compute(views, {}, {between}), 2);
+  EXPECT_EQ(Compute(views, {}, {between}).measured, 2);
   for (const DenseView& view : views) EXPECT_LT(MedianError(view), 0.05) << view.frame_index;
 }
 
 TEST_F(ComputeDepthTest, WhereStereoSeesLittleItCountsForNothing) {
-  EXPECT_EQ(Compute(ViewsAt({-0.5, 0, 0.5, 1.0}), {.min_fraction = 0.999}), 0);
+  EXPECT_EQ(Compute(ViewsAt({-0.5, 0, 0.5, 1.0}), {.min_fraction = 0.999}).unseen, 4);
   EXPECT_NEAR(store_.Get(0).range.at<float>(60, 100), 2.4, 0.01);
 }
 
@@ -164,10 +165,22 @@ TEST_F(ComputeDepthTest, AnInterruptLeavesTheRestToTheNetwork) {
     done.push_back(number);
     return number < 2;
   };
-  EXPECT_EQ(Compute(views, {}, {}, two_of_four), 2);
+  EXPECT_EQ(Compute(views, {}, {}, two_of_four).measured, 2);
   EXPECT_EQ(done, (std::vector<int>{0, 1, 2, 3}));
   EXPECT_LT(MedianError(views[1]), 0.05);
   EXPECT_NEAR(store_.Get(20).range.at<float>(60, 100), 2.4, 0.01);
+}
+
+TEST_F(ComputeDepthTest, WithoutCompletionItHasWhatStereoMeasures) {
+  const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
+  Compute(views);
+  const DenseDepth both = store_.Get(10);
+  EXPECT_EQ(Compute(views, {.keeps_completed = false}).measured, 4);
+  const DenseDepth measured = store_.Get(10);
+  const cv::Mat is_measured = measured.range > 0;
+  EXPECT_GT(cv::countNonZero(is_measured), 0.5 * static_cast<double>(is_measured.total()));
+  EXPECT_LT(cv::countNonZero(is_measured), cv::countNonZero(both.range > 0));
+  EXPECT_EQ(cv::norm(measured.range, both.range, cv::NORM_INF, is_measured), 0);
 }
 
 TEST_F(ComputeDepthTest, CompletedPixelsAreTrustedLessThanTheNetworkTrustsThem) {

@@ -136,6 +136,7 @@ TEST(SystemSlow, ComputesTheDepthOfKeyframesInMetresAndChangesNoPose) {
   const auto [result, depths, maps] = TrackAndComplete(room, frames);
   ExpectSame(result, Track(room, frames));  // Depth changes no pose unless it guides mapping.
   ASSERT_GE(depths.size(), 5u);
+  EXPECT_EQ(depths.size(), result.keyframes.size());
   const EquirectangularCamera camera(256, 128);
   for (const auto& [frame_index, depth] : depths) {
     const Rigid3 pose = TruePose(frame_index);

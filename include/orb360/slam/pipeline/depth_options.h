@@ -28,6 +28,9 @@ struct DepthOptions {
   /// Whether ranges are measured by multi-view stereo with the final poses at the end of a run.
   /// Otherwise the dense cloud is made of what the network completes from landmarks.
   bool stereo = true;
+  /// Whether the depth of keyframes has what the network completes. Otherwise it has only what
+  /// stereo measures.
+  bool completion = true;
 };
 
 /// Registers the keys of the section `depth`.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -30,9 +29,5 @@ struct FrameReport {
   /// "frame" for the whole frame.
   std::map<std::string, double> timing_ms;
 };
-
-/// Receives before each keyframe how many of how many are done. False makes the rest faster and
-/// less exact.
-using KeyframeProgress = std::function<bool(int done, int count)>;
 
 }  // namespace orb360

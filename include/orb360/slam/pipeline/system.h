@@ -7,6 +7,7 @@
 
 #include <orb360/slam/geometry/camera.h>
 #include <orb360/slam/pipeline/frame_report.h>
+#include <orb360/slam/pipeline/keyframe_depth_report.h>
 #include <orb360/slam/pipeline/reconstruction.h>
 #include <orb360/slam/scale/position_fix.h>
 
@@ -47,9 +48,10 @@ class System {
   std::span<const Map> maps() const;
   /// Returns the ground under each map, after Finish. A map with ground is metric.
   std::span<const std::optional<KnownGround>> grounds() const;
-  /// Computes the dense depth of keyframes, after Finish; returns of how many stereo has measured a
-  /// part (0 without EnableDepth). Throws UserError where the disk fails.
-  int ComputeDepth(const Reconstruction& finished, const KeyframeProgress& progress = nullptr);
+  /// Computes the dense depth of keyframes, after Finish and EnableDepth. Throws UserError where
+  /// the disk fails.
+  KeyframeDepthReport ComputeDepth(const Reconstruction& finished,
+                                   const KeyframeProgress& progress = nullptr);
   /// Returns the depth of keyframes, after ComputeDepth, or null without EnableDepth. Throws
   /// UserError where the images could not be stored.
   const DepthMapStore* depth_maps() const;
