@@ -66,10 +66,23 @@ cv::Mat IsReliable(const cv::Mat& image, const cv::Mat& cost,
   return (mean_cost <= options.max_cost) & (mean_gradient >= options.min_gradient);
 }
 
+// The disparities of a finer level, known where all that are interpolated are known.
+cv::Mat Interpolate(const cv::Mat& coarse, const cv::Size& size) {
+  const double ratio = static_cast<double>(size.width) / coarse.cols;
+  cv::Mat is_unknown;
+  cv::resize(coarse < 0, is_unknown, size, 0, 0, cv::INTER_LINEAR);
+  cv::Mat disparity;
+  cv::resize(coarse, disparity, size, 0, 0, cv::INTER_LINEAR);
+  disparity = ratio * disparity;
+  disparity.setTo(-1.0f, is_unknown > 0);
+  return disparity;
+}
+
 }  // namespace
 
 cv::Mat MatchSemiGlobally(const cv::Mat& first, const cv::Mat& second,
                           const SemiGlobalMatchingOptions& options) {
+  ORB360_CHECK(options.num_skipped_levels >= 0, options.num_skipped_levels);
   ORB360_CHECK(first.cols >= kCoarsestStereoWidth && first.cols % kCoarsestStereoWidth == 0 &&
                    std::has_single_bit(static_cast<unsigned>(first.cols)) &&
                    first.size() == second.size(),
@@ -82,16 +95,20 @@ cv::Mat MatchSemiGlobally(const cv::Mat& first, const cv::Mat& second,
     }
     pyramid.push_back(half);
   }
+  // The coarsest level is always searched.
+  const auto finest =
+      std::min(static_cast<size_t>(options.num_skipped_levels), pyramid.size() - 1);
   MatchedLevel level = MatchLevel(pyramid.back()[0], pyramid.back()[1], {}, options);
-  for (pyramid.pop_back(); !pyramid.empty(); pyramid.pop_back()) {
-    const auto& [image1, image2] = pyramid.back();
+  for (size_t i = pyramid.size() - 1; i-- > finest;) {
+    const auto& [image1, image2] = pyramid[i];
     level = MatchLevel(image1, image2, ExpectedSurface(level.disparity, image1.size()), options);
   }
   const cv::Mat is_seen = (level.found.difference <= options.max_difference) &
                           (level.found.uniqueness >= options.min_uniqueness);
-  level.disparity.setTo(-1.0f, ~(is_seen & IsReliable(first, level.found.cost, options)));
+  level.disparity.setTo(
+      -1.0f, ~(is_seen & IsReliable(pyramid[finest][0], level.found.cost, options)));
   RemoveSpeckles(options.speckles, &level.disparity);
-  return level.disparity;
+  return finest == 0 ? level.disparity : Interpolate(level.disparity, first.size());
 }
 
 }  // namespace orb360

@@ -9,6 +9,10 @@ namespace orb360 {
 
 struct SemiGlobalMatchingOptions {
   DisparityPenalties penalties;
+  /// Number of finest levels that are not searched: the disparities of the level above are
+  /// interpolated there, and refined afterwards (RefineDisparities). Windows of a coarser level see
+  /// more of a surface with little texture, and a level has four times the pixels of the one above.
+  int num_skipped_levels = 1;
   /// Least ratio of the costs of the second-best disparity and of the best one.
   double min_uniqueness = 1.05;
   /// Largest difference of the disparities of both views, pixels.

@@ -17,6 +17,7 @@ namespace {
 constexpr int kWidth = 256;
 constexpr int kHeight = 512;
 const SemiGlobalMatchingOptions kOptions;
+const SemiGlobalMatchingOptions kAllLevels{.penalties = {}, .num_skipped_levels = 0, .speckles = {}};
 
 // Texture without repetition, brighter than 40; rows wrap around.
 cv::Mat Texture() {
@@ -90,6 +91,26 @@ TEST(MatchSemiGlobally, FindsDisparitiesOfASmoothSurfaceToAFractionOfAPixel) {
   EXPECT_GT(accuracy.right, 0.97);
 }
 
+TEST(MatchSemiGlobally, InterpolatesTheFinestLevelUnlessItIsSearched) {
+  const auto disparity = [](double x, double y) {
+    return 25 + 12 * std::sin(0.02 * x) + 6 * std::cos(4 * std::numbers::pi * y / kHeight);
+  };
+  const Pair pair = MakePair(disparity);
+  const cv::Mat searched = MatchSemiGlobally(pair.first, pair.second, kAllLevels);
+  const cv::Mat interpolated =
+      MatchSemiGlobally(pair.first, pair.second, {.penalties = {}, .num_skipped_levels = 1, .speckles = {}});
+  EXPECT_LT(Compare(searched, disparity).median_error, 0.3);
+  EXPECT_LT(Compare(interpolated, disparity).median_error, 0.3);
+  EXPECT_GT(Compare(interpolated, disparity).known, Compare(searched, disparity).known - 0.05);
+  // The coarsest level is always searched.
+  EXPECT_GT(Compare(MatchSemiGlobally(pair.first, pair.second, {.penalties = {}, .num_skipped_levels = 9, .speckles = {}}),
+                    disparity)
+                .known,
+            0.3);
+  EXPECT_THROW(MatchSemiGlobally(pair.first, pair.second, {.penalties = {}, .num_skipped_levels = -1, .speckles = {}}),
+               ContractError);
+}
+
 TEST(MatchSemiGlobally, FollowsTheGroundBelowTheCameraWhereDisparitiesChangeQuickly) {
   const auto disparity = [](double x, double) { return 4 + 0.4 * x; };
   const Pair pair = MakePair(disparity);
@@ -106,7 +127,7 @@ TEST(MatchSemiGlobally, AddsTheSurfaceOfWhereTheWarpedImageWasMatched) {
   };
   const Pair pair = MakePair(disparity);
   const Accuracy accuracy =
-      Compare(MatchSemiGlobally(pair.first, pair.second, kOptions), disparity);
+      Compare(MatchSemiGlobally(pair.first, pair.second, kAllLevels), disparity);
   EXPECT_LT(accuracy.median_error, 0.34);
   EXPECT_GT(accuracy.right, 0.97);
 }
@@ -114,7 +135,7 @@ TEST(MatchSemiGlobally, AddsTheSurfaceOfWhereTheWarpedImageWasMatched) {
 TEST(MatchSemiGlobally, KeepsTheEdgeBetweenTwoSurfaces) {
   const auto disparity = [](double, double y) { return y < kHeight / 2.0 ? 3.0 : 40.0; };
   const Pair pair = MakePair(disparity);
-  const cv::Mat measured = MatchSemiGlobally(pair.first, pair.second, kOptions);
+  const cv::Mat measured = MatchSemiGlobally(pair.first, pair.second, kAllLevels);
   for (const int from : {-6, 2}) {  // rows around the edge
     int right = 0;
     for (int y = kHeight / 2 + from; y < kHeight / 2 + from + 4; ++y) {
