@@ -96,8 +96,7 @@ cv::Mat MatchSemiGlobally(const cv::Mat& first, const cv::Mat& second,
     pyramid.push_back(half);
   }
   // The coarsest level is always searched.
-  const auto finest =
-      std::min(static_cast<size_t>(options.num_skipped_levels), pyramid.size() - 1);
+  const auto finest = std::min(static_cast<size_t>(options.num_skipped_levels), pyramid.size() - 1);
   MatchedLevel level = MatchLevel(pyramid.back()[0], pyramid.back()[1], {}, options);
   for (size_t i = pyramid.size() - 1; i-- > finest;) {
     const auto& [image1, image2] = pyramid[i];
@@ -105,8 +104,8 @@ cv::Mat MatchSemiGlobally(const cv::Mat& first, const cv::Mat& second,
   }
   const cv::Mat is_seen = (level.found.difference <= options.max_difference) &
                           (level.found.uniqueness >= options.min_uniqueness);
-  level.disparity.setTo(
-      -1.0f, ~(is_seen & IsReliable(pyramid[finest][0], level.found.cost, options)));
+  level.disparity.setTo(-1.0f,
+                        ~(is_seen & IsReliable(pyramid[finest][0], level.found.cost, options)));
   RemoveSpeckles(options.speckles, &level.disparity);
   return finest == 0 ? level.disparity : Interpolate(level.disparity, first.size());
 }

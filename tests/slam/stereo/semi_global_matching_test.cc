@@ -17,7 +17,14 @@ namespace {
 constexpr int kWidth = 256;
 constexpr int kHeight = 512;
 const SemiGlobalMatchingOptions kOptions;
-const SemiGlobalMatchingOptions kAllLevels{.penalties = {}, .num_skipped_levels = 0, .speckles = {}};
+
+SemiGlobalMatchingOptions Skipping(int num_levels) {
+  SemiGlobalMatchingOptions options;
+  options.num_skipped_levels = num_levels;
+  return options;
+}
+
+const SemiGlobalMatchingOptions kAllLevels = Skipping(0);
 
 // Texture without repetition, brighter than 40; rows wrap around.
 cv::Mat Texture() {
@@ -97,18 +104,13 @@ TEST(MatchSemiGlobally, InterpolatesTheFinestLevelUnlessItIsSearched) {
   };
   const Pair pair = MakePair(disparity);
   const cv::Mat searched = MatchSemiGlobally(pair.first, pair.second, kAllLevels);
-  const cv::Mat interpolated =
-      MatchSemiGlobally(pair.first, pair.second, {.penalties = {}, .num_skipped_levels = 1, .speckles = {}});
+  const cv::Mat interpolated = MatchSemiGlobally(pair.first, pair.second, Skipping(1));
   EXPECT_LT(Compare(searched, disparity).median_error, 0.3);
   EXPECT_LT(Compare(interpolated, disparity).median_error, 0.3);
   EXPECT_GT(Compare(interpolated, disparity).known, Compare(searched, disparity).known - 0.05);
   // The coarsest level is always searched.
-  EXPECT_GT(Compare(MatchSemiGlobally(pair.first, pair.second, {.penalties = {}, .num_skipped_levels = 9, .speckles = {}}),
-                    disparity)
-                .known,
-            0.3);
-  EXPECT_THROW(MatchSemiGlobally(pair.first, pair.second, {.penalties = {}, .num_skipped_levels = -1, .speckles = {}}),
-               ContractError);
+  EXPECT_GT(Compare(MatchSemiGlobally(pair.first, pair.second, Skipping(9)), disparity).known, 0.3);
+  EXPECT_THROW(MatchSemiGlobally(pair.first, pair.second, Skipping(-1)), ContractError);
 }
 
 TEST(MatchSemiGlobally, FollowsTheGroundBelowTheCameraWhereDisparitiesChangeQuickly) {
