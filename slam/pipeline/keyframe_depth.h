@@ -36,7 +36,7 @@ struct KeyframeDepthOptions {
   int min_points = 50;
   /// Number by which the errors that the network expects are multiplied: where it has not been
   /// trained, they are larger than it says (docs/results/stereo.md).
-  double completion_error_factor = 3.0;
+  double completion_error_factor = 5.0;
   /// Whether the depth has what the network completes. Otherwise it has what stereo measures.
   bool keeps_completed = true;
   SphericalStereoOptions stereo = {};

@@ -60,7 +60,9 @@ void Pipeline::LoadMap(const StoredMap& stored, bool keeps_map) {
 void Pipeline::EnableDepth(const std::filesystem::path& weights,
                            const std::filesystem::path& folder) {
   ORB360_CHECK(num_frames_ == 0 && !dense_, num_frames_);
-  dense_.emplace(weights, folder, options_.depth, num_threads_);
+  DepthOptions options = options_.depth;
+  options.height = std::min(options.height, camera_.height());  // More would show nothing more.
+  dense_.emplace(weights, folder, options, num_threads_);
 }
 
 FrameReport Pipeline::Process(const Frame& frame) {
