@@ -13,8 +13,8 @@ struct DepthOptions {
   SparseDepthOptions sparse = {.min_found_fraction = 0.8};
   /// How the ground is found in completed depth.
   DenseGroundOptions ground = {};
-  /// Height of the images that are completed, pixels; they are twice as wide. Those of the input are
-  /// not enlarged.
+  /// Height of the images that are completed, pixels; they are twice as wide. Those of the input
+  /// are not enlarged.
   int height = 512;
   /// Interval of completed keyframes: those whose id is a multiple of it are completed.
   int every_keyframes = 1;
