@@ -7,6 +7,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import cv2
+import numpy as np
+
 from shell_blocks import ROOT
 
 BUILD = Path(os.environ.get("ORB360_BINARY_DIR", ROOT / "build"))
@@ -50,6 +53,22 @@ class Scripts(unittest.TestCase):
             "--cache", self.cache, "--out", self.folder / "out")
         for variant in ("mono", "tri", "dc"):
             self.assertRegex(table, rf"Loop \| +{variant} \| +60/60 \| +0 \|")
+
+    def test_draw_mesh_shows_the_surfaces_around_a_keyframe(self) -> None:
+        town = self.render(40)
+        run = self.folder / "run"
+        subprocess.run([BUILD / "orb360", "run", town, "--mask", "none", "--mesh", "--quiet",
+                        "--out", run], check=True)
+        for options in ((), ("--colour",)):
+            self.run_script("draw_mesh", run, "mesh.png", "--keyframe", 2, "--size", 320, 180,
+                            *options)
+            image = cv2.imread(str(self.folder / "mesh.png"))
+            self.assertEqual(image.shape, (180, 320, 3))
+            self.assertGreater(np.mean(image[120:].max(axis=2) > 0), 0.5)  # the road
+        refused = subprocess.run([ROOT / "scripts" / "draw_mesh", self.folder, "mesh.png"],
+                                 check=False, text=True, stderr=subprocess.PIPE)
+        self.assertNotEqual(refused.returncode, 0)
+        self.assertRegex(refused.stderr, r"^[^\n]*mesh.ply: is missing[^\n]*\n$")
 
     def test_evaluate_outside_measures_every_recording_below_a_folder(self) -> None:
         town = self.render(60, "--depth-every", "10")
