@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <opencv2/imgproc.hpp>
 
@@ -14,6 +15,33 @@ constexpr float kMasked = -1.0f;  // as a gray value
 // Gray levels: variance of the noise in one cell. Ground with less texture counts less.
 constexpr float kNoiseVariance = 4.0f;
 
+// Chooses the pyramid level whose pixels are as large as a cell of the ground looks.
+class LevelChooser {
+ public:
+  LevelChooser(const SpherePyramid& image, double cell) {
+    const double log_ratio = std::log(RangeAtLevelZero(1.0, 1));
+    const double pixel = image.front().camera.AngleOfPixels(1.0);
+    // The angle of a cell at distance d, heights of the camera, is the root of its solid angle:
+    // cell / d^1.5. Half-way between two levels it is `angle`.
+    for (size_t level = 0; level + 1 < image.size(); ++level) {
+      const double angle = pixel * std::exp((static_cast<double>(level) + 0.5) * log_ratio);
+      least_squared_distances_.push_back(std::pow(cell / angle, 4.0 / 3.0));
+    }
+  }
+
+  size_t LevelAt(double squared_distance) const {
+    size_t level = 0;
+    while (level < least_squared_distances_.size() &&
+           squared_distance <= least_squared_distances_[level]) {
+      ++level;
+    }
+    return level;
+  }
+
+ private:
+  std::vector<double> least_squared_distances_;  // From which a level is fine enough.
+};
+
 }  // namespace
 
 BirdsEyeView LookDown(const SpherePyramid& image, const Eigen::Matrix3d& axes, const cv::Mat& mask,
@@ -21,9 +49,7 @@ BirdsEyeView LookDown(const SpherePyramid& image, const Eigen::Matrix3d& axes, c
   BirdsEyeView view{begin, end, half_width, {}};
   view.values.reserve(static_cast<size_t>(end - begin) * view.width());
   const EquirectangularCamera& camera = image.front().camera;
-  const double level_ratio = std::log(RangeAtLevelZero(1.0, 1));
-  const double pixel = camera.AngleOfPixels(1.0);
-  const int top = static_cast<int>(image.size()) - 1;
+  const LevelChooser levels(image, cell);
   for (int i = begin; i < end; ++i) {
     for (int j = -half_width; j < half_width; ++j) {
       const Eigen::Vector3d point((i + 0.5) * cell, (j + 0.5) * cell, -1.0);
@@ -34,10 +60,7 @@ BirdsEyeView LookDown(const SpherePyramid& image, const Eigen::Matrix3d& axes, c
         view.values.push_back(kMasked);
         continue;
       }
-      // The angle of a cell is the root of its solid angle.
-      const double spacing = cell / std::pow(point.squaredNorm(), 0.75);
-      const int level = std::clamp(
-          static_cast<int>(std::lround(std::log(spacing / pixel) / level_ratio)), 0, top);
+      const size_t level = levels.LevelAt(point.squaredNorm());
       const EquirectangularCamera& of_level = image[level].camera;
       const double u = on_level_0.x() * of_level.width() / camera.width();
       const double v = on_level_0.y() * of_level.height() / camera.height();
