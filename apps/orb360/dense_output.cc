@@ -8,6 +8,7 @@
 #include "slam/evaluation/depth_visualization.h"
 #include "slam/io/dataset.h"
 #include "slam/io/output_file.h"
+#include <orb360/nn/base/check.h>
 #include <orb360/slam/io/depth_image.h>
 
 namespace orb360 {
@@ -55,15 +56,27 @@ DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMap
         ChooseVoxelSize(views, [&store](int frame_index) { return store.Get(frame_index); });
   }
   std::optional<MeshWriter> mesh;
+  // The cloud is written even where the disk has no room for the mesh.
+  const auto try_mesh = [&](const auto& step) {
+    try {
+      step();
+    } catch (const UserError&) {
+      output.mesh_failure = std::current_exception();
+      mesh.reset();
+    }
+  };
   if (has_mesh) {
-    mesh.emplace(folder / kMeshName, *fusion.voxel_size, SurfaceNetsOptions(), fusion.num_threads);
+    try_mesh([&] {
+      mesh.emplace(folder / kMeshName, *fusion.voxel_size, SurfaceNetsOptions(),
+                   fusion.num_threads);
+    });
   }
   output.cloud = WriteDenseCloud(folder / "cloud.ply", store, views, fusion,
                                  [&](std::span<const SurfacePoint> points) {
                                    image.Add(points);
-                                   if (mesh) mesh->Add(points);
+                                   if (mesh) try_mesh([&] { mesh->Add(points); });
                                  });
-  if (mesh) output.mesh = mesh->Write();
+  if (mesh) try_mesh([&] { output.mesh = mesh->Write(); });
   output.images = {image.Draw(/*is_metric=*/options.voxel_size.has_value()),
                    DrawKeyframes(store, views)};
   return output;

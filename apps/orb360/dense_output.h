@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -20,6 +21,8 @@ inline constexpr const char* kMeshName = "mesh.ply";
 struct DenseOutput {
   DenseCloudSummary cloud;
   std::optional<MeshSummary> mesh;
+  /// Why the mesh could not be written, such as a full disk. Null where there was no failure.
+  std::exception_ptr mesh_failure;
   DenseImages images;
 };
 

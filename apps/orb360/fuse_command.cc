@@ -39,6 +39,11 @@ int Fuse(const FuseOptions& options) {
   const std::filesystem::path out = options.out.empty()
                                         ? std::filesystem::path(options.run) / "cloud.ply"
                                         : std::filesystem::path(options.out);
+  const std::filesystem::path mesh_path = out.parent_path() / kMeshName;
+  if (options.has_mesh && out == mesh_path) {
+    throw UserError("--out: " + out.string() +
+                    " is the file of the mesh; name the cloud otherwise");
+  }
   DenseCloudOptions fusion;
   const auto load = [&store](int frame_index) { return store.Get(frame_index); };
   if (options.voxel_size > 0) {
@@ -61,8 +66,7 @@ int Fuse(const FuseOptions& options) {
     };
     std::optional<MeshWriter> mesh;
     if (options.has_mesh) {
-      mesh.emplace(out.parent_path() / kMeshName, *fusion.voxel_size, SurfaceNetsOptions(),
-                   fusion.num_threads);
+      mesh.emplace(mesh_path, *fusion.voxel_size, SurfaceNetsOptions(), fusion.num_threads);
     }
     summary = WriteDenseCloud(out, store, saved.views, fusion,
                               [&mesh](std::span<const SurfacePoint> points) {

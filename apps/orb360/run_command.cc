@@ -133,6 +133,10 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
       progress.Update("computing depth", done, count);
       return CaughtInterrupt() == 0;
     });
+    const bool has_depth = std::ranges::any_of(
+        reconstruction.keyframes,
+        [&](const FramePose& keyframe) { return system->depth_maps()->Contains(keyframe.index); });
+    if (!has_depth) return std::nullopt;
     DenseCloudOptions fusion;
     fusion.num_threads = num_threads;
     fusion.progress = [&](int done, int count) { progress.Update("fusing depth", done, count); };
@@ -140,6 +144,7 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
         reconstruction, *system->depth_maps(),
         {.depth = options.saves_depth, .views = options.saves_views, .mesh = options.has_mesh},
         fusion);
+    if (!record->failure) record->failure = dense->mesh_failure;
   } catch (const std::exception&) {  // The trajectory is written nevertheless.
     if (!record->failure) record->failure = std::current_exception();
   }

@@ -116,6 +116,8 @@ Rigid3 RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::j
                   file_world_from_map);
   WriteScales(folder_ / "scale.txt", KnownScales(reconstruction));
   WritePly(folder_ / (dense ? "landmarks.ply" : "cloud.ply"), cloud, file_world_from_map);
+  // One of an earlier run in the same folder would belong to another cloud.
+  if (!dense || !dense->mesh) std::filesystem::remove(folder_ / kMeshName);
   std::string map_svg;
   if (!reconstruction.keyframes.empty()) {
     map_svg = DrawMap(reconstruction, file_world_from_map);

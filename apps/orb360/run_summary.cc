@@ -152,21 +152,22 @@ std::string StateScale(const nlohmann::json& scale) {
   return text.str();
 }
 
-/// Says where the ranges of the cloud come from, if that is not mostly from the images.
+/// Says why stereo has measured little, if it was to.
 std::string StateCloud(const nlohmann::json& summary) {
   if (!summary.contains("cloud")) return {};
   const nlohmann::json& cloud = summary["cloud"];
   const int measured = cloud["measured_keyframes"];
-  if (2 * measured > cloud["keyframes"]) return {};
+  const int without_sources = cloud["keyframes_without_sources"];
+  const int unseen = cloud["unseen_keyframes"];
+  if (measured >= without_sources + unseen) return {};
   std::string text = "\ncloud: stereo has measured " + std::to_string(measured) + " of " +
-                     std::to_string(cloud["keyframes"].get<int>()) + " keyframes";
-  if (const int count = cloud["keyframes_without_sources"]; count > 0) {
-    text += "; " + std::to_string(count) + " have no frames at a distance at which ranges show";
+                     std::to_string(measured + without_sources + unseen) + " keyframes";
+  if (without_sources > 0) {
+    text += "; around " + std::to_string(without_sources) +
+            " no frames have a distance at which ranges show";
   }
-  if (const int count = cloud["unseen_keyframes"]; count > 0) {
-    text += "; of " + std::to_string(count) + " too little has texture";
-  }
-  return text + "; the rest is the network's estimate";
+  if (unseen > 0) text += "; of " + std::to_string(unseen) + " too little has texture";
+  return text;
 }
 
 void PrintResult(const nlohmann::json& summary, const std::filesystem::path& folder) {

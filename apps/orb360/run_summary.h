@@ -25,7 +25,7 @@ struct RunRecord {
   double finishing_seconds = 0.0;
   /// What stereo has measured.
   KeyframeDepthReport depth;
-  /// Wall time of measuring the depth and of fusing the dense cloud, s.
+  /// Wall time of computing the depth, of fusing the dense cloud and of the mesh, s.
   double fusion_seconds = 0.0;
   StageTimes times;
   std::vector<std::string> warnings;

@@ -159,8 +159,11 @@ DenseCloudStatistics FuseCloud(std::span<const DenseView> views, const DepthLoad
     }
     return comparison;
   };
+  const auto compare_next = [&] {
+    if (options.progress) options.progress(0, static_cast<int>(views.size()));
+  };
   const std::vector<Eigen::Array3f> gains =
-      options.exposure ? EstimateGains(views, load, *options.exposure)
+      options.exposure ? EstimateGains(views, load, *options.exposure, compare_next)
                        : std::vector<Eigen::Array3f>(views.size(), Eigen::Array3f::Ones());
   const auto collect = [&](const std::vector<ConsistentPoint>& points, const cv::Mat& color,
                            size_t index) {

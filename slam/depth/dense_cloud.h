@@ -33,7 +33,8 @@ struct DenseCloudOptions {
   /// released first.
   size_t max_voxels = 1'400'000;
   int num_threads = 1;  // of OpenMP; the cloud does not depend on it
-  /// Receives the number of keyframes done, and of all, before each one. May be null.
+  /// Receives the number of keyframes done, and of all, before each one, and 0 while their
+  /// exposures are compared before that. May be null.
   std::function<void(int done, int count)> progress = {};
 };
 

@@ -102,13 +102,15 @@ std::vector<const LoadedView*> EarlierNeighbours(const DenseView& view,
 }  // namespace
 
 std::vector<Eigen::Array3f> EstimateGains(std::span<const DenseView> views, const DepthLoader& load,
-                                          const ExposureOptions& options) {
+                                          const ExposureOptions& options,
+                                          const std::function<void()>& step) {
   ORB360_CHECK(options.spacing > 0 && options.gain_sigma > 0 && options.ratio_sigma > 0,
                options.spacing, options.gain_sigma, options.ratio_sigma);
   constexpr size_t kLoaded = 8;
   std::deque<LoadedView> loaded;
   std::vector<Ratio> ratios;
   for (size_t i = 0; i < views.size(); ++i) {
+    if (step) step();
     const LoadedView view = Load(i, views, load);
     for (const LoadedView* other : EarlierNeighbours(views[i], loaded, options.max_neighbours)) {
       if (const auto ratio = Compare(*other, view, views, options)) ratios.push_back(*ratio);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -33,7 +34,9 @@ struct ExposureOptions {
 /// 2007). A camera's automatic exposure and white balance change from frame to frame, and so the
 /// colours of a cloud would change from keyframe to keyframe. The gains minimize the differences of
 /// the logarithms between views, and are 1 in the (geometric) mean of views that see each other.
+/// `step`, if given, is called before each view; what it throws is passed on.
 std::vector<Eigen::Array3f> EstimateGains(std::span<const DenseView> views, const DepthLoader& load,
-                                          const ExposureOptions& options);
+                                          const ExposureOptions& options,
+                                          const std::function<void()>& step = nullptr);
 
 }  // namespace orb360

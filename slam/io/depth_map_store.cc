@@ -26,7 +26,7 @@ constexpr double kStepsPerUnit = 1024.0;  // of the natural logarithm
 constexpr int kCodeOfOne = 32 * 1024;     // The middle: any unit of length has room.
 constexpr int kMaxCode = 65535;
 constexpr int kColorQuality = 95;  // of JPEG
-constexpr int kZstdLevel = 1;      // the fastest: tracking and mapping want the cores
+constexpr int kZstdLevel = 1;      // the fastest
 
 struct Header {
   std::uint32_t width;

@@ -38,6 +38,13 @@ void ImageStore::Remove(int frame_index) const {
   std::filesystem::remove(PathOf(frame_index), ignored);
 }
 
+void ImageStore::Clear() const {
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path(), ignored)) {
+    std::filesystem::remove(entry.path(), ignored);
+  }
+}
+
 cv::Mat ImageStore::Read(int frame_index, int flags) const {
   const std::filesystem::path path = PathOf(frame_index);
   cv::Mat image = cv::imread(path.string(), flags);

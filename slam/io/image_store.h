@@ -24,8 +24,9 @@ class ImageStore {
   void Put(int frame_index, const cv::Mat& image) const;
 
   bool Contains(int frame_index) const;
-  /// Removes an image if it is stored.
+  /// Removes an image if it is stored, or all images.
   void Remove(int frame_index) const;
+  void Clear() const;
 
   /// Returns the image (CV_8UC3, BGR). Throws UserError for a frame that is not stored or is
   /// damaged.

@@ -19,6 +19,7 @@ namespace {
 constexpr int kTileCells = 256;
 constexpr int kMaxIndex = 1 << 20;
 constexpr size_t kChunkBytes = size_t{1} << 20;
+constexpr size_t kTriangleBytes = 1 + 3 * sizeof(std::uint32_t);
 
 // Three indices of 21 bits.
 std::uint64_t KeyOf(const CellIndex& index) {
@@ -201,9 +202,15 @@ MeshSummary MeshWriter::Write() const {
   summary.triangles = triangles.count();
   std::ifstream stored(triangles.path(), std::ios::binary);
   std::string chunk(kChunkBytes, '\0');
+  std::uint64_t num_bytes = 0;
   while (stored) {
     stored.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
     file.Write(std::string_view(chunk).substr(0, static_cast<size_t>(stored.gcount())));
+    num_bytes += static_cast<std::uint64_t>(stored.gcount());
+  }
+  if (num_bytes != kTriangleBytes * summary.triangles) {
+    throw UserError(triangles.path().string() +
+                    ": is damaged or gone; keep the folder as it is until the mesh is written");
   }
   file.Overwrite(0, Header(summary));
   file.Commit();

@@ -19,8 +19,8 @@ struct MeshSummary {
 /// Writes the surface through the points of a cloud (ExtractSurface) as binary little-endian PLY:
 /// vertices x y z nx ny nz float, red green blue uchar, and triangles, counterclockwise as seen
 /// from the cameras. The points are kept in files until then, so that the memory does not grow with
-/// the cloud, except for 16 bytes a vertex where cubes of 256 cells meet. Throws UserError if the
-/// disk fails or there are 2^31 vertices or more.
+/// the cloud, except for 16 bytes a vertex and 36 a triangle where cubes of 256 cells meet. Throws
+/// UserError if the disk fails or there are 2^31 vertices or more.
 class MeshWriter {
  public:
   /// The points are kept in a folder `PATH.points` while the object lives. `cell_size`: side of the

@@ -28,21 +28,29 @@ void DenseMapper::KeepImage(int frame_index, const cv::Mat& image, const Rigid3&
   // A sixth of the nearest source view's distance (KeyframeDepthOptions::baselines).
   constexpr double kMinMotion = 0.02;
   const Eigen::Vector3d& place = world_from_camera.translation;
-  if (last_place_ && (place - *last_place_).norm() < kMinMotion * median_range) return;
-  last_place_ = place;
+  const bool is_first = !last_place_ || !unplaced_.empty();
   unplaced_.clear();
+  if (!is_first &&
+      (!options_.stereo || (place - *last_place_).norm() < kMinMotion * median_range)) {
+    return;
+  }
+  last_place_ = place;
   Keep(frame_index, image);
 }
 
-void DenseMapper::KeepKeyframe(int frame_index, const cv::Mat& image) { Keep(frame_index, image); }
+void DenseMapper::KeepKeyframe(int frame_index, const cv::Mat& image) {
+  keyframes_.push_back(frame_index);
+  Keep(frame_index, image);
+}
 
 void DenseMapper::KeepUnplaced(int frame_index, const cv::Mat& image) {
   constexpr size_t kMax = 100;
   Keep(frame_index, image);
   unplaced_.push_back(frame_index);
-  if (unplaced_.size() <= kMax) return;
-  images_.Remove(unplaced_.front());
-  unplaced_.pop_front();
+  if (unplaced_.size() <= kMax + 1) return;
+  // The first one may be the reference of the next map's beginning.
+  images_.Remove(unplaced_[1]);
+  unplaced_.erase(unplaced_.begin() + 1);
 }
 
 void DenseMapper::Keep(int frame_index, const cv::Mat& image) {
@@ -58,17 +66,21 @@ void DenseMapper::Keep(int frame_index, const cv::Mat& image) {
                         [this, frame_index, small] { images_.Put(frame_index, small); });
 }
 
-// On a full disk only the dense cloud is lost, not the trajectory.
+// On a full disk only the dense cloud is lost, not the trajectory, which needs the room.
 void DenseMapper::AwaitImage() {
   if (!keeping_.valid()) return;
   try {
     keeping_.get();
   } catch (const UserError&) {
     failure_ = std::current_exception();
+    images_.Clear();
   }
 }
 
-void DenseMapper::Flush() { AwaitImage(); }
+void DenseMapper::Flush() {
+  AwaitImage();
+  completion_.Drop();
+}
 
 KeyframeDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished,
                                               std::span<const Map> maps,
@@ -80,9 +92,10 @@ KeyframeDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished,
     for (const KeyframeId id : maps[m].KeyframeIds()) {
       const int frame_index = maps[m].keyframe(id).frame_index;
       id_of[m][frame_index] = id;
-      if (id % options_.every_keyframes == 0 && images_.Contains(frame_index)) {
-        wanted.insert(frame_index);
-      }
+      // Ids change where maps are merged. The first keyframes of a map are kept by no KeepKeyframe.
+      const bool is_wanted =
+          options_.every_keyframes == 1 || std::ranges::binary_search(keyframes_, frame_index);
+      if (is_wanted && images_.Contains(frame_index)) wanted.insert(frame_index);
     }
   }
   const std::vector<DenseView> views =
@@ -98,8 +111,13 @@ KeyframeDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished,
   KeyframeDepthOptions options{.min_points = options_.min_points,
                                .keeps_completed = options_.completion};
   if (!options_.stereo) options.baselines.clear();
-  return orb360::ComputeDepth(views, frames, landmarks_of, options, images_, &completer_,
-                              num_threads_, depth_maps_, progress);
+  try {
+    return orb360::ComputeDepth(views, frames, landmarks_of, options, images_, &completer_,
+                                num_threads_, depth_maps_, progress);
+  } catch (const UserError&) {
+    images_.Clear();
+    throw;
+  }
 }
 
 std::optional<KnownGround> DenseMapper::Ground() const {

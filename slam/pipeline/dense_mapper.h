@@ -34,15 +34,17 @@ class DenseMapper {
   bool Wants(KeyframeId id) const { return id % options_.every_keyframes == 0; }
 
   /// Keeps the image (CV_8UC3, BGR) of a frame without a pose, which may get one later. Of those
-  /// that follow each other only the last 100 are kept.
+  /// that follow each other only the first one and the last 100 are kept.
   void KeepUnplaced(int frame_index, const cv::Mat& image);
-  /// Keeps the image of a tracked frame for stereo, unless the camera has moved by
-  /// less than a few hundredths of `median_range`, the surroundings' range, since the last one.
+  /// Keeps the image of a tracked frame for stereo, unless the camera has moved by less than a few
+  /// hundredths of `median_range`, the surroundings' range, since the last one. The first frame of
+  /// a map is always kept.
   void KeepImage(int frame_index, const cv::Mat& image, const Rigid3& world_from_camera,
                  double median_range);
   /// Keeps the image of a tracked frame that becomes a keyframe with dense depth.
   void KeepKeyframe(int frame_index, const cv::Mat& image);
-  /// Waits until all images are on disk.
+  /// Waits until all images are on disk, and for the completion of a keyframe that has not been
+  /// taken, which is dropped.
   void Flush();
   /// Computes the depth of the keyframes whose images are kept, with the final poses and landmarks
   /// of `finished` and its `maps` (orb360::ComputeDepth). Nothing happens after a failure. Throws
@@ -52,7 +54,7 @@ class DenseMapper {
 
   const DepthMapStore& depth_maps() const { return depth_maps_; }
   /// The error because of which images could not be stored, such as a full disk; null where there
-  /// was none. Contract: Flush has been called.
+  /// was none. All images have been removed then. Contract: Flush has been called.
   std::exception_ptr failure() const { return failure_; }
 
   /// Completes keyframes for mapping.
@@ -73,13 +75,14 @@ class DenseMapper {
 
   const DepthOptions options_;
   const int num_threads_;
+  std::vector<int> keyframes_;  ///< Frame indices of those kept as keyframes, in their order.
   std::vector<DenseGround> grounds_;
   std::exception_ptr failure_;
   DepthMapStore depth_maps_;
   ImageStore images_;
   std::optional<Eigen::Vector3d> last_place_;  ///< Where the last image was kept, world frame.
   std::optional<int> last_frame_;              ///< The frame whose image was kept last.
-  std::deque<int> unplaced_;                   ///< The newest frames without a pose.
+  std::deque<int> unplaced_;  ///< Frames without a pose since the last one with a pose.
   DepthCompleter completer_;
   /// Declared last, so that their threads end before the members that they use.
   KeyframeCompletion completion_;

@@ -10,7 +10,8 @@ void RegisterOptions(OptionSchema* schema, DepthOptions* options) {
   schema->Add("depth.every_keyframes", &options->every_keyframes,
               "every so many keyframes get dense depth", 1, 1000);
   schema->Add("depth.min_points", &options->min_points,
-              "landmarks that a keyframe must show to be completed", 1, 100000);
+              "landmarks that a keyframe must show to be completed, unless stereo measures it", 1,
+              100000);
   schema->Add("depth.adoption_frames", &options->adoption_frames,
               "frames after which the depth of a keyframe is used in mapping", 1, 1000);
   schema->Add("depth.guides_mapping", &options->guides_mapping,

@@ -39,6 +39,8 @@ class KeyframeCompletion {
   /// Waits for the pending keyframe. `unit_scale` is the number of present units of the map in one
   /// unit of the map when the completion was started. Throws what the completion has thrown.
   CompletedKeyframe Take(double unit_scale);
+  /// Waits for the pending keyframe, if there is one, and drops its result.
+  void Drop() { job_.reset(); }
 
  private:
   struct Job {

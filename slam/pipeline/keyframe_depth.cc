@@ -80,20 +80,26 @@ bool SampleSquares(const InverseRanges& seen, const KeyframeDepthOptions& option
   return true;
 }
 
-// Ranges in the unit of `seen`: those seen, and those completed elsewhere.
-void Merge(const InverseRanges& seen, double completion_error_factor, DenseDepth* completed) {
+// Multiplies the errors that the network expects.
+void Distrust(double error_factor, DenseDepth* completed) {
+  for (int row = 0; row < completed->confidence.rows; ++row) {
+    for (int column = 0; column < completed->confidence.cols; ++column) {
+      float& confidence = completed->confidence.at<float>(row, column);
+      if (!(confidence > 0)) continue;
+      confidence = ConfidenceOf(static_cast<float>(error_factor) * (1 / confidence - 1));
+    }
+  }
+}
+
+// Puts ranges that were seen in the place of completed ones.
+void TakeOver(const InverseRanges& seen, DenseDepth* depth) {
   for (int row = 0; row < seen.value.rows; ++row) {
     for (int column = 0; column < seen.value.cols; ++column) {
-      float& range = completed->range.at<float>(row, column);
-      float& confidence = completed->confidence.at<float>(row, column);
       const float value = seen.value.at<float>(row, column);
-      if (value > 0) {
-        range = 1 / value;
-        confidence = ConfidenceOf(seen.sigma.at<float>(row, column) / value);
-      } else if (confidence > 0) {
-        confidence =
-            ConfidenceOf(static_cast<float>(completion_error_factor) * (1 / confidence - 1));
-      }
+      if (!(value > 0)) continue;
+      depth->range.at<float>(row, column) = 1 / value;
+      depth->confidence.at<float>(row, column) =
+          ConfidenceOf(seen.sigma.at<float>(row, column) / value);
     }
   }
 }
@@ -165,12 +171,13 @@ KeyframeDepthReport ComputeDepth(std::span<const DenseView> views,
     const std::vector<SparsePoint> landmarks = landmarks_of(view);
     SparseDepth sparse = RenderSparseDepth(landmarks, completer->camera());
     const cv::Mat color = images.Get(view.frame_index);
-    if (!landmarks.empty() && (i == 0 || view.map != views[i - 1].map || !(range > 0))) {
+    if (i > 0 && view.map != views[i - 1].map) range = 0;
+    if (!landmarks.empty() && !(range > 0)) {
       range = TrustedRange(completer->Complete(color, sparse), options.min_trusted_confidence);
     }
     InverseRanges seen;
     bool is_measured = false;
-    if (uses_stereo) {
+    if (uses_stereo && !options.baselines.empty()) {
       std::vector<StereoView> sources;
       for (const FramePose& frame :
            ChooseStereoSources(FindStereoCandidates(views, i, frames), view, range, options)) {
@@ -190,7 +197,8 @@ KeyframeDepthReport ComputeDepth(std::span<const DenseView> views,
     if (!is_measured && !is_completed) continue;
     DenseDepth depth = completer->Complete(color, sparse);
     range = TrustedRange(depth, options.min_trusted_confidence);
-    if (is_measured) Merge(seen, options.completion_error_factor, &depth);
+    if (!options.baselines.empty()) Distrust(options.completion_error_factor, &depth);
+    if (is_measured) TakeOver(seen, &depth);
     if (!options.keeps_completed) depth.confidence.setTo(0, ~(seen.value > 0));
     store.Put(view.frame_index, depth);
   }

@@ -34,8 +34,8 @@ struct KeyframeDepthOptions {
   /// Least number of landmarks of a keyframe of which stereo measures nothing. One with fewer gets
   /// no depth.
   int min_points = 50;
-  /// Number by which the errors that the network expects are multiplied: where it has not been
-  /// trained, they are larger than it says (docs/results/stereo.md).
+  /// Number by which the errors that the network expects are multiplied beside stereo: where it has
+  /// not been trained, they are larger than it says (docs/results/stereo.md).
   double completion_error_factor = 5.0;
   /// Whether the depth has what the network completes. Otherwise it has what stereo measures.
   bool keeps_completed = true;

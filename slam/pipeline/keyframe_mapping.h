@@ -25,7 +25,7 @@ struct KeyframeMapping {
   std::optional<KnownGround> ground;             ///< The ground that has been seen so far.
   cv::Mat mask = {};  ///< What moves with the camera (CV_8U, 0: not used); may be empty.
   /// The camera and the image (CV_8UC3, BGR) in the size in which depth is completed. None and
-  /// empty where the keyframe gets no dense depth.
+  /// empty where it is not completed for mapping.
   std::optional<EquirectangularCamera> completed_camera = {};
   cv::Mat color = {};
 };

@@ -11,7 +11,7 @@ namespace orb360 {
 /// Number of landmarks in common that links two keyframes in the covisibility graph.
 inline constexpr int kCovisible = 15;
 
-/// Makes the reconstruction except for `initialized_at`, `depth_scales`, the counts of events, and
+/// Makes the reconstruction except for `initialized_at`, the counts of events, and
 /// the scale of the maps. Keyframes have their poses in the map; the poses of the other frames are
 /// refined on the landmarks that they see (frame_refinement.h). Runs on `num_threads` OpenMP
 /// threads.

@@ -112,7 +112,7 @@ void Pipeline::KeepImage(const Frame& frame) {
   const FrontEnd::Tracking* now = front_end_.tracking();
   if (now == nullptr) {
     dense_->KeepUnplaced(frame.index, frame.image);
-  } else if (options_.depth.stereo) {
+  } else {
     dense_->KeepImage(frame.index, frame.image, now->last.world_from_camera,
                       front_end_.local().median_range);
   }

@@ -57,6 +57,9 @@ TEST_F(FuseTest, WritesTheSurfaceThroughTheCloudOnRequest) {
   EXPECT_EQ(Fuse({"--mesh", "--threads", "1"}).status, 0);
   EXPECT_EQ(ReadText(OutFile("mesh.ply")), mesh);
   EXPECT_FALSE(std::filesystem::exists(OutFile("mesh.ply.points")));
+  const ProgramResult refused = Fuse({"--mesh", "--out", OutFile("mesh.ply")});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err, AllOf(IsOneLine(), HasSubstr("--out")));
 }
 
 TEST_F(FuseTest, ItsOptionsChangeTheCloudAndLeaveThatOfTheRunAlone) {

@@ -30,13 +30,18 @@ TEST(ImageStore, GivesImagesBackWithSmallErrors) {
   EXPECT_LT(cv::norm(store.GetGray(7), gray, cv::NORM_INF), 6);
 }
 
-TEST(ImageStore, RemovesAnImage) {
+TEST(ImageStore, RemovesImages) {
   const TempFolder folder;
   const ImageStore store(folder / "images");
   store.Put(1, cv::Mat(64, 128, CV_8UC3, cv::Scalar::all(90)));
   store.Remove(1);
   store.Remove(2);
   EXPECT_FALSE(store.Contains(1));
+  store.Put(3, cv::Mat(64, 128, CV_8UC3, cv::Scalar::all(90)));
+  store.Put(4, cv::Mat(64, 128, CV_8UC3, cv::Scalar::all(90)));
+  store.Clear();
+  EXPECT_FALSE(store.Contains(3));
+  EXPECT_FALSE(store.Contains(4));
 }
 
 TEST(ImageStore, AnImageThatIsGoneOrCutOffIsAnError) {

@@ -58,12 +58,26 @@ TEST_F(DenseMapperTest, KeepsEveryKeyframeWhetherOrNotTheCameraMoves) {
 TEST_F(DenseMapperTest, KeepsTheNewestFramesWithoutAPose) {
   DenseMapper mapper = Make();
   for (int i = 0; i < 103; ++i) mapper.KeepUnplaced(i, Image());
-  mapper.KeepImage(103, Image(), Rigid3(), 5.0);
+  mapper.KeepImage(103, Image(), Rigid3(), 5.0);  // The first of a map is always kept.
   for (int i = 104; i < 110; ++i) mapper.KeepUnplaced(i, Image());
   mapper.Flush();
+  EXPECT_TRUE(IsKept("0.jpg"));  // Perhaps the reference of the first map.
+  EXPECT_FALSE(IsKept("1.jpg"));
   EXPECT_FALSE(IsKept("2.jpg"));
   EXPECT_TRUE(IsKept("3.jpg"));
+  EXPECT_TRUE(IsKept("103.jpg"));
   EXPECT_TRUE(IsKept("109.jpg"));
+}
+
+TEST_F(DenseMapperTest, TheFirstFrameOfTheNextMapIsKeptThoughTheCameraHasNotMoved) {
+  DenseMapper mapper = Make();
+  mapper.KeepImage(0, Image(), Rigid3(), 5.0);
+  mapper.KeepUnplaced(1, Image());
+  mapper.KeepImage(2, Image(), Rigid3(), 5.0);
+  mapper.KeepImage(3, Image(), Rigid3(), 5.0);
+  mapper.Flush();
+  EXPECT_TRUE(IsKept("2.jpg"));
+  EXPECT_FALSE(IsKept("3.jpg"));
 }
 
 TEST_F(DenseMapperTest, ADiskThatTakesNoImageIsNotedAndTrackingGoesOn) {

@@ -18,7 +18,8 @@ struct DepthOptions {
   int height = 512;
   /// Interval of completed keyframes: those whose id is a multiple of it are completed.
   int every_keyframes = 1;
-  /// Least number of points of sparse depth; a keyframe with fewer is not completed.
+  /// Least number of landmarks that a keyframe shows. One with fewer is completed only where stereo
+  /// has measured a part of it.
   int min_points = 50;
   /// Number of frames after which the depth of a keyframe is used in mapping. It is completed
   /// meanwhile.

@@ -34,8 +34,8 @@ class System {
   void LoadMap(const StoredMap& stored);
   /// The same, but frames are only localized in the map, which does not change.
   void Localize(const StoredMap& stored);
-  /// Before the first frame: keeps images for ComputeDepth in `folder` while the system lives.
-  /// Throws UserError where `folder` or the network in the file `weights` cannot be used.
+  /// Before the first frame: keeps images in `folder` for ComputeDepth with the network `weights`.
+  /// Throws UserError where one of them cannot be used.
   void EnableDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
 
   /// Processes the next frame; timestamps must grow. Throws ContractError for an image of another
@@ -48,12 +48,9 @@ class System {
   std::span<const Map> maps() const;
   /// Returns the ground under each map, after Finish. A map with ground is metric.
   std::span<const std::optional<KnownGround>> grounds() const;
-  /// Computes the dense depth of keyframes, after Finish and EnableDepth. Throws UserError where
-  /// the disk fails.
-  KeyframeDepthReport ComputeDepth(const Reconstruction& finished,
-                                   const KeyframeProgress& progress = nullptr);
-  /// Returns the depth of keyframes, after ComputeDepth, or null without EnableDepth. Throws
-  /// UserError where the images could not be stored.
+  /// Computes the dense depth of keyframes, after Finish. Throws UserError where the disk fails.
+  KeyframeDepthReport ComputeDepth(const Reconstruction&, const KeyframeProgress& = nullptr);
+  /// Returns that depth, or null without EnableDepth. Throws UserError where images were not kept.
   const DepthMapStore* depth_maps() const;
 
  private:
