@@ -1,15 +1,13 @@
 #pragma once
 
-#include <deque>
 #include <exception>
 #include <filesystem>
-#include <future>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "slam/io/depth_map_store.h"
-#include "slam/io/image_store.h"
+#include "slam/pipeline/kept_images.h"
 #include "slam/pipeline/keyframe_completion.h"
 #include <orb360/slam/map/ground.h>
 #include <orb360/slam/pipeline/keyframe_depth_report.h>
@@ -32,17 +30,8 @@ class DenseMapper {
   /// The camera of the images that are completed.
   const EquirectangularCamera& camera() const { return completer_.camera(); }
   bool Wants(KeyframeId id) const { return id % options_.every_keyframes == 0; }
+  KeptImages& images() { return images_; }
 
-  /// Keeps the image (CV_8UC3, BGR) of a frame without a pose, which may get one later. Of those
-  /// that follow each other only the first one and the last 100 are kept.
-  void KeepUnplaced(int frame_index, const cv::Mat& image);
-  /// Keeps the image of a tracked frame for stereo, unless the camera has moved by less than a few
-  /// hundredths of `median_range`, the surroundings' range, since the last one. The first frame of
-  /// a map is always kept.
-  void KeepImage(int frame_index, const cv::Mat& image, const Rigid3& world_from_camera,
-                 double median_range);
-  /// Keeps the image of a tracked frame that becomes a keyframe with dense depth.
-  void KeepKeyframe(int frame_index, const cv::Mat& image);
   /// Waits until all images are on disk, and for the completion of a keyframe that has not been
   /// taken, which is dropped.
   void Flush();
@@ -53,9 +42,8 @@ class DenseMapper {
                                    const KeyframeProgress& progress);
 
   const DepthMapStore& depth_maps() const { return depth_maps_; }
-  /// The error because of which images could not be stored, such as a full disk; null where there
-  /// was none. All images have been removed then. Contract: Flush has been called.
-  std::exception_ptr failure() const { return failure_; }
+  /// The error because of which images could not be stored (KeptImages::failure).
+  std::exception_ptr failure() const { return images_.failure(); }
 
   /// Completes keyframes for mapping.
   KeyframeCompletion& completion() { return completion_; }
@@ -70,23 +58,14 @@ class DenseMapper {
   std::optional<KnownGround> Ground() const;
 
  private:
-  void Keep(int frame_index, const cv::Mat& image);
-  void AwaitImage();
-
   const DepthOptions options_;
   const int num_threads_;
-  std::vector<int> keyframes_;  ///< Frame indices of those kept as keyframes, in their order.
   std::vector<DenseGround> grounds_;
-  std::exception_ptr failure_;
   DepthMapStore depth_maps_;
-  ImageStore images_;
-  std::optional<Eigen::Vector3d> last_place_;  ///< Where the last image was kept, world frame.
-  std::optional<int> last_frame_;              ///< The frame whose image was kept last.
-  std::deque<int> unplaced_;  ///< Frames without a pose since the last one with a pose.
   DepthCompleter completer_;
-  /// Declared last, so that their threads end before the members that they use.
+  KeptImages images_;
+  /// Declared last, so that its thread ends before the members that it uses.
   KeyframeCompletion completion_;
-  std::future<void> keeping_;  ///< Stores the newest image.
 };
 
 }  // namespace orb360

@@ -111,10 +111,10 @@ void Pipeline::KeepImage(const Frame& frame) {
   if (!dense_) return;
   const FrontEnd::Tracking* now = front_end_.tracking();
   if (now == nullptr) {
-    dense_->KeepUnplaced(frame.index, frame.image);
+    dense_->images().KeepUnplaced(frame.index, frame.image);
   } else {
-    dense_->KeepImage(frame.index, frame.image, now->last.world_from_camera,
-                      front_end_.local().median_range);
+    dense_->images().KeepTracked(frame.index, frame.image, now->last.world_from_camera,
+                                 front_end_.local().median_range);
   }
 }
 

@@ -45,7 +45,7 @@ void Pipeline::StartMapping(const cv::Mat& image) {
   TrackedFrame frame = front_end_.tracking()->last;
   for (LandmarkId& id : frame.landmarks) id = atlas_.map().Resolve(id);
   const bool is_completed = dense_ && dense_->Wants(atlas_.map().keyframe_end());
-  if (is_completed) dense_->KeepKeyframe(frame.index, image);
+  if (is_completed) dense_->images().KeepKeyframe(frame.index, image);
   const std::optional<KnownGround> ground = atlas_.ReliableGround();
   // The sooner a keyframe is in the map, the sooner there is the next one.
   const bool seeks_ground =

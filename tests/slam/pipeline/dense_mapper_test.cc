@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <string>
 
 #include <gtest/gtest.h>
 
@@ -17,76 +16,23 @@ class DenseMapperTest : public testing::Test {
   DenseMapper Make() const {
     return {WritePropagation(folder_), folder_ / "depth", {.height = 64, .min_points = 4}, 1};
   }
-  cv::Mat Image() const { return {64, 128, CV_8UC3, cv::Scalar::all(90)}; }
-  bool IsKept(const std::string& name) const {
-    return std::filesystem::exists(folder_ / "depth" / "images" / name);
-  }
 
   TempFolder folder_;
 };
 
-TEST_F(DenseMapperTest, KeepsImagesOfAMovingCameraAsLongAsItLives) {
+TEST_F(DenseMapperTest, ItsFolderLivesAsLongAsItDoes) {
   {
-    DenseMapper mapper = Make();
-    const auto keep = [&](int frame_index, double place) {
-      mapper.KeepImage(frame_index, Image(), {Eigen::Quaterniond::Identity(), {place, 0, 0}}, 5.0);
-    };
-    keep(0, 0.0);
-    keep(1, 0.05);
-    keep(2, 0.11);
-    keep(3, 0.15);
-    mapper.Flush();
-    EXPECT_TRUE(IsKept("0.jpg"));
-    EXPECT_FALSE(IsKept("1.jpg"));
-    EXPECT_TRUE(IsKept("2.jpg"));
-    EXPECT_FALSE(IsKept("3.jpg"));
+    const DenseMapper mapper = Make();
+    EXPECT_EQ(mapper.camera().width(), 128);
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "depth"));
   }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "depth"));
 }
 
-TEST_F(DenseMapperTest, KeepsEveryKeyframeWhetherOrNotTheCameraMoves) {
-  DenseMapper mapper = Make();
-  mapper.KeepImage(0, Image(), Rigid3(), 5.0);
-  mapper.KeepKeyframe(0, Image());
-  mapper.KeepImage(1, Image(), Rigid3(), 5.0);
-  mapper.KeepKeyframe(1, Image());
-  mapper.Flush();
-  EXPECT_TRUE(IsKept("0.jpg"));
-  EXPECT_TRUE(IsKept("1.jpg"));
-}
-
-TEST_F(DenseMapperTest, KeepsTheNewestFramesWithoutAPose) {
-  DenseMapper mapper = Make();
-  for (int i = 0; i < 103; ++i) mapper.KeepUnplaced(i, Image());
-  mapper.KeepImage(103, Image(), Rigid3(), 5.0);  // The first of a map is always kept.
-  for (int i = 104; i < 110; ++i) mapper.KeepUnplaced(i, Image());
-  mapper.Flush();
-  EXPECT_TRUE(IsKept("0.jpg"));  // Perhaps the reference of the first map.
-  EXPECT_FALSE(IsKept("1.jpg"));
-  EXPECT_FALSE(IsKept("2.jpg"));
-  EXPECT_TRUE(IsKept("3.jpg"));
-  EXPECT_TRUE(IsKept("103.jpg"));
-  EXPECT_TRUE(IsKept("109.jpg"));
-}
-
-TEST_F(DenseMapperTest, TheFirstFrameOfTheNextMapIsKeptThoughTheCameraHasNotMoved) {
-  DenseMapper mapper = Make();
-  mapper.KeepImage(0, Image(), Rigid3(), 5.0);
-  mapper.KeepUnplaced(1, Image());
-  mapper.KeepImage(2, Image(), Rigid3(), 5.0);
-  mapper.KeepImage(3, Image(), Rigid3(), 5.0);
-  mapper.Flush();
-  EXPECT_TRUE(IsKept("2.jpg"));
-  EXPECT_FALSE(IsKept("3.jpg"));
-}
-
-TEST_F(DenseMapperTest, ADiskThatTakesNoImageIsNotedAndTrackingGoesOn) {
+TEST_F(DenseMapperTest, AfterAFailureThereIsNoDepth) {
   DenseMapper mapper = Make();
   std::filesystem::remove_all(folder_ / "depth" / "images");
-  for (int i = 0; i < 3; ++i) {
-    EXPECT_NO_THROW(mapper.KeepImage(
-        i, Image(), {Eigen::Quaterniond::Identity(), Eigen::Vector3d(i, 0, 0)}, 5.0));
-  }
+  mapper.images().KeepKeyframe(0, cv::Mat(64, 128, CV_8UC3, cv::Scalar::all(90)));
   mapper.Flush();
   ASSERT_NE(mapper.failure(), nullptr);
   EXPECT_THROW(std::rethrow_exception(mapper.failure()), UserError);
