@@ -99,10 +99,27 @@ void SmoothRow(const std::array<const float*, kSide>& rows, float max_difference
   }
 }
 
+// The sums of the rows' terms in each column, also in as many columns of the margins as windows
+// reach.
+void SumColumns(const std::array<const TermRow*, kSide>& rows, int width, TermRow* sums) {
+  const DF d;
+  for (int term = 0; term < kNumTerms; ++term) {
+    for (int x = -kRadius; x < width + kRadius; x += static_cast<int>(hn::Lanes(d))) {
+      VF sum = hn::Zero(d);
+      for (const TermRow* row : rows) {
+        sum = hn::Add(sum, hn::LoadU(d, (*row)[term].data() + kMargin + x));
+      }
+      hn::StoreU(sum, d, (*sums)[term].data() + kMargin + x);
+    }
+  }
+}
+
 // Moves the disparities of a row by a Gauss-Newton step, from the terms of the rows around it.
+// `column_sums` is overwritten.
 void RefineRow(const std::array<const TermRow*, kSide>& rows,
-               const DisparityRefinementOptions& options, int width, float* disparity,
-               float* sigma) {
+               const DisparityRefinementOptions& options, int width, TermRow* column_sums,
+               float* disparity, float* sigma) {
+  SumColumns(rows, width, column_sums);
   const DF d;
   const VF zero = hn::Zero(d);
   const VF limit = hn::Set(d, static_cast<float>(options.max_step));
@@ -110,16 +127,11 @@ void RefineRow(const std::array<const TermRow*, kSide>& rows,
   for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(d))) {
     VF sums[kNumTerms];
     for (int term = 0; term < kNumTerms; ++term) {
-      VF columns[kSide];
-      for (int i = 0; i < kSide; ++i) {
-        columns[i] = zero;
-        for (const TermRow* row : rows) {
-          columns[i] =
-              hn::Add(columns[i], hn::LoadU(d, (*row)[term].data() + kMargin + x + i - kRadius));
-        }
-      }
       sums[term] = zero;
-      for (int i = 0; i < kSide; ++i) sums[term] = hn::Add(sums[term], columns[i]);
+      for (int i = -kRadius; i <= kRadius; ++i) {
+        sums[term] =
+            hn::Add(sums[term], hn::LoadU(d, (*column_sums)[term].data() + kMargin + x + i));
+      }
     }
     // Central moments.
     const VF scale = hn::Div(hn::Set(d, 1.0f), hn::Max(sums[kWeight], hn::Set(d, 1.0f)));
@@ -192,11 +204,14 @@ RefinedDisparities RefineDisparities(const cv::Mat& first, const cv::Mat& second
   cv::Mat next(present.size(), CV_32F);
   cv::Mat sigma(present.size(), CV_32F);
   std::array<TermRow, kSide> terms;
-  for (TermRow& row : terms) {
-    for (std::vector<float>& term : row) {
+  TermRow column_sums;
+  const auto clear = [width](TermRow* row) {
+    for (std::vector<float>& term : *row) {
       term.assign(static_cast<size_t>(width) + 2 * kMargin, 0.0f);
     }
-  }
+  };
+  for (TermRow& row : terms) clear(&row);
+  clear(&column_sums);
   for (int step = 0; step < options.num_steps; ++step) {
     present = Smooth(present, options);
     present.copyTo(next);
@@ -207,7 +222,7 @@ RefinedDisparities RefineDisparities(const cv::Mat& first, const cv::Mat& second
        present.ptr<float>(y) + kMargin, width, &terms[i % kSide]);
       if (i < 2 * kRadius) continue;
       HWY_DYNAMIC_DISPATCH(RefineRow)
-      ({&terms[0], &terms[1], &terms[2], &terms[3], &terms[4]}, options, width,
+      ({&terms[0], &terms[1], &terms[2], &terms[3], &terms[4]}, options, width, &column_sums,
        next.ptr<float>(i - 2 * kRadius) + kMargin, sigma.ptr<float>(i - 2 * kRadius) + kMargin);
     }
     cv::swap(present, next);
