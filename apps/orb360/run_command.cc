@@ -136,7 +136,13 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
     const bool has_depth = std::ranges::any_of(
         reconstruction.keyframes,
         [&](const FramePose& keyframe) { return system->depth_maps()->Contains(keyframe.index); });
-    if (!has_depth) return std::nullopt;
+    if (!has_depth) {
+      const std::string warning =
+          "no dense cloud: the camera has hardly moved, or too little has texture";
+      progress.Warn(warning);
+      record->warnings.push_back(warning);
+      return std::nullopt;
+    }
     DenseCloudOptions fusion;
     fusion.num_threads = num_threads;
     fusion.progress = [&](int done, int count) { progress.Update("fusing depth", done, count); };

@@ -10,7 +10,7 @@
 namespace orb360 {
 
 /// Images of frames, stored on disk as JPEG while a run lasts. An image of 1024 x 512 pixels takes
-/// about 0.25 MB of disk and no memory. Frames are named by their index in the sequence.
+/// about 0.2 MB of disk and no memory. Frames are named by their index in the sequence.
 ///
 /// The store has no state besides the files, so different frames may be stored and read on
 /// different threads at once.

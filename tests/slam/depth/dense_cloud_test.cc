@@ -1,6 +1,7 @@
 #include "slam/depth/dense_cloud.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -101,6 +102,24 @@ TEST_F(FuseCloudTest, CoversTheRoomWithItsColoursAndNormals) {
   }
   EXPECT_LT(wrong_colour, 0.1 * static_cast<double>(points.size()));
   EXPECT_EQ(statistics_.views, 9);
+}
+
+TEST_F(FuseCloudTest, ColoursAreBroughtToOneWhiteBalance) {
+  // Blue counts half in every second view, red in none.
+  for (size_t i = 1; i < depths_.size(); i += 2) {
+    cv::multiply(depths_[i].color, cv::Scalar(0.5, 1.0, 1.0), depths_[i].color);
+  }
+  const auto count_odd = [&](const DenseCloudOptions& options) {
+    int num_odd = 0;
+    for (const SurfacePoint& point : Fuse(options)) {
+      if (point.rgb[0] < 100) continue;  // Rounding would count.
+      const double ratio = static_cast<double>(point.rgb[2]) / point.rgb[0];
+      num_odd += std::abs(ratio - std::pow(0.5, 4.0 / 9.0)) > 0.03;  // Four views of nine.
+    }
+    return num_odd;
+  };
+  EXPECT_GT(count_odd({.voxel_size = 0.1, .exposure = std::nullopt}), 1000);
+  EXPECT_LT(count_odd({.voxel_size = 0.1}), 100);
 }
 
 TEST_F(FuseCloudTest, VoxelsFollowTheRangesOfMapsWithoutMetres) {
