@@ -22,6 +22,7 @@ constexpr int kAcross = static_cast<int>(2 * kGroundSweepAcross / kCell + 0.5); 
 static_assert(kAlong % (2 * kTile) == 0 && kAcross % (2 * kTile) == 0);
 constexpr int kTilesAlong = kAlong / kTile;
 constexpr int kTilesAcross = kAcross / kTile;
+constexpr int kTilesBelow = 4;
 // The first sweep joins this many cells in each direction.
 constexpr int kCoarse = 2;
 // Cells around the result of the first sweep in which the second one searches, and around that in
@@ -32,6 +33,13 @@ constexpr int kMargin = 2 + kFineReach + kTileReach;  // cells, for all of these
 // Least cosine of the angle between the ground and the motion.
 constexpr double kMinHorizontal = 0.5;
 constexpr float kMinTileCorrelation = 0.35f;
+// Where the tiles straight below correlate that well at a shift that is larger by this factor, and
+// better by the lead than at the shift of the rest, the camera is above a dam, a bridge or a
+// terrace: its height is that over the ground straight below, and the rest lies lower. On the
+// recordings of docs/results/scale.md without a dam, no pair of images one frame apart passes.
+constexpr float kMinBelow = 0.5f;
+constexpr float kBelowLead = 0.15f;
+constexpr double kMinElevation = 1.15;
 // Angle between the assumed normal of the ground across the motion and the one that the tiles show
 // up to which the error of the height, 1 - cos, does not matter, rad.
 constexpr double kMaxTilt = 0.035;
@@ -76,13 +84,29 @@ float CorrelateTile(const BirdsEyeView& view1, const BirdsEyeView& view2, int ti
                           along - half(shift.along), across - half(shift.across));
 }
 
+/// Whether a tile is one of the four straight below the point half-way.
+bool IsBelow(int tile) {
+  const int along = tile / kTilesAcross - kTilesAlong / 2;
+  const int across = tile % kTilesAcross - kTilesAcross / 2;
+  return (along == -1 || along == 0) && (across == -1 || across == 0);
+}
+
+/// Mean correlations of all tiles and of those straight below.
+struct TileCorrelation {
+  float all = 0;
+  float below = 0;
+};
+
 template <int kSide>
-float MeanCorrelation(const BirdsEyeView& view1, const BirdsEyeView& view2, const Shift& shift) {
-  float sum = 0;
+TileCorrelation MeanCorrelation(const BirdsEyeView& view1, const BirdsEyeView& view2,
+                                const Shift& shift) {
+  TileCorrelation sum;
   for (int tile = 0; tile < kTilesAlong * kTilesAcross; ++tile) {
-    sum += CorrelateTile<kSide>(view1, view2, tile, shift);
+    const float value = CorrelateTile<kSide>(view1, view2, tile, shift);
+    sum.all += value;
+    if (IsBelow(tile)) sum.below += value;
   }
-  return sum / (kTilesAlong * kTilesAcross);
+  return {sum.all / (kTilesAlong * kTilesAcross), sum.below / kTilesBelow};
 }
 
 /// Position of the maximum of a parabola through three values, relative to the middle one.
@@ -90,10 +114,41 @@ double ParabolaPeak(double before, double at, double after) {
   return 0.5 * (before - after) / (before - 2 * at + after);
 }
 
+/// How well each shift along the motion correlates, with the best shift across it.
+struct ShiftProfile {
+  std::vector<Shift> shifts;
+  std::vector<float> values;
+
+  void Add(const Shift& shift, float value) {
+    if (shifts.empty() || shifts.back().along != shift.along) {
+      shifts.push_back(shift);
+      values.push_back(value);
+    } else if (value > values.back()) {
+      shifts.back() = shift;
+      values.back() = value;
+    }
+  }
+  size_t Top() const { return std::ranges::max_element(values) - values.begin(); }
+  /// Whether the best shift is not at the end of those that were tried.
+  bool IsInside(size_t top, int aside) const {
+    return top > 0 && top + 1 < values.size() && std::abs(shifts[top].across) < aside;
+  }
+  /// The largest of the other maxima.
+  double Rival(size_t top) const {
+    double rival = 0;
+    for (size_t i = 1; i + 1 < values.size(); ++i) {
+      if (i == top || values[i] < values[i - 1] || values[i] < values[i + 1]) continue;
+      rival = std::max<double>(rival, values[i]);
+    }
+    return rival;
+  }
+};
+
 struct CoarseShift {
   Shift shift;  // cells of the coarse views
   double correlation;
   double rival;
+  bool is_below;  // whether only the ground straight below has this shift
 };
 
 /// Sweeps both shifts over the whole range. Empty where the best one is at its end.
@@ -103,27 +158,26 @@ std::optional<CoarseShift> SweepCoarsely(const BirdsEyeView& view1, const BirdsE
   const int aside = Aside(options) / kCoarse;
   const int first = std::max(1, static_cast<int>(options.min_ratio / (kCoarse * kCell)));
   const int last = static_cast<int>(options.max_ratio / (kCoarse * kCell));
-  std::vector<Shift> best;    // by shift along the motion, from `first`
-  std::vector<float> values;  // of these
+  ShiftProfile all;
+  ShiftProfile below;
   for (int along = first; along <= last; ++along) {
-    best.push_back({along, 0});
-    values.push_back(-1);
     for (int across = -aside; across <= aside; ++across) {
-      const float value = MeanCorrelation<kSide>(view1, view2, {along, across});
-      if (value <= values.back()) continue;
-      values.back() = value;
-      best.back().across = across;
+      const Shift shift{along, across};
+      const TileCorrelation value = MeanCorrelation<kSide>(view1, view2, shift);
+      all.Add(shift, value.all);
+      below.Add(shift, value.below);
     }
   }
-  const auto size = static_cast<int>(values.size());
-  const auto top = static_cast<int>(std::ranges::max_element(values) - values.begin());
-  if (top == 0 || top + 1 == size || std::abs(best[top].across) == aside) return std::nullopt;
-  CoarseShift result{best[top], values[top], 0};
-  for (int i = 1; i + 1 < size; ++i) {
-    if (i == top || values[i] < values[i - 1] || values[i] < values[i + 1]) continue;
-    result.rival = std::max<double>(result.rival, values[i]);
-  }
-  return result;
+  const size_t top = all.Top();
+  const size_t top_below = below.Top();
+  const float there = MeanCorrelation<kSide>(view1, view2, all.shifts[top]).below;
+  const float value = below.values[top_below];
+  const bool is_below = below.shifts[top_below].along > kMinElevation * all.shifts[top].along &&
+                        value > kMinBelow && value > there + kBelowLead;
+  const ShiftProfile& profile = is_below ? below : all;
+  const size_t best = is_below ? top_below : top;
+  if (!profile.IsInside(best, aside)) return std::nullopt;
+  return CoarseShift{profile.shifts[best], profile.values[best], profile.Rival(best), is_below};
 }
 
 Eigen::Vector2d CenterOf(int tile) {
@@ -239,7 +293,8 @@ std::optional<GroundStep> Sweep(const SpherePyramid& image1, const SpherePyramid
   for (int i = -kFineReach; i <= kFineReach; ++i) {
     for (int j = -kFineReach; j <= kFineReach; ++j) {
       const Shift shift{kCoarse * coarse->shift.along + i, kCoarse * coarse->shift.across + j};
-      const float value = MeanCorrelation<kTile>(view1, view2, shift);
+      const TileCorrelation values = MeanCorrelation<kTile>(view1, view2, shift);
+      const float value = coarse->is_below ? values.below : values.all;
       if (value <= best) continue;
       best = value;
       common = shift;

@@ -44,10 +44,13 @@ class Asphalt {
   std::vector<float> lattice_ = std::vector<float>(kSide * kSide);
 };
 
-/// What a camera over the plane z = 0 sees, with gray noise; above the horizon a plain sky. The
-/// camera has one lens that looks ahead (x) and one that looks back, `lens_distance` apart.
-inline SpherePyramid LookAtGround(const Rigid3& world_from_camera, const Ground& ground,
-                                  double noise = 1.0, double lens_distance = 0.0) {
+/// What a camera sees, with gray noise. `shade`: gray value of what a ray below the horizon meets,
+/// from a lens and a direction in the world; above the horizon there is a plain sky. The camera has
+/// one lens that looks ahead (x) and one that looks back, `lens_distance` apart.
+using Shade = std::function<double(const Eigen::Vector3d& lens, const Eigen::Vector3d& ray)>;
+
+inline SpherePyramid LookDownAt(const Shade& shade, const Rigid3& world_from_camera,
+                                double noise = 1.0, double lens_distance = 0.0) {
   const EquirectangularCamera camera(kGroundWidth, kGroundWidth / 2);
   cv::Mat gray(kGroundWidth / 2, kGroundWidth, CV_8U);
   std::mt19937 random(static_cast<unsigned>(1e6 * world_from_camera.translation.x()) + 7);
@@ -59,8 +62,7 @@ inline SpherePyramid LookAtGround(const Rigid3& world_from_camera, const Ground&
       double value = 200;
       if (ray.z() < -0.01) {
         const double ahead = (bearing.x() > 0 ? 0.5 : -0.5) * lens_distance;
-        const Eigen::Vector3d lens = world_from_camera * Eigen::Vector3d(ahead, 0, 0);
-        value = ground((lens - lens.z() / ray.z() * ray).head<2>());
+        value = shade(world_from_camera * Eigen::Vector3d(ahead, 0, 0), ray);
       }
       gray.at<uint8_t>(v, u) = cv::saturate_cast<uint8_t>(value + normal(random));
     }
@@ -68,6 +70,15 @@ inline SpherePyramid LookAtGround(const Rigid3& world_from_camera, const Ground&
   SpherePyramid pyramid;
   BuildSpherePyramid(gray, 8, &pyramid);
   return pyramid;
+}
+
+/// The same over the plane z = 0.
+inline SpherePyramid LookAtGround(const Rigid3& world_from_camera, const Ground& ground,
+                                  double noise = 1.0, double lens_distance = 0.0) {
+  const auto shade = [&ground](const Eigen::Vector3d& lens, const Eigen::Vector3d& ray) {
+    return ground((lens - lens.z() / ray.z() * ray).head<2>());
+  };
+  return LookDownAt(shade, world_from_camera, noise, lens_distance);
 }
 
 }  // namespace orb360

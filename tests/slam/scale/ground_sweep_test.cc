@@ -44,6 +44,29 @@ TEST(MeasureGroundStep, FindsTheRatioOfStepAndHeightOnFlatGround) {
   }
 }
 
+TEST(MeasureGroundStep, AboveADamTheHeightIsThatOverItsTop) {
+  const Asphalt top(11);
+  const Asphalt plain(12);
+  // The dam lies along the motion; the plain is twice as far below the camera.
+  const Eigen::Vector2d across(0.6, 0.8);
+  for (const double half_width : {0.6, 0.8}) {  // heights over the dam
+    const auto shade = [&](const Eigen::Vector3d& lens, const Eigen::Vector3d& ray) {
+      const Eigen::Vector2d above = (lens - lens.z() / ray.z() * ray).head<2>();
+      if (std::abs(across.dot(above)) < half_width) return top(above);
+      const Eigen::Vector2d below = (lens - (lens.z() + kHeight) / ray.z() * ray).head<2>();
+      return std::abs(across.dot(below)) < half_width ? 90.0 : plain(below);  // 90: its walls
+    };
+    for (const double step : {0.3, 0.8}) {
+      const Rigid3 second = After(step);
+      const auto found = MeasureGroundStep(
+          LookDownAt(shade, kFirst), LookDownAt(shade, second), kFirst.Inverse() * second,
+          kFirst.rotation.conjugate() * Eigen::Vector3d::UnitZ(), {}, {});
+      ASSERT_TRUE(found) << half_width << ' ' << step;
+      EXPECT_NEAR(std::log(found->ratio / step), 0.0, 0.02) << half_width << ' ' << step;
+    }
+  }
+}
+
 TEST(MeasureGroundStep, AnErrorOfTheNormalCancels) {
   const Asphalt asphalt(2);
   for (const Eigen::Vector3d& error : {Eigen::Vector3d(0.05, 0, 0), Eigen::Vector3d(0, -0.05, 0),
