@@ -16,16 +16,16 @@ namespace {
 
 constexpr int kCloudImageSide = 1600;   // pixels
 constexpr int kDepthImageWidth = 1024;  // pixels
-/// Number of keyframes that are drawn. They are spread over the run.
-constexpr size_t kDrawnKeyframes = 3;
+/// Number of views that are drawn. They are spread over the run.
+constexpr size_t kDrawnViews = 3;
 /// Ranges that are drawn in the colours of near and far, as multiples of the median range.
 constexpr double kNear = 0.25;
 constexpr double kFar = 8.0;
 
-std::vector<DenseImages::OfKeyframe> DrawKeyframes(const DepthMapStore& store,
+std::vector<DenseImages::OfView> DrawViews(const DepthMapStore& store,
                                                    std::span<const DenseView> views) {
-  std::vector<DenseImages::OfKeyframe> images;
-  const size_t count = std::min(kDrawnKeyframes, views.size());
+  std::vector<DenseImages::OfView> images;
+  const size_t count = std::min(kDrawnViews, views.size());
   for (size_t i = 0; i < count; ++i) {
     const int frame_index = views[(2 * i + 1) * views.size() / (2 * count)].frame_index;
     const DenseDepth depth = store.Get(frame_index);
@@ -78,7 +78,7 @@ DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMap
                                  });
   if (mesh) try_mesh([&] { output.mesh = mesh->Write(); });
   output.images = {image.Draw(/*is_metric=*/options.voxel_size.has_value()),
-                   DrawKeyframes(store, views)};
+                   DrawViews(store, views)};
   return output;
 }
 

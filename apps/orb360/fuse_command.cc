@@ -79,7 +79,7 @@ int Fuse(const FuseOptions& options) {
   }
   if (!options.is_quiet) {
     std::cout << "wrote " << out.string() << ": " << summary.points << " points of "
-              << saved.views.size() << " keyframes, one in a cube of " << summary.fusion.voxel_size
+              << saved.views.size() << " views, one in a cube of " << summary.fusion.voxel_size
               << (saved.is_metric ? " m\n" : " units\n");
   }
   return EXIT_SUCCESS;
@@ -106,12 +106,12 @@ void AddFuseCommand(CLI::App* app, Command* chosen) {
              "Side of the cubes each of which becomes one point, metres or units of a map that is "
              "not metric (default: 0.05, there a hundredth of the median range)");
   add_length("--max-range", &options->max_range,
-             "Farthest point from its keyframe (default: 600 voxels)");
+             "Farthest point from its view (default: 600 voxels)");
   add_length("--max-error", &options->max_error,
              "Largest expected error of a point (default: 4 voxels)");
   command
       ->add_option("--min-support", options->min_support,
-                   "Number of other keyframes that must see a point where it is")
+                   "Number of other views that must see a point where it is")
       ->check(CLI::Range(0, 100))
       ->type_name("N")
       ->capture_default_str();

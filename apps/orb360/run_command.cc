@@ -113,7 +113,7 @@ RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, b
   return record;
 }
 
-/// Computes and fuses the depth of the keyframes. A failure of the disk is recorded and not thrown,
+/// Computes and fuses dense depth. A failure of the disk is recorded and not thrown,
 /// so that the trajectory is written.
 std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
                                      const RunOptions& options, int num_threads,
@@ -127,15 +127,16 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
   malloc_trim(0);
 #endif
   try {
-    // After an interrupt the rest of the keyframes are left to the network.
+    // After an interrupt the rest of the views are left to the network.
     Progress progress(std::nullopt, options.is_quiet);
     record->depth = system->ComputeDepth(reconstruction, [&](int done, int count) {
       progress.Update("computing depth", done, count);
       return CaughtInterrupt() == 0;
     });
-    const bool has_depth = std::ranges::any_of(
-        reconstruction.keyframes,
-        [&](const FramePose& keyframe) { return system->depth_maps()->Contains(keyframe.index); });
+    const bool has_depth =
+        std::ranges::any_of(reconstruction.frames, [&](const FramePose& frame) {
+          return system->depth_maps()->Contains(frame.index);
+        });
     if (!has_depth) {
       const std::string warning =
           "no dense cloud: the camera has hardly moved, or too little has texture";

@@ -89,9 +89,9 @@ std::vector<HtmlReport::Bar> MakeBars(const nlohmann::json& summary) {
   return bars;
 }
 
-std::string KeyframeName(int frame_index) {
+std::string ViewName(int frame_index) {
   char name[32];
-  std::snprintf(name, sizeof name, "keyframe_%06d.png", frame_index);
+  std::snprintf(name, sizeof name, "depth_%06d.png", frame_index);
   return name;
 }
 
@@ -132,9 +132,9 @@ void WriteRunReport(const std::filesystem::path& run_folder, const Reconstructio
          "Keyframes (blue), landmarks (grey), and which keyframes see the same landmarks (green).",
          map_svg, "image/svg+xml"});
   }
-  for (const DenseImages::OfKeyframe& keyframe : images.keyframes) {
-    add_png(KeyframeName(keyframe.frame_index), keyframe.image,
-            "Depth of frame " + std::to_string(keyframe.frame_index),
+  for (const DenseImages::OfView& view : images.views) {
+    add_png(ViewName(view.frame_index), view.image,
+            "Depth of frame " + std::to_string(view.frame_index),
             "The image, its range (red is near, blue is far) and its confidence (white is "
             "certain).");
   }

@@ -14,11 +14,11 @@ namespace orb360 {
 /// Images of dense depth, CV_8UC3, BGR; empty where there is no dense depth.
 struct DenseImages {
   cv::Mat cloud;  ///< The cloud from above (CloudImage).
-  struct OfKeyframe {
+  struct OfView {
     int frame_index = 0;
-    cv::Mat image;  ///< A keyframe's depth (DrawDepth).
+    cv::Mat image;  ///< A view's depth (DrawDepth).
   };
-  std::vector<OfKeyframe> keyframes;
+  std::vector<OfView> views;
 };
 
 /// Writes `report/` in the folder of a run: the images as PNG, and report.html, which contains the

@@ -114,10 +114,10 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
   if (reconstruction.initialized_at) summary["initialized_at"] = *reconstruction.initialized_at;
   if (dense) {
     summary["cloud"] = {{"points", dense->cloud.points},
-                        {"keyframes", dense->cloud.fusion.views},
-                        {"measured_keyframes", record.depth.measured},
-                        {"keyframes_without_sources", record.depth.without_sources},
-                        {"unseen_keyframes", record.depth.unseen},
+                        {"views", dense->cloud.fusion.views},
+                        {"measured_views", record.depth.measured},
+                        {"views_without_sources", record.depth.without_sources},
+                        {"unseen_views", record.depth.unseen},
                         {"voxel_size", dense->cloud.fusion.voxel_size},
                         {"seconds", record.fusion_seconds}};
     if (dense->mesh) {
@@ -156,12 +156,12 @@ std::string StateScale(const nlohmann::json& scale) {
 std::string StateCloud(const nlohmann::json& summary) {
   if (!summary.contains("cloud")) return {};
   const nlohmann::json& cloud = summary["cloud"];
-  const int measured = cloud["measured_keyframes"];
-  const int without_sources = cloud["keyframes_without_sources"];
-  const int unseen = cloud["unseen_keyframes"];
+  const int measured = cloud["measured_views"];
+  const int without_sources = cloud["views_without_sources"];
+  const int unseen = cloud["unseen_views"];
   if (measured >= without_sources + unseen) return {};
   std::string text = "\ncloud: stereo has measured " + std::to_string(measured) + " of " +
-                     std::to_string(measured + without_sources + unseen) + " keyframes";
+                     std::to_string(measured + without_sources + unseen) + " views";
   if (without_sources > 0) {
     text += "; around " + std::to_string(without_sources) +
             " no frames have a distance at which ranges show";

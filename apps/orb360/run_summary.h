@@ -10,7 +10,7 @@
 
 #include "apps/orb360/dense_output.h"
 #include "apps/orb360/stage_times.h"
-#include <orb360/slam/pipeline/keyframe_depth_report.h>
+#include <orb360/slam/pipeline/view_depth_report.h>
 #include <orb360/slam/pipeline/reconstruction.h>
 #include <orb360/slam/pipeline/scale_options.h>
 
@@ -24,7 +24,7 @@ struct RunRecord {
   /// The part of it after the last frame, s.
   double finishing_seconds = 0.0;
   /// What stereo has measured.
-  KeyframeDepthReport depth;
+  ViewDepthReport depth;
   /// Wall time of computing the depth, of fusing the dense cloud and of the mesh, s.
   double fusion_seconds = 0.0;
   StageTimes times;

@@ -11,7 +11,7 @@ namespace orb360 {
 /// Name of the folder in that of a run.
 inline constexpr const char* kViewsName = "views";
 
-/// The keyframes of a dense cloud, ordered by frame.
+/// The views of a dense cloud, ordered by frame.
 struct SavedViews {
   bool is_metric = false;  ///< Whether the unit of length is the metre.
   std::vector<DenseView> views;

@@ -97,8 +97,16 @@ double SparseConfidence(double relative_error, const SparseDepthOptions& options
 std::vector<SparsePoint> ProjectLandmarks(const Map& map, KeyframeId id,
                                           const EquirectangularCamera& camera,
                                           const SparseDepthOptions& options) {
-  const Keyframe& keyframe = map.keyframe(id);
-  const Rigid3 camera_from_world = keyframe.world_from_camera.Inverse();
+  return ProjectLandmarks(map, id, map.keyframe(id).world_from_camera, camera, options);
+}
+
+std::vector<SparsePoint> ProjectLandmarks(const Map& map, KeyframeId near,
+                                          const Rigid3& world_from_camera,
+                                          const EquirectangularCamera& camera,
+                                          const SparseDepthOptions& options) {
+  const Keyframe& keyframe = map.keyframe(near);
+  const bool is_keyframe = world_from_camera.translation == keyframe.world_from_camera.translation;
+  const Rigid3 camera_from_world = world_from_camera.Inverse();
   std::vector<Projection> projections;
   for (const LandmarkId landmark_id : LandmarksAround(map, keyframe, options.num_neighbours)) {
     const Landmark& landmark = map.landmark(landmark_id);
@@ -106,7 +114,7 @@ std::vector<SparsePoint> ProjectLandmarks(const Map& map, KeyframeId id,
     const Eigen::Vector3d point = camera_from_world * landmark.position;
     const double range = point.norm();
     if (!(range > 0)) continue;
-    const bool seen = landmark.FindObservation(id) != nullptr;
+    const bool seen = is_keyframe && landmark.FindObservation(near) != nullptr;
     projections.push_back({landmark_id, point / range, range, seen});
   }
   const std::vector<bool> hidden = FindHidden(projections, options);

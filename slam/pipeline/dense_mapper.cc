@@ -1,13 +1,10 @@
 #include "slam/pipeline/dense_mapper.h"
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
-#include <set>
 
 #include "slam/pipeline/dense_views.h"
-#include "slam/pipeline/keyframe_depth.h"
+#include "slam/pipeline/view_depth.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
@@ -26,38 +23,29 @@ void DenseMapper::Flush() {
   completion_.Drop();
 }
 
-KeyframeDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished,
-                                              std::span<const Map> maps,
-                                              const KeyframeProgress& progress) {
+ViewDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished, std::span<const Map> maps,
+                                          const ViewProgress& progress) {
   if (failure()) return {};
   std::vector<std::map<int, KeyframeId>> id_of(maps.size());  // by frame index
-  std::set<int> wanted;
   for (size_t m = 0; m < maps.size(); ++m) {
     for (const KeyframeId id : maps[m].KeyframeIds()) {
-      const int frame_index = maps[m].keyframe(id).frame_index;
-      id_of[m][frame_index] = id;
-      // Ids change where maps are merged. The first keyframes of a map are kept by no KeepKeyframe.
-      const bool is_wanted = options_.every_keyframes == 1 ||
-                             std::ranges::binary_search(images_.keyframes(), frame_index);
-      if (is_wanted && images_.store().Contains(frame_index)) wanted.insert(frame_index);
+      id_of[m][maps[m].keyframe(id).frame_index] = id;
     }
   }
-  const std::vector<DenseView> views =
-      MakeDenseViews(finished, Rigid3(), [&wanted](int index) { return wanted.contains(index); });
-  std::vector<FramePose> frames;
-  if (options_.stereo) {
-    std::ranges::copy_if(
-        finished.frames, std::back_inserter(frames),
-        [this](const FramePose& frame) { return images_.store().Contains(frame.index); });
-  }
+  const std::vector<DenseView> views = MakeDenseViews(
+      finished, Rigid3(), [this](int index) { return images_.store().Contains(index); });
   const auto landmarks_of = [&](const DenseView& view) {
-    return ProjectLandmarks(maps[view.map], id_of[view.map].at(view.frame_index), camera(), {});
+    const std::map<int, KeyframeId>& ids = id_of[view.map];
+    auto keyframe = ids.lower_bound(view.frame_index);
+    if (keyframe == ids.end()) --keyframe;
+    return ProjectLandmarks(maps[view.map], keyframe->second, view.world_from_camera, camera(), {});
   };
-  KeyframeDepthOptions options{.min_points = options_.min_points,
-                               .keeps_completed = options_.completion};
+  ViewDepthOptions options{.spacing = options_.view_spacing,
+                           .min_points = options_.min_points,
+                           .keeps_completed = options_.completion};
   if (!options_.stereo) options.baselines.clear();
   try {
-    return orb360::ComputeDepth(views, frames, landmarks_of, options, images_.store(), &completer_,
+    return orb360::ComputeDepth(views, landmarks_of, options, images_.store(), &completer_,
                                 num_threads_, depth_maps_, progress);
   } catch (const UserError&) {
     images_.Clear();

@@ -10,13 +10,13 @@
 #include "slam/pipeline/kept_images.h"
 #include "slam/pipeline/keyframe_completion.h"
 #include <orb360/slam/map/ground.h>
-#include <orb360/slam/pipeline/keyframe_depth_report.h>
 #include <orb360/slam/pipeline/reconstruction.h>
+#include <orb360/slam/pipeline/view_depth_report.h>
 
 namespace orb360 {
 
 /// Keeps the images of tracked frames on disk during a run and computes the dense depth of
-/// keyframes at its end. Where depth guides mapping (DepthOptions::guides_mapping), it also
+/// reference views at its end. Where depth guides mapping (DepthOptions::guides_mapping), it also
 /// completes keyframes beside tracking and, while no landmarks show the ground, collects
 /// measurements of the ground from them.
 class DenseMapper {
@@ -29,17 +29,16 @@ class DenseMapper {
 
   /// The camera of the images that are completed.
   const EquirectangularCamera& camera() const { return completer_.camera(); }
-  bool Wants(KeyframeId id) const { return id % options_.every_keyframes == 0; }
   KeptImages& images() { return images_; }
 
   /// Waits until all images are on disk, and for the completion of a keyframe that has not been
   /// taken, which is dropped.
   void Flush();
-  /// Computes the depth of the keyframes whose images are kept, with the final poses and landmarks
-  /// of `finished` and its `maps` (orb360::ComputeDepth). Nothing happens after a failure. Throws
-  /// UserError where the disk fails. Contract: Flush has been called.
-  KeyframeDepthReport ComputeDepth(const Reconstruction& finished, std::span<const Map> maps,
-                                   const KeyframeProgress& progress);
+  /// Computes the depth of reference views among the frames whose images are kept, with the final
+  /// poses and landmarks of `finished` and its `maps` (orb360::ComputeDepth). Nothing happens after
+  /// a failure. Throws UserError where the disk fails. Contract: Flush has been called.
+  ViewDepthReport ComputeDepth(const Reconstruction& finished, std::span<const Map> maps,
+                               const ViewProgress& progress);
 
   const DepthMapStore& depth_maps() const { return depth_maps_; }
   /// The error because of which images could not be stored (KeptImages::failure).

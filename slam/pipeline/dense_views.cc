@@ -1,28 +1,63 @@
 #include "slam/pipeline/dense_views.h"
 
+#include <algorithm>
+
 namespace orb360 {
+namespace {
+
+/// The keyframes of a frame's map between which the frame lies, or itself if it is one: indices
+/// into Reconstruction::keyframes. `of_map`: those of its map, ordered.
+std::vector<size_t> KeyframesAround(const FramePose& frame, std::span<const FramePose> keyframes,
+                                    const std::vector<size_t>& of_map) {
+  const auto index_of = [&](size_t keyframe) { return keyframes[keyframe].index; };
+  const auto after = std::ranges::lower_bound(of_map, frame.index, {}, index_of);
+  if (after != of_map.end() && index_of(*after) == frame.index) return {*after};
+  std::vector<size_t> around;
+  if (after != of_map.begin()) around.push_back(*std::prev(after));
+  if (after != of_map.end()) around.push_back(*after);
+  return around;
+}
+
+}  // namespace
 
 std::vector<DenseView> MakeDenseViews(const Reconstruction& reconstruction,
                                       const Rigid3& target_from_world,
                                       const std::function<bool(int frame_index)>& is_view) {
   const std::vector<FramePose>& keyframes = reconstruction.keyframes;
-  std::vector<DenseView> views;
-  constexpr size_t kNone = static_cast<size_t>(-1);
-  std::vector<size_t> view_of(keyframes.size(), kNone);
+  std::vector<std::vector<size_t>> of_map(reconstruction.maps.size());
+  std::vector<std::vector<size_t>> sees_the_same(keyframes.size());  // also the keyframe itself
   for (size_t i = 0; i < keyframes.size(); ++i) {
-    if (!is_view(keyframes[i].index)) continue;
-    view_of[i] = views.size();
-    views.push_back({.frame_index = keyframes[i].index,
-                     .map = keyframes[i].map,
-                     .world_from_camera = target_from_world * keyframes[i].world_from_camera,
-                     .neighbours = {}});
+    of_map[keyframes[i].map].push_back(i);
+    sees_the_same[i].push_back(i);
   }
   for (const CovisibleFrames& pair : reconstruction.covisibility) {
-    const size_t first = view_of[pair.first];
-    const size_t second = view_of[pair.second];
-    if (first == kNone || second == kNone) continue;
-    views[first].neighbours.push_back(second);
-    views[second].neighbours.push_back(first);
+    sees_the_same[pair.first].push_back(pair.second);
+    sees_the_same[pair.second].push_back(pair.first);
+  }
+
+  std::vector<DenseView> views;
+  std::vector<std::vector<size_t>> around;                      // by view
+  std::vector<std::vector<size_t>> views_at(keyframes.size());  // by keyframe
+  for (const FramePose& frame : reconstruction.frames) {
+    if (frame.is_interpolated || !is_view(frame.index)) continue;
+    around.push_back(KeyframesAround(frame, keyframes, of_map[frame.map]));
+    for (const size_t keyframe : around.back()) views_at[keyframe].push_back(views.size());
+    views.push_back({.frame_index = frame.index,
+                     .map = frame.map,
+                     .world_from_camera = target_from_world * frame.world_from_camera,
+                     .neighbours = {}});
+  }
+  for (size_t i = 0; i < views.size(); ++i) {
+    std::vector<size_t>& neighbours = views[i].neighbours;
+    for (const size_t keyframe : around[i]) {
+      for (const size_t other : sees_the_same[keyframe]) {
+        neighbours.insert(neighbours.end(), views_at[other].begin(), views_at[other].end());
+      }
+    }
+    std::ranges::sort(neighbours);
+    const auto repeated = std::ranges::unique(neighbours);
+    neighbours.erase(repeated.begin(), repeated.end());
+    std::erase(neighbours, i);
   }
   return views;
 }

@@ -9,9 +9,9 @@
 
 namespace orb360 {
 
-/// Returns those keyframes of a reconstruction for whose frame index `is_view` holds, with poses in
-/// the world to which `target_from_world` transforms. Keyframes that see the same landmarks are
-/// neighbours.
+/// Returns those frames of a reconstruction for whose index `is_view` holds and whose own images
+/// have told their poses, with poses in the world to which `target_from_world` transforms. Frames
+/// at or between keyframes that see the same landmarks are neighbours.
 std::vector<DenseView> MakeDenseViews(const Reconstruction& reconstruction,
                                       const Rigid3& target_from_world,
                                       const std::function<bool(int frame_index)>& is_view);

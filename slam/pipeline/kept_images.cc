@@ -18,7 +18,7 @@ void KeptImages::KeepUnplaced(int frame_index, const cv::Mat& image) {
 
 void KeptImages::KeepTracked(int frame_index, const cv::Mat& image, const Rigid3& world_from_camera,
                              double median_range) {
-  // A sixth of the nearest source view's distance (KeyframeDepthOptions::baselines).
+  // A sixth of the nearest source view's distance (ViewDepthOptions::baselines).
   constexpr double kMinMotion = 0.02;
   const Eigen::Vector3d& place = world_from_camera.translation;
   const bool is_first = !last_place_ || !unplaced_.empty();
@@ -28,11 +28,6 @@ void KeptImages::KeepTracked(int frame_index, const cv::Mat& image, const Rigid3
     return;
   }
   last_place_ = place;
-  Keep(frame_index, image);
-}
-
-void KeptImages::KeepKeyframe(int frame_index, const cv::Mat& image) {
-  keyframes_.push_back(frame_index);
   Keep(frame_index, image);
 }
 

@@ -5,8 +5,6 @@
 #include <filesystem>
 #include <future>
 #include <optional>
-#include <span>
-#include <vector>
 
 #include <opencv2/core.hpp>
 
@@ -33,15 +31,13 @@ class KeptImages {
   void KeepTracked(int frame_index, const cv::Mat& image, const Rigid3& world_from_camera,
                    double median_range);
   /// Keeps the image of a tracked frame that becomes a keyframe.
-  void KeepKeyframe(int frame_index, const cv::Mat& image);
+  void KeepKeyframe(int frame_index, const cv::Mat& image) { Keep(frame_index, image); }
   /// Waits until all images are on disk.
   void Flush();
   /// Removes all images, to make room.
   void Clear() const { store_.Clear(); }
 
   const ImageStore& store() const { return store_; }
-  /// Frame indices passed to KeepKeyframe, in their order.
-  std::span<const int> keyframes() const { return keyframes_; }
   /// The error because of which images could not be stored, such as a full disk; null where there
   /// was none. All images have been removed then. Contract: Flush has been called.
   std::exception_ptr failure() const { return failure_; }
@@ -51,7 +47,6 @@ class KeptImages {
 
   const cv::Size size_;
   const bool between_keyframes_;
-  std::vector<int> keyframes_;
   std::exception_ptr failure_;
   ImageStore store_;
   std::optional<Eigen::Vector3d> last_place_;  ///< Where the last one was kept, world frame.

@@ -14,7 +14,11 @@ Reconstruction MakeReconstruction(std::span<const Map> maps, const FrameAnchors&
   result.maps.resize(maps.size());
   std::vector<const FrameAnchor*> ordered;
   for (const auto& [index, anchor] : anchors) {
-    result.frames.push_back({index, anchor.timestamp, anchor.map, Rigid3()});
+    result.frames.push_back({.index = index,
+                             .timestamp = anchor.timestamp,
+                             .map = anchor.map,
+                             .world_from_camera = {},
+                             .is_interpolated = anchor.is_interpolated});
     ordered.push_back(&anchor);
     result.interpolated += anchor.is_interpolated;
     MapSummary& summary = result.maps[anchor.map];

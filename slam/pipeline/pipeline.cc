@@ -199,14 +199,15 @@ void Pipeline::CorrectScale(std::span<const PositionFix> positions) {
   }
 }
 
-KeyframeDepthReport Pipeline::ComputeDepth(const Reconstruction& finished,
-                                           const KeyframeProgress& progress) {
-  return dense_ ? dense_->ComputeDepth(finished, atlas_.maps(), progress) : KeyframeDepthReport();
+ViewDepthReport Pipeline::ComputeDepth(const Reconstruction& finished,
+                                       const ViewProgress& progress) {
+  return dense_ ? dense_->ComputeDepth(finished, atlas_.maps(), progress) : ViewDepthReport();
 }
 
 Reconstruction Pipeline::Finish(std::span<const PositionFix> positions) {
   for (const PositionFix& fix : positions) ORB360_CHECK(fix.IsValid(), fix.timestamp, fix.sigma);
   if (back_end_.has_map()) AdoptMap();
+  if (!atlas_.is_lent()) MapLastFrame();
   if (!atlas_.is_lent()) FinishMap();  // Otherwise a job has thrown, and its map is lost.
   atlas_.Finish();
   if (dense_) dense_->Flush();

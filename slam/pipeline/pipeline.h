@@ -29,8 +29,7 @@ class Pipeline {
   void EnableDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
   FrameReport Process(const Frame& frame);
   Reconstruction Finish(std::span<const PositionFix> positions);
-  KeyframeDepthReport ComputeDepth(const Reconstruction& finished,
-                                   const KeyframeProgress& progress);
+  ViewDepthReport ComputeDepth(const Reconstruction& finished, const ViewProgress& progress);
 
   const Atlas& atlas() const { return atlas_; }
   const std::optional<DenseMapper>& dense() const { return dense_; }
@@ -48,7 +47,9 @@ class Pipeline {
   void Initialize(const PendingFrame& frame);
 
   // Start of jobs and adoption of their results.
+  /// Makes the last frame a keyframe. `image` may be empty where no other frame follows.
   void StartMapping(const cv::Mat& image);
+  void MapLastFrame();
   void StartLoopCorrection();
   void StartAdjustment();
   void AdoptMap();

@@ -41,11 +41,24 @@ void Pipeline::Apply(const MapUpdate& update) {
 
 // --- mapping of keyframes -----------------------------------------------------------------------
 
+// Frames between keyframes are held by both. After the last keyframe nothing would hold them.
+void Pipeline::MapLastFrame() {
+  const FrontEnd::Tracking* tracking = front_end_.tracking();
+  if (keeps_map_ || tracking == nullptr) return;
+  front_end_.UpdateLocalMap(&atlas_.map());
+  const Map& map = atlas_.map();
+  const auto is_last = [&](KeyframeId id) {
+    return map.keyframe(id).frame_index == tracking->last.index;
+  };
+  if (std::ranges::any_of(map.KeyframeIds(), is_last)) return;
+  StartMapping({});
+  AdoptMap();
+}
+
 void Pipeline::StartMapping(const cv::Mat& image) {
   TrackedFrame frame = front_end_.tracking()->last;
   for (LandmarkId& id : frame.landmarks) id = atlas_.map().Resolve(id);
-  const bool is_completed = dense_ && dense_->Wants(atlas_.map().keyframe_end());
-  if (is_completed) dense_->images().KeepKeyframe(frame.index, image);
+  if (dense_ && !image.empty()) dense_->images().KeepKeyframe(frame.index, image);
   const std::optional<KnownGround> ground = atlas_.ReliableGround();
   // The sooner a keyframe is in the map, the sooner there is the next one.
   const bool seeks_ground =
@@ -56,7 +69,7 @@ void Pipeline::StartMapping(const cv::Mat& image) {
                       .pyramid = std::make_shared<const SpherePyramid>(front_end_.TakePyramid()),
                       .ground = ground,
                       .mask = front_end_.mask()};
-  if (is_completed && options_.depth.guides_mapping) {
+  if (dense_ && !image.empty() && options_.depth.guides_mapping) {
     job.completed_camera = dense_->camera();
     cv::resize(image, job.color, {dense_->camera().width(), dense_->camera().height()}, 0, 0,
                cv::INTER_AREA);

@@ -34,8 +34,7 @@ std::span<const std::optional<KnownGround>> System::grounds() const {
   return pipeline_->atlas().grounds();
 }
 
-KeyframeDepthReport System::ComputeDepth(const Reconstruction& finished,
-                                         const KeyframeProgress& progress) {
+ViewDepthReport System::ComputeDepth(const Reconstruction& finished, const ViewProgress& progress) {
   return pipeline_->ComputeDepth(finished, progress);
 }
 

@@ -95,7 +95,7 @@ TEST_F(RunTest, WithANetworkTheCloudIsDenseAndTheSameForAnyNumberOfThreads) {
   const auto files = [](const std::filesystem::path& folder) {
     return std::distance(std::filesystem::directory_iterator(folder), {});
   };
-  EXPECT_EQ(files(OutFile("depth")), summary["cloud"]["keyframes"].get<int>());
+  EXPECT_EQ(files(OutFile("depth")), summary["cloud"]["views"].get<int>());
   EXPECT_TRUE(std::filesystem::exists(OutFile("report") / "cloud.png"));
   EXPECT_FALSE(std::filesystem::exists(OutFile("depth.tmp")));
   EXPECT_FALSE(std::filesystem::exists(OutFile("cloud.ply.voxels")));

@@ -20,6 +20,8 @@ struct FramePose {
   /// was assumed between the maps.
   int map;
   Rigid3 world_from_camera;  ///< Pose of the camera.
+  /// Whether the pose lies between those of other frames, because this one showed nothing.
+  bool is_interpolated = false;
 };
 
 /// A landmark of the result.

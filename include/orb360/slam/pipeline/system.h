@@ -7,8 +7,8 @@
 
 #include <orb360/slam/geometry/camera.h>
 #include <orb360/slam/pipeline/frame_report.h>
-#include <orb360/slam/pipeline/keyframe_depth_report.h>
 #include <orb360/slam/pipeline/reconstruction.h>
+#include <orb360/slam/pipeline/view_depth_report.h>
 #include <orb360/slam/scale/position_fix.h>
 
 namespace cv {
@@ -48,8 +48,8 @@ class System {
   std::span<const Map> maps() const;
   /// Returns the ground under each map, after Finish. A map with ground is metric.
   std::span<const std::optional<KnownGround>> grounds() const;
-  /// Computes the dense depth of keyframes, after Finish. Throws UserError where the disk fails.
-  KeyframeDepthReport ComputeDepth(const Reconstruction&, const KeyframeProgress& = nullptr);
+  /// Computes the dense depth of some frames, after Finish. Throws UserError where the disk fails.
+  ViewDepthReport ComputeDepth(const Reconstruction&, const ViewProgress& = nullptr);
   /// Returns that depth, or null without EnableDepth. Throws UserError where images were not kept.
   const DepthMapStore* depth_maps() const;
 

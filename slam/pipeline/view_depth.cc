@@ -1,8 +1,10 @@
-#include "slam/pipeline/keyframe_depth.h"
+#include "slam/pipeline/view_depth.h"
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <map>
+#include <optional>
 
 namespace orb360 {
 namespace {
@@ -46,7 +48,7 @@ float ConfidenceOf(float relative_error) { return 1.0f / (1.0f + relative_error)
 // Puts one pixel of each square that has any into the sparse depth, in the place of what that has
 // in the square: the first one by rows from the middle on. False, without a change, where too few
 // squares have one.
-bool SampleSquares(const InverseRanges& seen, const KeyframeDepthOptions& options,
+bool SampleSquares(const InverseRanges& seen, const ViewDepthOptions& options,
                    SparseDepth* sparse) {
   const cv::Size size = seen.value.size();
   const int side = options.sparse_spacing;
@@ -104,90 +106,86 @@ void TakeOver(const InverseRanges& seen, DenseDepth* depth) {
   }
 }
 
-}  // namespace
-
-std::vector<FramePose> FindStereoCandidates(std::span<const DenseView> views, size_t reference,
-                                            std::span<const FramePose> frames) {
-  std::vector<size_t> near = views[reference].neighbours;
-  near.push_back(reference);
-  std::ranges::sort(near);
-  std::vector<FramePose> candidates;
-  for (size_t i = 0; i < near.size(); ++i) {
-    const DenseView& view = views[near[i]];
-    if (near[i] != reference) {
-      candidates.push_back({view.frame_index, 0, view.map, view.world_from_camera});
-    }
-    if (i + 1 == near.size() || near[i + 1] != near[i] + 1) continue;
-    const int end = views[near[i + 1]].frame_index;
-    for (auto frame = std::ranges::upper_bound(frames, view.frame_index, {}, &FramePose::index);
-         frame != frames.end() && frame->index < end; ++frame) {
-      if (frame->map == view.map) candidates.push_back(*frame);
-    }
-  }
-  return candidates;
+double DistanceBetween(const DenseView& a, const DenseView& b) {
+  return (a.world_from_camera.translation - b.world_from_camera.translation).norm();
 }
 
-std::vector<FramePose> ChooseStereoSources(std::span<const FramePose> candidates,
-                                           const DenseView& reference, double median_range,
-                                           const KeyframeDepthOptions& options) {
-  std::vector<FramePose> chosen;
+// Length of the path in each map.
+std::map<int, double> PathLengths(std::span<const DenseView> views) {
+  std::map<int, double> lengths;
+  std::map<int, const DenseView*> last;
+  for (const DenseView& view : views) {
+    const DenseView*& before = last[view.map];
+    if (before != nullptr) lengths[view.map] += DistanceBetween(*before, view);
+    before = &view;
+  }
+  return lengths;
+}
+
+}  // namespace
+
+std::vector<size_t> ChooseStereoSources(std::span<const DenseView> views, size_t reference,
+                                        double median_range, const ViewDepthOptions& options) {
+  std::vector<size_t> chosen;
   for (const double baseline : options.baselines) {
     for (const bool is_after : {false, true}) {
-      const FramePose* best = nullptr;
+      std::optional<size_t> best;
       double least = std::log(options.max_baseline_ratio);
-      for (const FramePose& frame : candidates) {
-        if ((frame.index > reference.frame_index) != is_after ||
-            std::ranges::find(chosen, frame.index, &FramePose::index) != chosen.end()) {
-          continue;
-        }
-        const double distance =
-            (frame.world_from_camera.translation - reference.world_from_camera.translation).norm();
+      for (const size_t i : views[reference].neighbours) {
+        if ((i > reference) != is_after || std::ranges::find(chosen, i) != chosen.end()) continue;
+        const double distance = DistanceBetween(views[i], views[reference]);
         if (!(distance > 0)) continue;
         const double difference = std::abs(std::log(distance / (baseline * median_range)));
         if (difference >= least) continue;
         least = difference;
-        best = &frame;
+        best = i;
       }
-      if (best != nullptr) chosen.push_back(*best);
+      if (best) chosen.push_back(*best);
     }
   }
   return chosen;
 }
 
-KeyframeDepthReport ComputeDepth(std::span<const DenseView> views,
-                                 std::span<const FramePose> frames,
-                                 const LandmarkProjector& landmarks_of,
-                                 const KeyframeDepthOptions& options, const ImageStore& images,
-                                 DepthCompleter* completer, int num_threads,
-                                 const DepthMapStore& store, const KeyframeProgress& progress) {
+ViewDepthReport ComputeDepth(std::span<const DenseView> views,
+                             const LandmarkProjector& landmarks_of, const ViewDepthOptions& options,
+                             const ImageStore& images, DepthCompleter* completer, int num_threads,
+                             const DepthMapStore& store, const ViewProgress& progress) {
   GrayImages gray(images);
+  const auto stereo_view = [&](const DenseView& view) {
+    return StereoView{gray.Get(view.frame_index), view.world_from_camera};
+  };
   const auto count = static_cast<int>(views.size());
-  KeyframeDepthReport report;
-  bool uses_stereo = true;
-  double range = 0;  // Of the surroundings of the view before.
+  ViewDepthReport report;
+  bool uses_stereo = !options.baselines.empty();
+  std::map<int, double> path_lengths = PathLengths(views);
+  const DenseView* last = nullptr;  // The last one that has got depth.
+  double range = 0;                 // Of its surroundings.
   for (int i = 0; i < count; ++i) {
     if (progress && !progress(i, count)) uses_stereo = false;
     const DenseView& view = views[i];
+    if (last != nullptr && last->map != view.map) last = nullptr;
+    const double spacing =
+        std::min(options.spacing * range, path_lengths[view.map] / options.min_views);
+    if (last != nullptr && DistanceBetween(view, *last) <= spacing) continue;
     const std::vector<SparsePoint> landmarks = landmarks_of(view);
     SparseDepth sparse = RenderSparseDepth(landmarks, completer->camera());
     const cv::Mat color = images.Get(view.frame_index);
-    if (i > 0 && view.map != views[i - 1].map) range = 0;
-    if (!landmarks.empty() && !(range > 0)) {
-      range = TrustedRange(completer->Complete(color, sparse), options.min_trusted_confidence);
+    if (last == nullptr) {
+      range = landmarks.empty() ? 0.0
+                                : TrustedRange(completer->Complete(color, sparse),
+                                               options.min_trusted_confidence);
     }
     InverseRanges seen;
     bool is_measured = false;
-    if (uses_stereo && !options.baselines.empty()) {
+    if (uses_stereo) {
       std::vector<StereoView> sources;
-      for (const FramePose& frame :
-           ChooseStereoSources(FindStereoCandidates(views, i, frames), view, range, options)) {
-        sources.push_back({gray.Get(frame.index), frame.world_from_camera});
+      for (const size_t source : ChooseStereoSources(views, i, range, options)) {
+        sources.push_back(stereo_view(views[source]));
       }
       if (static_cast<int>(sources.size()) < options.stereo.fusion.min_support) {
         ++report.without_sources;
       } else {
-        seen = MatchSpheres({gray.Get(view.frame_index), view.world_from_camera}, sources,
-                            options.stereo, num_threads);
+        seen = MatchSpheres(stereo_view(view), sources, options.stereo, num_threads);
         is_measured = SampleSquares(seen, options, &sparse);
         ++(is_measured ? report.measured : report.unseen);
       }
@@ -196,6 +194,7 @@ KeyframeDepthReport ComputeDepth(std::span<const DenseView> views,
         options.keeps_completed && static_cast<int>(landmarks.size()) >= options.min_points;
     if (!is_measured && !is_completed) continue;
     DenseDepth depth = completer->Complete(color, sparse);
+    last = &view;
     range = TrustedRange(depth, options.min_trusted_confidence);
     if (!options.baselines.empty()) Distrust(options.completion_error_factor, &depth);
     if (is_measured) TakeOver(seen, &depth);

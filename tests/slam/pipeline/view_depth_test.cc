@@ -1,4 +1,4 @@
-#include "slam/pipeline/keyframe_depth.h"
+#include "slam/pipeline/view_depth.h"
 
 #include <cmath>
 #include <utility>
@@ -29,43 +29,17 @@ std::vector<DenseView> ViewsAt(const std::vector<double>& places) {
   return views;
 }
 
-std::vector<int> Indices(const std::vector<FramePose>& frames) {
-  std::vector<int> indices;
-  for (const FramePose& frame : frames) indices.push_back(frame.index);
-  return indices;
-}
-
-FramePose FrameAt(int index, double place, int map = 0) {
-  return {index, 0.1 * index, map, {Eigen::Quaterniond::Identity(), {place, 0, 0}}};
-}
-
 TEST(ChooseStereoSources, TakesTheNearestToEachBaselineOnBothSides) {
   const std::vector<DenseView> views = ViewsAt({-5, -1.4, -0.5, -0.02, 0, 0.02, 0.5, 1.4, 5});
-  const KeyframeDepthOptions options{.baselines = {0.1, 0.3}, .max_baseline_ratio = 2.0};
-  const auto choose = [&](size_t view) {
-    return Indices(
-        ChooseStereoSources(FindStereoCandidates(views, view, {}), views[view], 5.0, options));
-  };
-  EXPECT_EQ(choose(4), (std::vector<int>{20, 60, 10, 70}));
-  EXPECT_EQ(choose(0), std::vector<int>{});
+  const ViewDepthOptions options{.baselines = {0.1, 0.3}, .max_baseline_ratio = 2.0};
+  EXPECT_EQ(ChooseStereoSources(views, 4, 5.0, options), (std::vector<size_t>{2, 6, 1, 7}));
+  EXPECT_EQ(ChooseStereoSources(views, 0, 5.0, options), std::vector<size_t>{});
 }
 
 TEST(ChooseStereoSources, TakesNoViewFromTheSamePlaceNorOneThatSeesNothingOfIt) {
   std::vector<DenseView> views = ViewsAt({0, 0, 0.5, 0.6});
   views[0].neighbours = {1, 3};
-  EXPECT_EQ(Indices(ChooseStereoSources(FindStereoCandidates(views, 0, {}), views[0], 5.0,
-                                        {.baselines = {0.1, 0.12}})),
-            std::vector<int>{30});
-}
-
-TEST(FindStereoCandidates, AreNeighboursAndTheFramesOfTheMapBetweenThem) {
-  std::vector<DenseView> views = ViewsAt({0, 1, 2, 3, 4, 5});
-  views[1].neighbours = {5, 4, 2};
-  const std::vector<FramePose> frames = {FrameAt(5, 0.5),     FrameAt(10, 1), FrameAt(12, 1.2),
-                                         FrameAt(15, 1.5, 1), FrameAt(20, 2), FrameAt(25, 2.5),
-                                         FrameAt(45, 4.5)};
-  EXPECT_EQ(Indices(FindStereoCandidates(views, 1, frames)),
-            (std::vector<int>{12, 20, 40, 45, 50}));
+  EXPECT_EQ(ChooseStereoSources(views, 0, 5.0, {.baselines = {0.1, 0.12}}), std::vector<size_t>{3});
 }
 
 class ComputeDepthTest : public testing::Test {
@@ -76,14 +50,13 @@ class ComputeDepthTest : public testing::Test {
         completer_(WritePropagation(folder_),
                    {.size = {kCamera.width(), kCamera.height()}, .threads = 1}) {}
 
-  KeyframeDepthReport Compute(const std::vector<DenseView>& views,
-                              const KeyframeDepthOptions& options = {},
-                              const std::vector<FramePose>& frames = {},
-                              const KeyframeProgress& progress = nullptr) {
+  ViewDepthReport Compute(const std::vector<DenseView>& views,
+                          const ViewDepthOptions& options = kAll,
+                          const ViewProgress& progress = nullptr) {
     for (const DenseView& view : views) Show(view.frame_index, view.world_from_camera);
     return ComputeDepth(
-        views, frames, [this](const DenseView&) { return landmarks_; }, options, images_,
-        &completer_, 2, store_, progress);
+        views, [this](const DenseView&) { return landmarks_; }, options, images_, &completer_, 2,
+        store_, progress);
   }
 
   // Stores an image of the room.
@@ -115,6 +88,7 @@ class ComputeDepthTest : public testing::Test {
     return landmarks;
   }
 
+  static inline const ViewDepthOptions kAll{.spacing = 0};
   static inline const EquirectangularCamera kCamera{256, 128};
   static inline const BoxRoom kRoom{{4.0, 3.0, 2.0}, 3};
   TempFolder folder_;
@@ -136,7 +110,7 @@ TEST_F(ComputeDepthTest, WithoutTwoSourcesTheNetworkCompletesTheLandmarks) {
   EXPECT_NEAR(store_.Get(0).range.at<float>(60, 100), 2.4, 0.01);
 }
 
-TEST_F(ComputeDepthTest, AKeyframeWithFewLandmarksAndWithoutStereoGetsNoDepth) {
+TEST_F(ComputeDepthTest, AViewWithFewLandmarksAndWithoutStereoGetsNoDepth) {
   landmarks_.resize(49);
   EXPECT_EQ(Compute(ViewsAt({0, 0.3})).measured, 0);
   EXPECT_FALSE(store_.Contains(0));
@@ -144,16 +118,35 @@ TEST_F(ComputeDepthTest, AKeyframeWithFewLandmarksAndWithoutStereoGetsNoDepth) {
   EXPECT_TRUE(store_.Contains(0));
 }
 
-TEST_F(ComputeDepthTest, FramesThatAreNoKeyframesAreSources) {
-  const std::vector<DenseView> views = ViewsAt({0, 0.6});
-  const FramePose between = FrameAt(5, 0.3);
-  Show(between.index, between.world_from_camera);
-  EXPECT_EQ(Compute(views, {}, {between}).measured, 2);
-  for (const DenseView& view : views) EXPECT_LT(MedianError(view), 0.05) << view.frame_index;
+TEST_F(ComputeDepthTest, ReferenceViewsKeepTheirDistanceAndTheOthersAreSources) {
+  // The room is about 3 m away on the median, its landmarks here 2.4 m.
+  const std::vector<DenseView> views = ViewsAt({0, 0.3, 0.6, 0.9, 1.2, 1.5});
+  EXPECT_EQ(Compute(views, {.spacing = 0.15, .min_views = 1}).measured, 3);
+  for (size_t i = 0; i < views.size(); ++i) {
+    EXPECT_EQ(store_.Contains(views[i].frame_index), i % 2 == 0) << i;
+  }
+  EXPECT_LT(MedianError(views[2]), 0.05);
+}
+
+TEST_F(ComputeDepthTest, AShortPathHasEnoughReferenceViewsToo) {
+  Compute(ViewsAt({0, 0.1, 0.2, 0.3, 0.4}), {.spacing = 1.0, .min_views = 4});
+  for (int frame_index = 0; frame_index < 50; frame_index += 20) {
+    EXPECT_TRUE(store_.Contains(frame_index)) << frame_index;
+  }
+}
+
+TEST_F(ComputeDepthTest, ACameraThatTurnsOnTheSpotHasOneReferenceViewInEachMap) {
+  std::vector<DenseView> views = ViewsAt({0, 0, 0, 0});
+  views[2].map = 1;
+  views[3].map = 1;
+  EXPECT_EQ(Compute(views, {}).without_sources, 2);
+  EXPECT_TRUE(store_.Contains(0));
+  EXPECT_FALSE(store_.Contains(10));
+  EXPECT_TRUE(store_.Contains(20));
 }
 
 TEST_F(ComputeDepthTest, WhereStereoSeesLittleItCountsForNothing) {
-  EXPECT_EQ(Compute(ViewsAt({-0.5, 0, 0.5, 1.0}), {.min_fraction = 0.999}).unseen, 4);
+  EXPECT_EQ(Compute(ViewsAt({-0.5, 0, 0.5, 1.0}), {.spacing = 0, .min_fraction = 0.999}).unseen, 4);
   EXPECT_NEAR(store_.Get(0).range.at<float>(60, 100), 2.4, 0.01);
 }
 
@@ -165,7 +158,7 @@ TEST_F(ComputeDepthTest, AnInterruptLeavesTheRestToTheNetwork) {
     done.push_back(number);
     return number < 2;
   };
-  EXPECT_EQ(Compute(views, {}, {}, two_of_four).measured, 2);
+  EXPECT_EQ(Compute(views, kAll, two_of_four).measured, 2);
   EXPECT_EQ(done, (std::vector<int>{0, 1, 2, 3}));
   EXPECT_LT(MedianError(views[1]), 0.05);
   EXPECT_NEAR(store_.Get(20).range.at<float>(60, 100), 2.4, 0.01);
@@ -175,7 +168,7 @@ TEST_F(ComputeDepthTest, WithoutCompletionItHasWhatStereoMeasures) {
   const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
   Compute(views);
   const DenseDepth both = store_.Get(10);
-  EXPECT_EQ(Compute(views, {.keeps_completed = false}).measured, 4);
+  EXPECT_EQ(Compute(views, {.spacing = 0, .keeps_completed = false}).measured, 4);
   const DenseDepth measured = store_.Get(10);
   const cv::Mat is_measured = measured.range > 0;
   EXPECT_GT(cv::countNonZero(is_measured), 0.5 * static_cast<double>(is_measured.total()));
@@ -186,7 +179,7 @@ TEST_F(ComputeDepthTest, WithoutCompletionItHasWhatStereoMeasures) {
 TEST_F(ComputeDepthTest, CompletedPixelsAreTrustedLessThanTheNetworkTrustsThem) {
   const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
   for (const double factor : {1.0, 3.0}) {
-    Compute(views, {.completion_error_factor = factor});
+    Compute(views, {.spacing = 0, .completion_error_factor = factor});
     // The network of this test is sure of 0.9 at most, and states it where nothing was seen.
     const DenseDepth depth = store_.Get(10);
     const cv::Mat is_stated = cv::abs(depth.confidence - 1 / (1 + factor * (1 / 0.9 - 1))) < 0.003;

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <functional>
+
+namespace orb360 {
+
+/// Receives before each frame how many of how many are done. False makes the rest faster and less
+/// exact.
+using ViewProgress = std::function<bool(int done, int count)>;
+
+/// Of how many reference views stereo has measured a part, and why not of the others.
+struct ViewDepthReport {
+  int measured = 0;         ///< Views of which stereo has measured a part.
+  int without_sources = 0;  ///< Those without two frames around them at a useful distance.
+  int unseen = 0;           ///< Those of which two frames agree on little, for want of texture.
+};
+
+}  // namespace orb360

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "slam/depth/dense_cloud.h"
+#include "slam/io/depth_map_store.h"
+#include "slam/io/image_store.h"
+#include "slam/stereo/spherical_stereo.h"
+#include <orb360/slam/depth/depth_completer.h>
+#include <orb360/slam/pipeline/reconstruction.h>
+#include <orb360/slam/pipeline/view_depth_report.h>
+
+namespace orb360 {
+
+struct ViewDepthOptions {
+  /// Least distance between two reference views that follow each other, as a multiple of the median
+  /// range of the surroundings. 0: every view gets depth, but of those at one place only the first.
+  double spacing = 0.25;
+  /// Number of reference views along a path that is short for that: their distance is at most the
+  /// length of the path divided by it.
+  int min_views = 12;
+  /// Least confidence of the completed pixels whose ranges have the median.
+  double min_trusted_confidence = 0.8;
+  /// Distances of the source views from the reference view, as multiples of that median, in the
+  /// reference view before. On each side of the path the view is taken whose distance is nearest to
+  /// each of these by ratio. Empty: no stereo.
+  std::vector<double> baselines = {0.12, 0.4};
+  /// Largest ratio between that distance and the one wanted.
+  double max_baseline_ratio = 2.7;
+  /// Side of the squares of pixels of which one with a range by stereo, if there is one, is given
+  /// to the network.
+  int sparse_spacing = 6;
+  /// Least fraction of the squares that have one; of a view with fewer, stereo counts for nothing.
+  double min_fraction = 0.03;
+  /// The confidence of such a pixel follows from the same error as that of a landmark.
+  SparseDepthOptions sparse = {};
+  /// Least number of landmarks in a view of which stereo measures nothing. One with fewer gets no
+  /// depth.
+  int min_points = 50;
+  /// Number by which the errors that the network expects are multiplied beside stereo: where it has
+  /// not been trained, they are larger than it says (docs/results/stereo.md).
+  double completion_error_factor = 5.0;
+  /// Whether the depth has what the network completes. Otherwise it has what stereo measures.
+  bool keeps_completed = true;
+  SphericalStereoOptions stereo = {};
+};
+
+/// Returns those of the neighbours of a view from which its ranges are measured (ViewDepthOptions):
+/// indices into `views`, in the order of preference.
+std::vector<size_t> ChooseStereoSources(std::span<const DenseView> views, size_t reference,
+                                        double median_range, const ViewDepthOptions& options);
+
+/// Returns the landmarks that a view sees (ProjectLandmarks), in the unit of its pose.
+using LandmarkProjector = std::function<std::vector<SparsePoint>(const DenseView& view)>;
+
+/// Chooses reference views along the path by their distance over the range of the surroundings,
+/// computes their depth and puts it into `store`. Ranges are measured by multi-view stereo with the
+/// final poses of the views around them; the network completes the rest from these and from
+/// landmarks. What is seen is kept. After `progress` has returned false, the rest is left to the
+/// network. `views` are ordered by frame, and their images are in `images`. The result does not
+/// depend on the number of threads. Throws UserError where the disk fails.
+ViewDepthReport ComputeDepth(std::span<const DenseView> views,
+                             const LandmarkProjector& landmarks_of, const ViewDepthOptions& options,
+                             const ImageStore& images, DepthCompleter* completer, int num_threads,
+                             const DepthMapStore& store, const ViewProgress& progress = nullptr);
+
+}  // namespace orb360
