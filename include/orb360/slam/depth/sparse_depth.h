@@ -35,8 +35,8 @@ double SparseConfidence(double relative_error, const SparseDepthOptions& options
 std::vector<SparsePoint> ProjectLandmarks(const Map& map, KeyframeId keyframe,
                                           const EquirectangularCamera& camera,
                                           const SparseDepthOptions& options);
-/// The same for a camera at any pose, with the landmarks of a keyframe near it and of the neighbours
-/// of that. At the pose of the keyframe both are the same.
+/// The same for a camera at any pose, with the landmarks of a keyframe near it and of the
+/// neighbours of that. At the pose of the keyframe both are the same.
 std::vector<SparsePoint> ProjectLandmarks(const Map& map, KeyframeId near,
                                           const Rigid3& world_from_camera,
                                           const EquirectangularCamera& camera,
