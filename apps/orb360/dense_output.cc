@@ -23,7 +23,7 @@ constexpr double kNear = 0.25;
 constexpr double kFar = 8.0;
 
 std::vector<DenseImages::OfView> DrawViews(const DepthMapStore& store,
-                                                   std::span<const DenseView> views) {
+                                           std::span<const DenseView> views) {
   std::vector<DenseImages::OfView> images;
   const size_t count = std::min(kDrawnViews, views.size());
   for (size_t i = 0; i < count; ++i) {

@@ -133,10 +133,9 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
       progress.Update("computing depth", done, count);
       return CaughtInterrupt() == 0;
     });
-    const bool has_depth =
-        std::ranges::any_of(reconstruction.frames, [&](const FramePose& frame) {
-          return system->depth_maps()->Contains(frame.index);
-        });
+    const bool has_depth = std::ranges::any_of(reconstruction.frames, [&](const FramePose& frame) {
+      return system->depth_maps()->Contains(frame.index);
+    });
     if (!has_depth) {
       const std::string warning =
           "no dense cloud: the camera has hardly moved, or too little has texture";

@@ -10,9 +10,9 @@
 
 #include "apps/orb360/dense_output.h"
 #include "apps/orb360/stage_times.h"
-#include <orb360/slam/pipeline/view_depth_report.h>
 #include <orb360/slam/pipeline/reconstruction.h>
 #include <orb360/slam/pipeline/scale_options.h>
+#include <orb360/slam/pipeline/view_depth_report.h>
 
 namespace orb360 {
 
