@@ -30,7 +30,7 @@ int main(int argc, char** argv) try {
       orb360::FileWorldFromMap(result.frames.front().world_from_camera, result.up);
   const orb360::DenseCloudSummary cloud = orb360::WriteDenseCloud(
       argv[2], result, *system.depth_maps(), file_world_from_map, options.num_threads);
-  std::printf("%llu points from %d keyframes\n", static_cast<unsigned long long>(cloud.points),
+  std::printf("%llu points from %d views\n", static_cast<unsigned long long>(cloud.points),
               cloud.fusion.views);
 } catch (const orb360::UserError& error) {
   return std::fprintf(stderr, "dense_cloud: %s\n", error.what()), 1;

@@ -27,7 +27,7 @@ struct DenseOutput {
 };
 
 /// Writes cloud.ply, fused from the views, into `folder`, and the surface through its points as
-/// mesh.ply where `has_mesh` is true, and draws the cloud and a few keyframes.
+/// mesh.ply where `has_mesh` is true, and draws the cloud and a few views.
 DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMapStore& store,
                              std::span<const DenseView> views, const DenseCloudOptions& options,
                              bool has_mesh);

@@ -62,7 +62,7 @@ int Fuse(const FuseOptions& options) {
     Progress progress(std::nullopt, options.is_quiet);
     fusion.progress = [&](int done, int count) {
       if (CaughtInterrupt() != 0) throw Interrupted();
-      progress.Update("fusing depth", done, count);
+      progress.Update("fusing depth", done, count, "views");
     };
     std::optional<MeshWriter> mesh;
     if (options.has_mesh) {

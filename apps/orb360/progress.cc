@@ -65,10 +65,10 @@ void Progress::Update(int index, const FrameReport& report) {
   Show(num_frames_, frame_count_, num_frames_ == frame_count_, Status(report));
 }
 
-void Progress::Update(const std::string& step, int done, int count) {
+void Progress::Update(const std::string& step, int done, int count, const std::string& what) {
   if (is_quiet_) return;
   Show(done, count, done == count,
-       step + ": " + std::to_string(done) + '/' + std::to_string(count) + " keyframes");
+       step + ": " + std::to_string(done) + '/' + std::to_string(count) + " " + what);
 }
 
 void Progress::Show(int done, std::optional<int> count, bool must, const std::string& status) {

@@ -23,8 +23,8 @@ class Progress {
   /// Shows the state after a frame; `index` is its Frame::index.
   void Update(int index, const FrameReport& report);
 
-  /// Shows how many keyframes a step after the last frame has done.
-  void Update(const std::string& step, int done, int count);
+  /// Shows how far a step after the last frame has got; `what` names what is counted.
+  void Update(const std::string& step, int done, int count, const std::string& what);
 
   /// Prints a line on standard error and keeps it apart from the bar.
   void Warn(const std::string& line);

@@ -130,7 +130,7 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
     // After an interrupt the rest of the views are left to the network.
     Progress progress(std::nullopt, options.is_quiet);
     record->depth = system->ComputeDepth(reconstruction, [&](int done, int count) {
-      progress.Update("computing depth", done, count);
+      progress.Update("computing depth", done, count, "frames");
       return CaughtInterrupt() == 0;
     });
     const bool has_depth = std::ranges::any_of(reconstruction.frames, [&](const FramePose& frame) {
@@ -145,7 +145,9 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
     }
     DenseCloudOptions fusion;
     fusion.num_threads = num_threads;
-    fusion.progress = [&](int done, int count) { progress.Update("fusing depth", done, count); };
+    fusion.progress = [&](int done, int count) {
+      progress.Update("fusing depth", done, count, "views");
+    };
     dense = output.WriteDense(
         reconstruction, *system->depth_maps(),
         {.depth = options.saves_depth, .views = options.saves_views, .mesh = options.has_mesh},
@@ -304,7 +306,7 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
       ->type_name("FILE");
   command
       ->add_option("--weights", options->weights,
-                   "Network for the dense depth of keyframes and the dense cloud (default: the one "
+                   "Network for dense depth and the dense cloud (default: the one "
                    "that comes with orb360); or none, for landmarks alone")
       ->type_name("none|FILE");
   command
@@ -361,10 +363,10 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
                     "Also write each keyframe with its sparse depth to DIR/sparse (HDF5)");
   command->add_flag(
       "--save-depth", options->saves_depth,
-      "Also write each keyframe's dense depth to DIR/depth (16-bit PNG, metres * 256)");
+      "Also write the dense depth of each view to DIR/depth (16-bit PNG, metres * 256)");
   command->add_flag("--save-views", options->saves_views,
                     "Also keep in DIR/views what the dense cloud is made of (about 0.5 MB a "
-                    "keyframe), so that `orb360 fuse DIR` can make it again");
+                    "view), so that `orb360 fuse DIR` can make it again");
   command->add_flag("--mesh", options->has_mesh,
                     "Also write the surface through the dense cloud to DIR/mesh.ply");
   command

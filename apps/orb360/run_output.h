@@ -33,11 +33,11 @@ class RunOutput {
 
   /// What WriteDense writes beside the cloud.
   struct DenseFiles {
-    bool depth = false;  ///< The ranges of the keyframes (SaveDepth).
+    bool depth = false;  ///< The ranges of the views (SaveDepth).
     bool views = false;  ///< All that the cloud is made of (SaveViews).
     bool mesh = false;   ///< The surface through the cloud (MeshWriter).
   };
-  /// Writes cloud.ply, the dense cloud of the keyframes in the store, fused with `options` and
+  /// Writes cloud.ply, the dense cloud of the views in the store, fused with `options` and
   /// voxels as CloudOptionsFor chooses them.
   DenseOutput WriteDense(const Reconstruction& reconstruction, const DepthMapStore& store,
                          DenseFiles files, DenseCloudOptions options) const;

@@ -8,7 +8,7 @@
 
 namespace orb360 {
 
-/// A keyframe with dense depth, in the unit of its pose.
+/// A frame with dense depth, in the unit of its pose.
 struct DenseView {
   int frame_index = 0;
   int map = 0;  ///< Index into Reconstruction::maps.

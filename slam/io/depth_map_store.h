@@ -9,9 +9,9 @@
 
 namespace orb360 {
 
-/// Depth maps of keyframes, stored on disk. A keyframe of 1024 x 512 pixels takes
+/// Depth maps of frames, stored on disk. One of 1024 x 512 pixels takes
 /// about 0.5 MB of disk and no memory. Frames are named by their index in the sequence, so
-/// keyframes of several maps can use one store.
+/// those of several maps can use one store.
 ///
 /// Ranges are restored with an error of at most 0.05 % (their logarithms are rounded to 2^-10, in
 /// 16 bits), from e^-32 to e^31 units of length. Confidences are rounded to 1/255, but not to 0.

@@ -1,6 +1,7 @@
 #include "slam/pipeline/dense_mapper.h"
 
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "slam/pipeline/dense_views.h"
@@ -8,6 +9,23 @@
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
+namespace {
+
+// Of the keyframes before and after a view in time, that which is nearer in space: tracking may
+// have gone on elsewhere in between. `ids`: keyframes by frame index, not empty.
+KeyframeId NearestKeyframe(const Map& map, const std::map<int, KeyframeId>& ids,
+                           const DenseView& view) {
+  const auto after = ids.lower_bound(view.frame_index);
+  if (after == ids.begin()) return after->second;
+  const KeyframeId before = std::prev(after)->second;
+  if (after == ids.end()) return before;
+  const auto distance = [&](KeyframeId id) {
+    return (map.PoseOf(id).translation - view.world_from_camera.translation).norm();
+  };
+  return distance(before) < distance(after->second) ? before : after->second;
+}
+
+}  // namespace
 
 DenseMapper::DenseMapper(const std::filesystem::path& weights, const std::filesystem::path& folder,
                          const DepthOptions& options, int num_threads)
@@ -32,21 +50,21 @@ ViewDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished, std::s
       id_of[m][maps[m].keyframe(id).frame_index] = id;
     }
   }
-  const std::vector<DenseView> views = MakeDenseViews(
-      finished, Rigid3(), [this](int index) { return images_.store().Contains(index); });
+  const CovisibleViews covisible(finished, Rigid3(),
+                                 [this](int index) { return images_.store().Contains(index); });
+  const auto neighbours_of = [&](size_t view) { return covisible.NeighboursOf(view); };
   const auto landmarks_of = [&](const DenseView& view) {
-    const std::map<int, KeyframeId>& ids = id_of[view.map];
-    auto keyframe = ids.lower_bound(view.frame_index);
-    if (keyframe == ids.end()) --keyframe;
-    return ProjectLandmarks(maps[view.map], keyframe->second, view.world_from_camera, camera(), {});
+    const Map& map = maps[view.map];
+    return ProjectLandmarks(map, NearestKeyframe(map, id_of[view.map], view),
+                            view.world_from_camera, camera(), {});
   };
   ViewDepthOptions options{.spacing = options_.view_spacing,
                            .min_points = options_.min_points,
                            .keeps_completed = options_.completion};
   if (!options_.stereo) options.baselines.clear();
   try {
-    return orb360::ComputeDepth(views, landmarks_of, options, images_.store(), &completer_,
-                                num_threads_, depth_maps_, progress);
+    return orb360::ComputeDepth(covisible.views(), neighbours_of, landmarks_of, options,
+                                images_.store(), &completer_, num_threads_, depth_maps_, progress);
   } catch (const UserError&) {
     images_.Clear();
     throw;

@@ -9,9 +9,28 @@
 
 namespace orb360 {
 
-/// Returns those frames of a reconstruction for whose index `is_view` holds and whose own images
-/// have told their poses, with poses in the world to which `target_from_world` transforms. Frames
-/// at or between keyframes that see the same landmarks are neighbours.
+/// The frames of a reconstruction that may get dense depth, and which of them see the same: those
+/// at or between keyframes that see the same landmarks.
+class CovisibleViews {
+ public:
+  /// Takes those frames for whose index `is_view` holds and whose own images have told their poses,
+  /// with poses in the world to which `target_from_world` transforms.
+  CovisibleViews(const Reconstruction& reconstruction, const Rigid3& target_from_world,
+                 const std::function<bool(int frame_index)>& is_view);
+
+  /// Ordered by frame, without neighbours.
+  const std::vector<DenseView>& views() const { return views_; }
+  /// Returns the views that see what a view sees, without itself: indices into views(), ordered.
+  std::vector<size_t> NeighboursOf(size_t view) const;
+
+ private:
+  std::vector<DenseView> views_;
+  std::vector<std::vector<size_t>> sees_the_same_;  ///< By keyframe, with itself: keyframes.
+  std::vector<std::vector<size_t>> keyframes_at_;   ///< By view: one or two keyframes around it.
+  std::vector<std::vector<size_t>> views_at_;       ///< By keyframe: the views of keyframes_at_.
+};
+
+/// Returns all views of CovisibleViews with their neighbours.
 std::vector<DenseView> MakeDenseViews(const Reconstruction& reconstruction,
                                       const Rigid3& target_from_world,
                                       const std::function<bool(int frame_index)>& is_view);

@@ -35,6 +35,7 @@ PendingFrame FrontEnd::Extract(int index, double timestamp, const cv::Mat& image
   cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
   auto features = std::make_shared<Features>(extractor_.Extract(gray, mask_, num_threads));
   SampleColors(image, features.get());
+  pyramid_of_ = index;
   return {.index = index, .timestamp = timestamp, .features = std::move(features)};
 }
 
@@ -92,18 +93,22 @@ void FrontEnd::Anchor(const TrackedFrame& frame, Atlas* atlas, bool is_interpola
                               .is_interpolated = is_interpolated});
 }
 
+double FrontEnd::Motion() const {
+  const Rigid3& pose = std::get<Tracking>(state_).last.world_from_camera;
+  return (pose.translation - local_.world_from_reference.translation).norm() /
+         std::max(local_.median_range, 1e-12);
+}
+
 bool FrontEnd::NeedsKeyframe(const Map& map, bool has_ground) const {
   const TrackedFrame& last = std::get<Tracking>(state_).last;
   const KeyframeOptions& options = options_.keyframe;
-  const double motion =
-      (last.world_from_camera.translation - local_.world_from_reference.translation).norm() /
-      std::max(local_.median_range, 1e-12);
+  const double motion = Motion();
   // The next step over the ground would be too long to be measured (GroundSweepOptions).
   constexpr double kMaxGroundStep = 2.5;  // heights of the camera
   if (has_ground && motion * local_.median_range > kMaxGroundStep * options_.scale.height()) {
     return true;
   }
-  if (motion < options.min_motion) return false;
+  if (!HasMoved()) return false;
   // Before the ground is known, nobody knows how long a step is. Carriers move by a fraction of the
   // camera's height to three heights in this time.
   constexpr double kMaxStepTime = 0.25;  // seconds

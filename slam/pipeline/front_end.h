@@ -51,7 +51,12 @@ class FrontEnd {
   /// seconds.
   PendingFrame Extract(int index, double timestamp, const cv::Mat& image, int num_threads);
   /// Moves the image pyramid of the last frame out.
-  SpherePyramid TakePyramid() { return extractor_.TakePyramid(); }
+  SpherePyramid TakePyramid() {
+    pyramid_of_.reset();
+    return extractor_.TakePyramid();
+  }
+  /// Whether the pyramid is there and is that of the last tracked frame. State: tracking.
+  bool HasPyramid() const { return pyramid_of_ == std::get<Tracking>(state_).last.index; }
 
   bool is_initializing() const { return std::holds_alternative<Initializing>(state_); }
   /// The data of a state; null in other states.
@@ -89,6 +94,9 @@ class FrontEnd {
   /// Whether the last frame should become a keyframe of the map, whose ground is known or not.
   /// State: tracking.
   bool NeedsKeyframe(const Map& map, bool has_ground) const;
+  /// Whether the last frame is far enough from its reference keyframe to become one. State:
+  /// tracking.
+  bool HasMoved() const { return Motion() >= options_.keyframe.min_motion; }
   /// Adds the collected counts to the landmarks of the map, and makes the local map anew where
   /// another keyframe than its reference shares most landmarks with the last frame. State:
   /// tracking.
@@ -107,6 +115,8 @@ class FrontEnd {
   /// Time for which a motion predicts where the camera is, seconds.
   static constexpr double kPredictable = 1.0;
 
+  /// Distance of the last frame from its reference keyframe, in median ranges.
+  double Motion() const;
   /// The pose at a time (seconds) by constant velocity in the camera's frame.
   static Rigid3 PredictPose(const Tracking& tracking, double timestamp);
   static TrackedFrame MakeTracked(const PendingFrame& frame, TrackResult result);
@@ -119,6 +129,7 @@ class FrontEnd {
   const cv::Mat mask_;
   const double pixel_sigma_;
   OrbExtractor extractor_;
+  std::optional<int> pyramid_of_;  ///< Index of the frame whose pyramid the extractor has.
   std::variant<Initializing, Tracking, Lost> state_;
   PendingFrames pending_;
   LocalMap local_;

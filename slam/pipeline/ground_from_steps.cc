@@ -20,26 +20,6 @@ constexpr double kMaxHeightError = 0.15;
 constexpr int kMinClosed = 2;
 constexpr double kMaxMisclosure = 0.06;
 
-// Whether the step to a keyframe from the one but last before it is the sum of the steps between.
-// These are three measurements of other pairs of images.
-bool StepsAddUp(const Map& map, KeyframeId id) {
-  const std::vector<GroundStepFrom>& steps = map.keyframe(id).ground_steps;
-  if (steps.size() < 2) return false;
-  const GroundStepFrom& last = steps[0];
-  const GroundStepFrom& both = steps[1];
-  if (!map.HasKeyframe(last.keyframe) || !map.HasKeyframe(both.keyframe)) return false;
-  for (const GroundStepFrom& first : map.keyframe(last.keyframe).ground_steps) {
-    if (first.keyframe != both.keyframe) continue;
-    // In the frame of the keyframe in between.
-    const Eigen::Quaterniond between_from_before =
-        map.PoseOf(last.keyframe).rotation.conjugate() * map.PoseOf(both.keyframe).rotation;
-    const Eigen::Vector3d sum = first.ratio * first.direction2 + last.ratio * last.direction1;
-    const Eigen::Vector3d error = sum - both.ratio * (between_from_before * both.direction1);
-    return error.norm() < kMaxMisclosure * both.ratio;
-  }
-  return false;
-}
-
 // The ground as the newest step to each of the keyframes shows it.
 std::vector<GroundSighting> SightingsOf(const Map& map, std::span<const KeyframeId> keyframes) {
   std::vector<GroundSighting> sightings;
@@ -65,7 +45,10 @@ std::optional<KnownGround> GroundFromSteps(const Map& map, std::span<const Keyfr
   // Where all landmarks are far, the tracked unit of length changes at each keyframe, so that the
   // heights disagree. The steps themselves tell then whether they are right. Later, the keyframes
   // could not be aligned to them any more (AlignFirstKeyframes).
-  const auto adds_up = [&](KeyframeId id) { return StepsAddUp(map, id); };
+  const auto adds_up = [&](KeyframeId id) {
+    const std::optional<double> misclosure = MisclosureOfSteps(map, id);
+    return misclosure && *misclosure < kMaxMisclosure;
+  };
   if (map.keyframe_end() > kGroundSearch || !adds_up(keyframes.back()) ||
       std::ranges::count_if(keyframes, adds_up) < kMinClosed) {
     return std::nullopt;

@@ -29,6 +29,9 @@ constexpr double kMaxTurnSigma = 0.01;
 constexpr double kMaxSpeedChange = 1.6;
 constexpr double kMaxAcceleration = 4.0;
 constexpr double kMaxGap = 5.0;
+// The longer of two steps that contradict each other by more than this is dropped: the ground that
+// both images see is less, and its texture may repeat.
+constexpr double kMaxMisclosure = 0.2;
 // The direction of motion may be wrong by this much of the step, heights of the camera, as long as
 // nothing has told about the ground: few near landmarks have been seen by then.
 constexpr double kWideAside = 0.96;
@@ -154,6 +157,24 @@ void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
                                      .per_lens_distance = step->per_lens_distance,
                                      .lens_distance = step->lens_distance});
   }
+  const std::optional<double> misclosure = MisclosureOfSteps(*map, id);
+  if (misclosure && *misclosure > kMaxMisclosure) keyframe.ground_steps.pop_back();
+}
+
+std::optional<double> MisclosureOfSteps(const Map& map, KeyframeId id) {
+  const std::vector<GroundStepFrom>& steps = map.keyframe(id).ground_steps;
+  if (steps.size() < 2) return std::nullopt;
+  const GroundStepFrom& last = steps[0];
+  const GroundStepFrom& both = steps[1];
+  if (!map.HasKeyframe(last.keyframe) || !map.HasKeyframe(both.keyframe)) return std::nullopt;
+  const std::vector<GroundStepFrom>& steps_before = map.keyframe(last.keyframe).ground_steps;
+  const auto first = std::ranges::find(steps_before, both.keyframe, &GroundStepFrom::keyframe);
+  if (first == steps_before.end()) return std::nullopt;
+  // In the frame of the keyframe in between.
+  const Eigen::Quaterniond between_from_before =
+      map.PoseOf(last.keyframe).rotation.conjugate() * map.PoseOf(both.keyframe).rotation;
+  const Eigen::Vector3d sum = first->ratio * first->direction2 + last.ratio * last.direction1;
+  return (sum - both.ratio * (between_from_before * both.direction1)).norm() / both.ratio;
 }
 
 std::optional<Rigid3> PoseByStep(const GroundStepFrom& step, const Rigid3& from, const Rigid3& to,

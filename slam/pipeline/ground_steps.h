@@ -24,6 +24,11 @@ inline bool SeeksGround(const Map& map, bool has_ground) {
 void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
                         const cv::Mat& mask, Map* map);
 
+/// Returns how far the step to a keyframe from the one but last before it is from the sum of the
+/// two steps between, as a fraction of its length. These are three measurements of other pairs of
+/// images. Empty where one of them is missing.
+std::optional<double> MisclosureOfSteps(const Map& map, KeyframeId id);
+
 /// The pose of a keyframe as its step over the ground from another keyframe's pose shows it: moved
 /// and turned about the vertical. Empty where `to` agrees with the step within their errors.
 std::optional<Rigid3> PoseByStep(const GroundStepFrom& step, const Rigid3& from, const Rigid3& to,

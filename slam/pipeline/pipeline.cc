@@ -174,13 +174,18 @@ void Pipeline::Initialize(const PendingFrame& frame) {
 
 // --- result -----------------------------------------------------------------------------------
 
+void Pipeline::CloseFoundLoop() {
+  if (back_end_.is_adjusting()) AdoptAdjustment();
+  if (!atlas_.found_loop) return;
+  StartLoopCorrection();
+  AdoptMap();
+}
+
 void Pipeline::FinishMap() {
   if (dense_ && dense_->completion().pending()) AdoptDepth();
-  if (back_end_.is_adjusting()) AdoptAdjustment();
-  if (atlas_.found_loop) {  // The last keyframe has found it.
-    StartLoopCorrection();
-    AdoptMap();
-  }
+  CloseFoundLoop();
+  MapLastFrame();
+  CloseFoundLoop();
   if (atlas_.loops.empty() && atlas_.merges.empty()) return;
   // This adjustment includes the keyframes after the last loop.
   if (!back_end_.is_adjusting()) StartAdjustment();
@@ -207,7 +212,6 @@ ViewDepthReport Pipeline::ComputeDepth(const Reconstruction& finished,
 Reconstruction Pipeline::Finish(std::span<const PositionFix> positions) {
   for (const PositionFix& fix : positions) ORB360_CHECK(fix.IsValid(), fix.timestamp, fix.sigma);
   if (back_end_.has_map()) AdoptMap();
-  if (!atlas_.is_lent()) MapLastFrame();
   if (!atlas_.is_lent()) FinishMap();  // Otherwise a job has thrown, and its map is lost.
   atlas_.Finish();
   if (dense_) dense_->Flush();

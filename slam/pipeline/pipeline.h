@@ -57,7 +57,10 @@ class Pipeline {
   void Adopt(CorrectedLoop corrected);
   void AdoptAdjustment();
   void AdoptDepth();
-  /// Adopts all pending results, and adjusts the map once more where loops were closed.
+  /// Closes the loop that the newest keyframe has found, if it has.
+  void CloseFoundLoop();
+  /// Adopts all pending results, maps the last frame, and adjusts the map once more where loops
+  /// were closed.
   void FinishMap();
   void CorrectScale(std::span<const PositionFix> positions);
 

@@ -43,14 +43,9 @@ void Pipeline::Apply(const MapUpdate& update) {
 
 // Frames between keyframes are held by both. After the last keyframe nothing would hold them.
 void Pipeline::MapLastFrame() {
-  const FrontEnd::Tracking* tracking = front_end_.tracking();
-  if (keeps_map_ || tracking == nullptr) return;
+  if (keeps_map_ || front_end_.tracking() == nullptr || !front_end_.HasPyramid()) return;
   front_end_.UpdateLocalMap(&atlas_.map());
-  const Map& map = atlas_.map();
-  const auto is_last = [&](KeyframeId id) {
-    return map.keyframe(id).frame_index == tracking->last.index;
-  };
-  if (std::ranges::any_of(map.KeyframeIds(), is_last)) return;
+  if (!front_end_.HasMoved()) return;
   StartMapping({});
   AdoptMap();
 }

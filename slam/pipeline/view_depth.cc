@@ -125,13 +125,14 @@ std::map<int, double> PathLengths(std::span<const DenseView> views) {
 }  // namespace
 
 std::vector<size_t> ChooseStereoSources(std::span<const DenseView> views, size_t reference,
-                                        double median_range, const ViewDepthOptions& options) {
+                                        std::span<const size_t> neighbours, double median_range,
+                                        const ViewDepthOptions& options) {
   std::vector<size_t> chosen;
   for (const double baseline : options.baselines) {
     for (const bool is_after : {false, true}) {
       std::optional<size_t> best;
       double least = std::log(options.max_baseline_ratio);
-      for (const size_t i : views[reference].neighbours) {
+      for (const size_t i : neighbours) {
         if ((i > reference) != is_after || std::ranges::find(chosen, i) != chosen.end()) continue;
         const double distance = DistanceBetween(views[i], views[reference]);
         if (!(distance > 0)) continue;
@@ -146,7 +147,7 @@ std::vector<size_t> ChooseStereoSources(std::span<const DenseView> views, size_t
   return chosen;
 }
 
-ViewDepthReport ComputeDepth(std::span<const DenseView> views,
+ViewDepthReport ComputeDepth(std::span<const DenseView> views, const NeighbourFinder& neighbours_of,
                              const LandmarkProjector& landmarks_of, const ViewDepthOptions& options,
                              const ImageStore& images, DepthCompleter* completer, int num_threads,
                              const DepthMapStore& store, const ViewProgress& progress) {
@@ -158,28 +159,30 @@ ViewDepthReport ComputeDepth(std::span<const DenseView> views,
   ViewDepthReport report;
   bool uses_stereo = !options.baselines.empty();
   std::map<int, double> path_lengths = PathLengths(views);
-  const DenseView* last = nullptr;  // The last one that has got depth.
-  double range = 0;                 // Of its surroundings.
+  const DenseView* last = nullptr;  // The reference view before.
+  double range = 0;                 // Of its surroundings; 0: not known.
   for (int i = 0; i < count; ++i) {
     if (progress && !progress(i, count)) uses_stereo = false;
     const DenseView& view = views[i];
-    if (last != nullptr && last->map != view.map) last = nullptr;
+    if (last != nullptr && last->map != view.map) {
+      last = nullptr;
+      range = 0;
+    }
     const double spacing =
         std::min(options.spacing * range, path_lengths[view.map] / options.min_views);
     if (last != nullptr && DistanceBetween(view, *last) <= spacing) continue;
+    last = &view;
     const std::vector<SparsePoint> landmarks = landmarks_of(view);
     SparseDepth sparse = RenderSparseDepth(landmarks, completer->camera());
     const cv::Mat color = images.Get(view.frame_index);
-    if (last == nullptr) {
-      range = landmarks.empty() ? 0.0
-                                : TrustedRange(completer->Complete(color, sparse),
-                                               options.min_trusted_confidence);
+    if (!(range > 0) && !landmarks.empty()) {
+      range = TrustedRange(completer->Complete(color, sparse), options.min_trusted_confidence);
     }
     InverseRanges seen;
     bool is_measured = false;
     if (uses_stereo) {
       std::vector<StereoView> sources;
-      for (const size_t source : ChooseStereoSources(views, i, range, options)) {
+      for (const size_t source : ChooseStereoSources(views, i, neighbours_of(i), range, options)) {
         sources.push_back(stereo_view(views[source]));
       }
       if (static_cast<int>(sources.size()) < options.stereo.fusion.min_support) {
@@ -194,7 +197,6 @@ ViewDepthReport ComputeDepth(std::span<const DenseView> views,
         options.keeps_completed && static_cast<int>(landmarks.size()) >= options.min_points;
     if (!is_measured && !is_completed) continue;
     DenseDepth depth = completer->Complete(color, sparse);
-    last = &view;
     range = TrustedRange(depth, options.min_trusted_confidence);
     if (!options.baselines.empty()) Distrust(options.completion_error_factor, &depth);
     if (is_measured) TakeOver(seen, &depth);

@@ -47,10 +47,14 @@ struct ViewDepthOptions {
   SphericalStereoOptions stereo = {};
 };
 
-/// Returns those of the neighbours of a view from which its ranges are measured (ViewDepthOptions):
+/// Returns those of `neighbours` of a view from which its ranges are measured (ViewDepthOptions):
 /// indices into `views`, in the order of preference.
 std::vector<size_t> ChooseStereoSources(std::span<const DenseView> views, size_t reference,
-                                        double median_range, const ViewDepthOptions& options);
+                                        std::span<const size_t> neighbours, double median_range,
+                                        const ViewDepthOptions& options);
+
+/// Returns the views that see what a view sees: indices, ordered.
+using NeighbourFinder = std::function<std::vector<size_t>(size_t view)>;
 
 /// Returns the landmarks that a view sees (ProjectLandmarks), in the unit of its pose.
 using LandmarkProjector = std::function<std::vector<SparsePoint>(const DenseView& view)>;
@@ -58,10 +62,11 @@ using LandmarkProjector = std::function<std::vector<SparsePoint>(const DenseView
 /// Chooses reference views along the path by their distance over the range of the surroundings,
 /// computes their depth and puts it into `store`. Ranges are measured by multi-view stereo with the
 /// final poses of the views around them; the network completes the rest from these and from
-/// landmarks. What is seen is kept. After `progress` has returned false, the rest is left to the
-/// network. `views` are ordered by frame, and their images are in `images`. The result does not
-/// depend on the number of threads. Throws UserError where the disk fails.
-ViewDepthReport ComputeDepth(std::span<const DenseView> views,
+/// landmarks. What is seen is kept. A view that gets no depth counts for the distance like any
+/// other. After `progress` has returned false, the rest is left to the network. `views` are ordered
+/// by frame, and their images are in `images`. The result does not depend on the number of threads.
+/// Throws UserError where the disk fails.
+ViewDepthReport ComputeDepth(std::span<const DenseView> views, const NeighbourFinder& neighbours_of,
                              const LandmarkProjector& landmarks_of, const ViewDepthOptions& options,
                              const ImageStore& images, DepthCompleter* completer, int num_threads,
                              const DepthMapStore& store, const ViewProgress& progress = nullptr);

@@ -58,15 +58,20 @@ struct GroundStep {
   LensDistance lens_distance;
   /// Change of `ratio` with the distance between the lenses that is assumed.
   double per_lens_distance = 0;
-  double correlation = 0;  ///< Mean correlation of the tiles at the best ratio.
-  double rival = 0;        ///< Largest mean correlation at any other ratio that is a local maximum.
-  int num_tiles = 0;       ///< Number of tiles that agree.
+  /// Mean correlation of the tiles at the best ratio, of those straight below where only they show
+  /// it.
+  double correlation = 0;
+  double rival = 0;   ///< Largest mean correlation at any other ratio that is a local maximum.
+  int num_tiles = 0;  ///< Number of tiles that agree.
 };
 
 /// Measures how far a camera moved over flat ground between two images, relative to its height over
 /// the ground (the lead of Lovegrove, Davison, Ibanez-Guzman, IV 2011). Both images are rectified
 /// to the ground plane. In this bird's-eye view the step is a shift along the direction of motion,
 /// so that a sweep over the shift finds it without corners or descriptors, even on asphalt.
+///
+/// The height of the camera is that over the ground straight below it. Where that lies higher than
+/// the rest (a dam, a bridge), the tiles there tell the step. A camera that hardly moves has none.
 ///
 /// `camera1_from_camera2` gives the approximate rotation and direction of the motion; its length is
 /// not used. The ground also shows the rotation about its normal. `up` is the approximate normal of

@@ -168,5 +168,19 @@ TEST(MeasureGroundSteps, FindsAStepInAnotherDirectionThanTrackedWhileNoGroundIsK
       0.03);
 }
 
+TEST(MeasureGroundSteps, DropsTheLongerStepWhereItContradictsTheSumOfTheOthers) {
+  Map map = Drive(3, 1.0, Scaled(Asphalt(6)));
+  MeasureGroundSteps(1, std::nullopt, {}, &map);
+  MeasureGroundSteps(2, std::nullopt, {}, &map);
+  ASSERT_EQ(map.keyframe(2).ground_steps.size(), 2u);
+  EXPECT_LT(MisclosureOfSteps(map, 2).value(), 0.02);
+  map.keyframe(2).ground_steps.clear();
+  map.keyframe(1).ground_steps.front().ratio *= 1.5;  // as if on a repeated texture
+  MeasureGroundSteps(2, std::nullopt, {}, &map);
+  ASSERT_EQ(map.keyframe(2).ground_steps.size(), 1u);
+  EXPECT_EQ(map.keyframe(2).ground_steps.front().keyframe, 1);
+  EXPECT_FALSE(MisclosureOfSteps(map, 2));
+}
+
 }  // namespace
 }  // namespace orb360

@@ -32,14 +32,17 @@ std::vector<DenseView> ViewsAt(const std::vector<double>& places) {
 TEST(ChooseStereoSources, TakesTheNearestToEachBaselineOnBothSides) {
   const std::vector<DenseView> views = ViewsAt({-5, -1.4, -0.5, -0.02, 0, 0.02, 0.5, 1.4, 5});
   const ViewDepthOptions options{.baselines = {0.1, 0.3}, .max_baseline_ratio = 2.0};
-  EXPECT_EQ(ChooseStereoSources(views, 4, 5.0, options), (std::vector<size_t>{2, 6, 1, 7}));
-  EXPECT_EQ(ChooseStereoSources(views, 0, 5.0, options), std::vector<size_t>{});
+  EXPECT_EQ(ChooseStereoSources(views, 4, views[4].neighbours, 5.0, options),
+            (std::vector<size_t>{2, 6, 1, 7}));
+  EXPECT_EQ(ChooseStereoSources(views, 0, views[0].neighbours, 5.0, options),
+            std::vector<size_t>{});
 }
 
 TEST(ChooseStereoSources, TakesNoViewFromTheSamePlaceNorOneThatSeesNothingOfIt) {
   std::vector<DenseView> views = ViewsAt({0, 0, 0.5, 0.6});
   views[0].neighbours = {1, 3};
-  EXPECT_EQ(ChooseStereoSources(views, 0, 5.0, {.baselines = {0.1, 0.12}}), std::vector<size_t>{3});
+  EXPECT_EQ(ChooseStereoSources(views, 0, views[0].neighbours, 5.0, {.baselines = {0.1, 0.12}}),
+            std::vector<size_t>{3});
 }
 
 class ComputeDepthTest : public testing::Test {
@@ -55,8 +58,9 @@ class ComputeDepthTest : public testing::Test {
                           const ViewProgress& progress = nullptr) {
     for (const DenseView& view : views) Show(view.frame_index, view.world_from_camera);
     return ComputeDepth(
-        views, [this](const DenseView&) { return landmarks_; }, options, images_, &completer_, 2,
-        store_, progress);
+        views, [&views](size_t view) { return views[view].neighbours; },
+        [this](const DenseView&) { return landmarks_; }, options, images_, &completer_, 2, store_,
+        progress);
   }
 
   // Stores an image of the room.
@@ -129,10 +133,18 @@ TEST_F(ComputeDepthTest, ReferenceViewsKeepTheirDistanceAndTheOthersAreSources) 
 }
 
 TEST_F(ComputeDepthTest, AShortPathHasEnoughReferenceViewsToo) {
-  Compute(ViewsAt({0, 0.1, 0.2, 0.3, 0.4}), {.spacing = 1.0, .min_views = 4});
-  for (int frame_index = 0; frame_index < 50; frame_index += 20) {
-    EXPECT_TRUE(store_.Contains(frame_index)) << frame_index;
-  }
+  Compute(ViewsAt({0, 0.11, 0.2, 0.31, 0.44}), {.spacing = 1.0, .min_views = 3});
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(store_.Contains(10 * i), i % 2 == 0) << i;
+}
+
+TEST_F(ComputeDepthTest, WhereNothingTellsDepthViewsAreNotTriedOneByOne) {
+  const std::vector<DenseView> views = ViewsAt({0, 0.3, 0.6, 0.9, 1.2, 1.5});
+  landmarks_.resize(49);
+  // With no texture asked for, each view that is tried is counted.
+  const ViewDepthReport report =
+      Compute(views, {.spacing = 0.15, .min_views = 1, .min_fraction = 1.1});
+  EXPECT_EQ(report.unseen + report.without_sources, 3);
+  EXPECT_FALSE(store_.Contains(0));
 }
 
 TEST_F(ComputeDepthTest, ACameraThatTurnsOnTheSpotHasOneReferenceViewInEachMap) {

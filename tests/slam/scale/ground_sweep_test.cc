@@ -67,6 +67,23 @@ TEST(MeasureGroundStep, AboveADamTheHeightIsThatOverItsTop) {
   }
 }
 
+TEST(MeasureGroundStep, OnATextureThatRepeatsAShortStepIsNotThePeriod) {
+  const Asphalt asphalt(13);
+  const Asphalt dirt(14);
+  constexpr double kPeriod = 1.1;  // heights
+  const auto wrapped = [](double x) { return x - kPeriod * std::floor(x / kPeriod); };
+  const Ground tiles = [&](const Eigen::Vector2d& place) {
+    // Lattices along the motion, so that the period lies along it.
+    const Eigen::Vector2d turned(0.8 * place.x() - 0.6 * place.y(),
+                                 0.6 * place.x() + 0.8 * place.y());
+    return 0.5 * (asphalt({wrapped(turned.x()), wrapped(turned.y())}) + dirt(place));
+  };
+  const auto found = Measure(tiles, 0.14);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(std::log(found->ratio / 0.14), 0.0, 0.03);
+  EXPECT_FALSE(Measure(tiles, 0.004));
+}
+
 TEST(MeasureGroundStep, AnErrorOfTheNormalCancels) {
   const Asphalt asphalt(2);
   for (const Eigen::Vector3d& error : {Eigen::Vector3d(0.05, 0, 0), Eigen::Vector3d(0, -0.05, 0),

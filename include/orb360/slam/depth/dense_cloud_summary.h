@@ -6,7 +6,7 @@ namespace orb360 {
 
 /// Statistics of the fusion of depth maps into a cloud.
 struct DenseCloudStatistics {
-  int views = 0;  ///< Number of keyframes whose depth was fused.
+  int views = 0;  ///< Number of views whose depth was fused.
   /// Number of pixels whose points were geometrically consistent, before fusion in voxels.
   std::int64_t consistent = 0;
   double voxel_size = 0;  ///< Side of the voxels, world units.

@@ -6,7 +6,7 @@
 
 namespace orb360 {
 
-/// Completed depth of a keyframe: equirectangular images of one size.
+/// Dense depth of a frame: equirectangular images of one size.
 struct DenseDepth {
   /// CV_32FC1: range along each pixel's ray, in the unit of the map; 0 where unknown.
   cv::Mat range;

@@ -10,7 +10,7 @@ namespace orb360 {
 
 class DepthMapStore;
 
-/// Fuses the depth of all keyframes into one cloud (FuseCloud) and writes it as PLY
+/// Fuses the depth of all views into one cloud (FuseCloud) and writes it as PLY
 /// (SurfacePlyWriter), in the world to which `target_from_world` transforms. `depth_maps` are those
 /// of the system that made the reconstruction. Throws UserError where the disk fails.
 DenseCloudSummary WriteDenseCloud(const std::filesystem::path& path,

@@ -18,7 +18,7 @@ struct DepthOptions {
   int height = 512;
   /// Least distance between two views that get depth, divided by the median range of the
   /// surroundings. They are chosen among all frames, apart from the keyframes of mapping. 0: every
-  /// frame whose image is kept.
+  /// frame whose image is kept, but of those at one place only the first.
   double view_spacing = 0.25;
   /// Least number of landmarks that a view shows. One with fewer is completed only where stereo has
   /// measured a part of it.
