@@ -1,12 +1,13 @@
 // How well stereo on the sphere measures ranges: against true poses and depth.
 //
-//   stereo_accuracy SEQUENCE [--images DIR] [--opencv] [GAP...]
+//   stereo_accuracy SEQUENCE [--images DIR] [--opencv] [--avx2] [GAP...]
 //
 // For the frames of a sequence folder with true depth and the frames GAP after each [1 -1 2 -2]:
 // how much of what has texture and is nearer than 30 m gets a range, by solid angle, and how large
 // its errors are. --images: writes the image, the true ranges and the measured ones below each
 // other, as colours of the logarithm of 0.5 to 50 m, and the errors. --opencv: the same with the
-// semi-global matcher of OpenCV on the same rectified images, for comparison.
+// semi-global matcher of OpenCV on the same rectified images, for comparison. --avx2: without
+// AVX-512, for the time on a processor that has none; OpenCV goes on using it.
 
 #include <algorithm>
 #include <chrono>
@@ -21,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include <hwy/targets.h>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -188,8 +190,9 @@ void Measure(const fs::path& sequence, const std::optional<fs::path>& images, bo
 }
 
 constexpr char kUsage[] =
-    "usage: stereo_accuracy SEQUENCE [--images DIR] [--opencv] [GAP...]\n"
-    "SEQUENCE: folder with rgb/, depth/ and groundtruth.txt; --opencv: OpenCV's matcher;\n"
+    "usage: stereo_accuracy SEQUENCE [--images DIR] [--opencv] [--avx2] [GAP...]\n"
+    "SEQUENCE: folder with rgb/, depth/ and groundtruth.txt; --opencv: OpenCV's matcher; --avx2:\n"
+    "without AVX-512;\n"
     "GAP: frames from a reference view to a source view, two or more, not 0 [1 -1 2 -2]\n";
 
 }  // namespace
@@ -207,6 +210,10 @@ int main(int argc, char** argv) {
     }
     if (arguments[i] == "--opencv") {
       uses_opencv = true;
+      continue;
+    }
+    if (arguments[i] == "--avx2") {
+      hwy::DisableTargets(HWY_AVX2 - 1);  // a better set of instructions has a lower bit
       continue;
     }
     gaps.push_back(std::atoi(arguments[i].c_str()));

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <opencv2/imgproc.hpp>
@@ -76,18 +77,19 @@ void ComputeTerms(const float* first, const float* second, const float* disparit
 }
 
 // The mean of the disparities in the window around each pixel of a row that differ by at most
-// `max_difference` from its own. `rows` have margins.
-void SmoothRow(const std::array<const float*, kSide>& rows, float max_difference, int width,
+// `max_difference` from its own. `rows` are those of the window, and have margins.
+void SmoothRow(std::span<const float* const> rows, float max_difference, int width,
                float* smoothed) {
+  const int radius = static_cast<int>(rows.size()) / 2;
   const DF d;
   const VF zero = hn::Zero(d);
   const VF limit = hn::Set(d, max_difference);
   for (int x = 0; x < width; x += static_cast<int>(hn::Lanes(d))) {
-    const VF center = hn::LoadU(d, rows[kRadius] + x);
+    const VF center = hn::LoadU(d, rows[radius] + x);
     VF sum = zero;
     VF count = zero;
     for (const float* row : rows) {
-      for (int i = -kRadius; i <= kRadius; ++i) {
+      for (int i = -radius; i <= radius; ++i) {
         const VF other = hn::LoadU(d, row + x + i);
         const auto is_near =
             hn::And(hn::Ge(other, zero), hn::Le(hn::Abs(hn::Sub(other, center)), limit));
@@ -167,18 +169,18 @@ HWY_EXPORT(ComputeTerms);
 HWY_EXPORT(RefineRow);
 HWY_EXPORT(SmoothRow);
 
-// Smooths disparities, which have margins.
-cv::Mat Smooth(const cv::Mat& disparity, const DisparityRefinementOptions& options) {
+// Smooths disparities, which have margins, in windows of the given radius.
+cv::Mat Smooth(const cv::Mat& disparity, const DisparityRefinementOptions& options, int radius) {
   const int height = disparity.rows;
   cv::Mat smoothed = disparity.clone();
   for (int y = 0; y < height; ++y) {
     std::array<const float*, kSide> rows;
-    for (int i = 0; i < kSide; ++i) {
-      rows[i] = disparity.ptr<float>((y + i - kRadius + height) % height) + kMargin;
+    for (int i = 0; i < 2 * radius + 1; ++i) {
+      rows[i] = disparity.ptr<float>((y + i - radius + height) % height) + kMargin;
     }
     HWY_DYNAMIC_DISPATCH(SmoothRow)
-    (rows, static_cast<float>(options.max_difference), disparity.cols - 2 * kMargin,
-     smoothed.ptr<float>(y) + kMargin);
+    (std::span(rows).first(2 * radius + 1), static_cast<float>(options.max_difference),
+     disparity.cols - 2 * kMargin, smoothed.ptr<float>(y) + kMargin);
   }
   return smoothed;
 }
@@ -213,7 +215,8 @@ RefinedDisparities RefineDisparities(const cv::Mat& first, const cv::Mat& second
   for (TermRow& row : terms) clear(&row);
   clear(&column_sums);
   for (int step = 0; step < options.num_steps; ++step) {
-    present = Smooth(present, options);
+    // The first step has removed most of what rounding has made.
+    present = Smooth(present, options, step == 0 ? kRadius : 1);
     present.copyTo(next);
     for (int i = 0; i < height + 2 * kRadius; ++i) {
       const int y = (i - kRadius + height) % height;

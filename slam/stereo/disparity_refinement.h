@@ -8,9 +8,9 @@ struct DisparityRefinementOptions {
   /// Number of Gauss-Newton steps, and the largest change of a disparity in one, pixels.
   int num_steps = 2;
   double max_step = 0.5;
-  /// Largest difference from a pixel's disparity of those in its window with which it is averaged
-  /// before each step, pixels. A step moves all pixels of a window alike and would leave the
-  /// differences that rounding has made.
+  /// Largest difference from a pixel's disparity of those of its neighbours with which it is
+  /// averaged before each step, pixels. A step moves all pixels of a window alike and would leave
+  /// the differences that rounding has made.
   double max_difference = 1.0;
   /// Standard deviation of a gray value, levels, in addition to what a window shows.
   double gray_sigma = 2.0;

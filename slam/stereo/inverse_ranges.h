@@ -19,7 +19,7 @@ struct InverseRangeFusionOptions {
   int min_support = 2;
   double max_sigmas = 3.0;
   /// Largest standard deviation of ln(range). Farther points are unknown.
-  double max_sigma = 0.055;
+  double max_sigma = 0.054;
 };
 
 /// Joins measurements of the same pixels from several sources: the largest set that agrees,

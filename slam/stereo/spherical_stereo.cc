@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "slam/stereo/rectified_sphere.h"
@@ -10,47 +9,6 @@
 
 namespace orb360 {
 namespace {
-
-// The inverse ranges of the pixels of a rectified sphere, from the sine rule in the triangle of
-// both cameras, `length` apart, and the point.
-InverseRanges TriangulateDisparities(const RefinedDisparities& disparities, double length,
-                                     const SphericalStereoOptions& options) {
-  const cv::Size size = disparities.disparity.size();
-  const double pixel_angle = std::numbers::pi / size.width;
-  InverseRanges ranges{cv::Mat(size, CV_32F), cv::Mat(size, CV_32F)};
-  std::vector<float> cosines(size.width);
-  std::vector<float> sines(size.width);
-  for (int x = 0; x < size.width; ++x) {
-    cosines[x] = static_cast<float>(std::cos((x + 0.5) * pixel_angle));
-    sines[x] = static_cast<float>(std::sin((x + 0.5) * pixel_angle));
-  }
-  const auto least_sine = static_cast<float>(std::sin(options.min_epipolar_angle));
-  const auto least_sigma = static_cast<float>(options.min_disparity_sigma);
-  const auto spread_factor = static_cast<float>(options.disparity_sigma_factor);
-  const auto scale = static_cast<float>(pixel_angle * length);
-  for (int y = 0; y < size.height; ++y) {
-    const float* disparity = disparities.disparity.ptr<float>(y);
-    const float* sigma = disparities.sigma.ptr<float>(y);
-    float* value = ranges.value.ptr<float>(y);
-    float* deviation = ranges.sigma.ptr<float>(y);
-    for (int x = 0; x < size.width; ++x) {
-      value[x] = deviation[x] = 0;
-      if (disparity[x] < 0 || sines[x] < least_sine) continue;
-      const float angle = disparity[x] * static_cast<float>(pixel_angle);
-      const float sine = std::sin(angle);
-      const float across = sines[x] * std::cos(angle) + cosines[x] * sine;  // at the source view
-      if (across < least_sine) continue;
-      const float distance = across * static_cast<float>(length);
-      value[x] = sine / distance;
-      // Rows are nearer to each other towards the epipoles, so that a window there has fewer
-      // independent pixels.
-      const float spread = std::hypot(least_sigma, spread_factor * sigma[x] / std::sqrt(sines[x]));
-      // The derivative by the disparity.
-      deviation[x] = spread * scale * sines[x] / (distance * distance);
-    }
-  }
-  return ranges;
-}
 
 // The power of two that is nearest to half of a panorama's width, by ratio.
 int StereoWidth(int panorama_width) {
@@ -87,8 +45,8 @@ InverseRanges MatchSphere(const StereoView& reference, const StereoView& source,
           ? options.matcher(first, second)
           : RefineDisparities(first, second, MatchSemiGlobally(first, second, options.matching),
                               options.refinement);
-  return UnrectifySphere(TriangulateDisparities(disparities, length, options), reference_axes,
-                         reference.gray.size());
+  return UnrectifySphere(TriangulateDisparities(disparities, length, options.triangulation),
+                         reference_axes, reference.gray.size());
 }
 
 InverseRanges MatchSpheres(const StereoView& reference, std::span<const StereoView> sources,

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "slam/stereo/disparity_refinement.h"
+#include "slam/stereo/disparity_triangulation.h"
 #include "slam/stereo/inverse_ranges.h"
 #include "slam/stereo/semi_global_matching.h"
 #include <orb360/slam/geometry/rigid3.h>
@@ -25,14 +26,7 @@ using DisparityMatcher =
 struct SphericalStereoOptions {
   SemiGlobalMatchingOptions matching;
   DisparityRefinementOptions refinement;
-  /// Least angle between a bearing and the baseline, rad: towards the epipoles there is no
-  /// parallax.
-  double min_epipolar_angle = 0.1;
-  /// Standard deviation of a disparity: this one, pixels, for what resampling does, and that of the
-  /// refinement times this factor, because neighbouring pixels of a window are not independent.
-  /// Both were measured with stereo_accuracy.
-  double min_disparity_sigma = 0.15;
-  double disparity_sigma_factor = 1.8;
+  DisparityTriangulationOptions triangulation;
   InverseRangeFusionOptions fusion;
   /// Takes the place of MatchSemiGlobally and RefineDisparities, for comparisons. May be null.
   DisparityMatcher matcher = {};

@@ -105,9 +105,9 @@ TEST(MatchSphere, StatesNoErrorBelowTheLeastOne) {
   const StereoView reference = ViewFrom(kRoom, kReference);
   const StereoView source = SourceAt({0.15, 0.2, 0.02});
   SphericalStereoOptions options;
-  options.min_disparity_sigma = 0;
+  options.triangulation.min_disparity_sigma = 0;
   const InverseRanges usual = MatchSphere(reference, source, options);
-  options.min_disparity_sigma = 5;
+  options.triangulation.min_disparity_sigma = 5;
   const InverseRanges coarse = MatchSphere(reference, source, options);
   const cv::Mat is_known = usual.sigma > 0;
   ASSERT_GT(cv::countNonZero(is_known), 10000);
