@@ -129,10 +129,17 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
   try {
     // After an interrupt the rest of the views are left to the network.
     Progress progress(std::nullopt, options.is_quiet);
-    record->depth = system->ComputeDepth(reconstruction, [&](int done, int count) {
+    ViewDepthCallbacks callbacks;
+    callbacks.progress = [&](int done, int count) {
       progress.Update("computing depth", done, count, "frames");
       return CaughtInterrupt() == 0;
-    });
+    };
+    if (options.saves_sparse) {
+      callbacks.sink = [folder = MakeSparseFolder(output.folder())](const SparseSample& sample) {
+        WriteSparseView(folder, sample);
+      };
+    }
+    record->depth = system->ComputeDepth(reconstruction, callbacks);
     const bool has_depth = std::ranges::any_of(reconstruction.frames, [&](const FramePose& frame) {
       return system->depth_maps()->Contains(frame.index);
     });
@@ -267,8 +274,8 @@ int Run(const RunOptions& options) {
   if (!options.map_out.empty()) {
     WriteLargestMap(options.map_out, size.width, file_world_from_map, system);
   }
-  if (options.saves_sparse) {
-    WriteSparseKeyframes(output.folder() / "sparse", system.maps(),
+  if (options.saves_sparse && options.weights == "none") {
+    WriteSparseKeyframes(MakeSparseFolder(output.folder()), system.maps(),
                          OpenInput(options.input, sequence_options).get());
   }
   if (!options.is_quiet) PrintResult(summary, output.folder());
@@ -359,8 +366,11 @@ void AddRunCommand(CLI::App* app, Command* chosen) {
       ->check(CLI::IsMember({"on", "off"}))
       ->type_name("on|off")
       ->capture_default_str();
-  command->add_flag("--save-sparse", options->saves_sparse,
-                    "Also write each keyframe with its sparse depth to DIR/sparse (HDF5)");
+  command->add_flag(
+      "--save-sparse", options->saves_sparse,
+      "Also write to DIR/sparse (HDF5) what the network completes: the image of each view "
+      "with points from landmarks and stereo; with --weights none each keyframe with "
+      "its landmarks");
   command->add_flag(
       "--save-depth", options->saves_depth,
       "Also write the dense depth of each view to DIR/depth (16-bit PNG, metres * 256)");

@@ -16,13 +16,21 @@ struct KeyframeOfMap {
   KeyframeId id;
 };
 
-std::filesystem::path SampleName(int frame_index) {
-  char name[32];
-  std::snprintf(name, sizeof name, "%06d.h5", frame_index);
-  return name;
+}  // namespace
+
+std::filesystem::path MakeSparseFolder(const std::filesystem::path& folder) {
+  const std::filesystem::path sparse = folder / "sparse";
+  std::error_code error;
+  std::filesystem::create_directories(sparse, error);
+  if (error) ThrowWriteError(sparse, error.value());
+  return sparse;
 }
 
-}  // namespace
+void WriteSparseView(const std::filesystem::path& folder, const SparseSample& sample) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06d.h5", sample.frame_index);
+  WriteSparseSample(folder / name, sample);
+}
 
 void WriteSparseKeyframes(const std::filesystem::path& folder, std::span<const Map> maps,
                           Sequence* sequence) {
@@ -35,10 +43,6 @@ void WriteSparseKeyframes(const std::filesystem::path& folder, std::span<const M
       keyframes.insert({map.keyframe(id).frame_index, {&map, id}});
     }
   }
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) ThrowWriteError(folder, error.value());
-
   const cv::Size size = sequence->image_size();
   const EquirectangularCamera camera(size.width, size.height);
   for (auto next = keyframes.begin(); next != keyframes.end();) {
@@ -47,10 +51,9 @@ void WriteSparseKeyframes(const std::filesystem::path& folder, std::span<const M
     if (frame->index != next->first) continue;
     const auto [map, id] = next->second;
     const Keyframe& keyframe = map->keyframe(id);
-    WriteSparseSample(
-        folder / SampleName(frame->index),
-        {frame->image, RenderSparseDepth(ProjectLandmarks(*map, id, camera, {}), camera),
-         frame->index, keyframe.timestamp, keyframe.world_from_camera});
+    WriteSparseView(
+        folder, {frame->image, RenderSparseDepth(ProjectLandmarks(*map, id, camera, {}), camera),
+                 frame->index, keyframe.timestamp, keyframe.world_from_camera});
     ++next;
   }
 }

@@ -8,8 +8,17 @@
 
 namespace orb360 {
 
+struct SparseSample;
+
+/// Returns `folder`/sparse, which is created. Throws UserError where that fails.
+std::filesystem::path MakeSparseFolder(const std::filesystem::path& folder);
+
+/// Writes what the network completes to `folder`/000123.h5, named by the frame index
+/// (WriteSparseSample). Throws UserError where the file cannot be written.
+void WriteSparseView(const std::filesystem::path& folder, const SparseSample& sample);
+
 /// Writes the image of every keyframe with its sparse ranges and their confidence to
-/// `folder`/000123.h5, named by the frame index (WriteSparseSample). `sequence` is the input of the
+/// `folder` in the same way. `sequence` is the input of the
 /// run, opened again because a run does not keep its images. Throws UserError where a file cannot
 /// be written.
 void WriteSparseKeyframes(const std::filesystem::path& folder, std::span<const Map> maps,

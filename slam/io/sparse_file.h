@@ -18,7 +18,7 @@ struct SparseSample {
   Rigid3 world_from_camera;  // map frame and units, camera -X forward
 };
 
-/// Writes one HDF5 file (docs/formats/sparse_keyframe.md): datasets `image` (height x width x 3,
+/// Writes one HDF5 file (docs/formats/sparse_depth.md): datasets `image` (height x width x 3,
 /// uint8, RGB), `range` and `confidence` (height x width, float32, 0 = no point; range along the
 /// ray in the map's units), and attributes `frame_index`, `timestamp` and `world_from_camera` (tx
 /// ty tz qx qy qz qw). Throws UserError if the file cannot be written; no partial file remains.

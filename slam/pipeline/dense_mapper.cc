@@ -1,9 +1,11 @@
 #include "slam/pipeline/dense_mapper.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <map>
 
+#include "slam/io/sparse_file.h"
 #include "slam/pipeline/dense_views.h"
 #include "slam/pipeline/view_depth.h"
 #include <orb360/nn/base/check.h>
@@ -42,7 +44,7 @@ void DenseMapper::Flush() {
 }
 
 ViewDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished, std::span<const Map> maps,
-                                          const ViewProgress& progress) {
+                                          const ViewDepthCallbacks& callbacks) {
   if (failure()) return {};
   std::vector<std::map<int, KeyframeId>> id_of(maps.size());  // by frame index
   for (size_t m = 0; m < maps.size(); ++m) {
@@ -62,9 +64,18 @@ ViewDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished, std::s
                            .min_points = options_.min_points,
                            .keeps_completed = options_.completion};
   if (!options_.stereo) options.baselines.clear();
+  ViewDepthCallbacks timed = callbacks;
+  if (callbacks.sink) {
+    timed.sink = [&](SparseSample sample) {
+      sample.timestamp =
+          std::ranges::lower_bound(finished.frames, sample.frame_index, {}, &FramePose::index)
+              ->timestamp;
+      callbacks.sink(sample);
+    };
+  }
   try {
     return orb360::ComputeDepth(covisible.views(), neighbours_of, landmarks_of, options,
-                                images_.store(), &completer_, num_threads_, depth_maps_, progress);
+                                images_.store(), &completer_, num_threads_, depth_maps_, timed);
   } catch (const UserError&) {
     images_.Clear();
     throw;

@@ -38,7 +38,7 @@ class DenseMapper {
   /// poses and landmarks of `finished` and its `maps` (orb360::ComputeDepth). Nothing happens after
   /// a failure. Throws UserError where the disk fails. Contract: Flush has been called.
   ViewDepthReport ComputeDepth(const Reconstruction& finished, std::span<const Map> maps,
-                               const ViewProgress& progress);
+                               const ViewDepthCallbacks& callbacks);
 
   const DepthMapStore& depth_maps() const { return depth_maps_; }
   /// The error because of which images could not be stored (KeptImages::failure).

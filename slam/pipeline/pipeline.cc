@@ -205,8 +205,8 @@ void Pipeline::CorrectScale(std::span<const PositionFix> positions) {
 }
 
 ViewDepthReport Pipeline::ComputeDepth(const Reconstruction& finished,
-                                       const ViewProgress& progress) {
-  return dense_ ? dense_->ComputeDepth(finished, atlas_.maps(), progress) : ViewDepthReport();
+                                       const ViewDepthCallbacks& callbacks) {
+  return dense_ ? dense_->ComputeDepth(finished, atlas_.maps(), callbacks) : ViewDepthReport();
 }
 
 Reconstruction Pipeline::Finish(std::span<const PositionFix> positions) {

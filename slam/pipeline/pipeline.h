@@ -29,7 +29,7 @@ class Pipeline {
   void EnableDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
   FrameReport Process(const Frame& frame);
   Reconstruction Finish(std::span<const PositionFix> positions);
-  ViewDepthReport ComputeDepth(const Reconstruction& finished, const ViewProgress& progress);
+  ViewDepthReport ComputeDepth(const Reconstruction& finished, const ViewDepthCallbacks& callbacks);
 
   const Atlas& atlas() const { return atlas_; }
   const std::optional<DenseMapper>& dense() const { return dense_; }

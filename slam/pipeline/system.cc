@@ -34,8 +34,9 @@ std::span<const std::optional<KnownGround>> System::grounds() const {
   return pipeline_->atlas().grounds();
 }
 
-ViewDepthReport System::ComputeDepth(const Reconstruction& finished, const ViewProgress& progress) {
-  return pipeline_->ComputeDepth(finished, progress);
+ViewDepthReport System::ComputeDepth(const Reconstruction& finished,
+                                     const ViewDepthCallbacks& callbacks) {
+  return pipeline_->ComputeDepth(finished, callbacks);
 }
 
 const DepthMapStore* System::depth_maps() const {

@@ -6,6 +6,8 @@
 #include <map>
 #include <optional>
 
+#include "slam/io/sparse_file.h"
+
 namespace orb360 {
 namespace {
 
@@ -150,7 +152,7 @@ std::vector<size_t> ChooseStereoSources(std::span<const DenseView> views, size_t
 ViewDepthReport ComputeDepth(std::span<const DenseView> views, const NeighbourFinder& neighbours_of,
                              const LandmarkProjector& landmarks_of, const ViewDepthOptions& options,
                              const ImageStore& images, DepthCompleter* completer, int num_threads,
-                             const DepthMapStore& store, const ViewProgress& progress) {
+                             const DepthMapStore& store, const ViewDepthCallbacks& callbacks) {
   GrayImages gray(images);
   const auto stereo_view = [&](const DenseView& view) {
     return StereoView{gray.Get(view.frame_index), view.world_from_camera};
@@ -162,7 +164,7 @@ ViewDepthReport ComputeDepth(std::span<const DenseView> views, const NeighbourFi
   const DenseView* last = nullptr;  // The reference view before.
   double range = 0;                 // Of its surroundings; 0: not known.
   for (int i = 0; i < count; ++i) {
-    if (progress && !progress(i, count)) uses_stereo = false;
+    if (callbacks.progress && !callbacks.progress(i, count)) uses_stereo = false;
     const DenseView& view = views[i];
     if (last != nullptr && last->map != view.map) {
       last = nullptr;
@@ -196,6 +198,8 @@ ViewDepthReport ComputeDepth(std::span<const DenseView> views, const NeighbourFi
     const bool is_completed =
         options.keeps_completed && static_cast<int>(landmarks.size()) >= options.min_points;
     if (!is_measured && !is_completed) continue;
+    if (callbacks.sink)
+      callbacks.sink({color, sparse, view.frame_index, 0.0, view.world_from_camera});
     DenseDepth depth = completer->Complete(color, sparse);
     range = TrustedRange(depth, options.min_trusted_confidence);
     if (!options.baselines.empty()) Distrust(options.completion_error_factor, &depth);

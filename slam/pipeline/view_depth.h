@@ -63,12 +63,12 @@ using LandmarkProjector = std::function<std::vector<SparsePoint>(const DenseView
 /// computes their depth and puts it into `store`. Ranges are measured by multi-view stereo with the
 /// final poses of the views around them; the network completes the rest from these and from
 /// landmarks. What is seen is kept. A view that gets no depth counts for the distance like any
-/// other. After `progress` has returned false, the rest is left to the network. `views` are ordered
-/// by frame, and their images are in `images`. The result does not depend on the number of threads.
-/// Throws UserError where the disk fails.
+/// other. After the progress has returned false, the rest is left to the network. `views` are
+/// ordered by frame, and their images are in `images`. The result does not depend on the number of
+/// threads. Throws UserError where the disk fails.
 ViewDepthReport ComputeDepth(std::span<const DenseView> views, const NeighbourFinder& neighbours_of,
                              const LandmarkProjector& landmarks_of, const ViewDepthOptions& options,
                              const ImageStore& images, DepthCompleter* completer, int num_threads,
-                             const DepthMapStore& store, const ViewProgress& progress = nullptr);
+                             const DepthMapStore& store, const ViewDepthCallbacks& callbacks = {});
 
 }  // namespace orb360

@@ -84,7 +84,7 @@ TEST_F(RunTest, WithANetworkTheCloudIsDenseAndTheSameForAnyNumberOfThreads) {
   const std::vector<std::string> dense = {"--weights", folder_ / "net.h5", "--config",
                                           folder_ / "dense.yaml"};
   std::vector<std::string> options = dense;
-  options.emplace_back("--save-depth");
+  options.insert(options.end(), {"--save-depth", "--save-sparse"});
   const ProgramResult result = Run(options);
   ASSERT_EQ(result.status, 0) << result.err;
   const std::vector<SurfacePoint> points = ReadSurfacePly(OutFile("cloud.ply"));
@@ -96,6 +96,12 @@ TEST_F(RunTest, WithANetworkTheCloudIsDenseAndTheSameForAnyNumberOfThreads) {
     return std::distance(std::filesystem::directory_iterator(folder), {});
   };
   EXPECT_EQ(files(OutFile("depth")), summary["cloud"]["views"].get<int>());
+  EXPECT_EQ(files(OutFile("sparse")), summary["cloud"]["views"].get<int>());
+  for (const auto& entry : std::filesystem::directory_iterator(OutFile("sparse"))) {
+    const SparseSample sample = ReadSparseSample(entry.path());
+    EXPECT_GT(cv::countNonZero(sample.sparse.range), 50) << entry.path();
+    EXPECT_NEAR(sample.timestamp, sample.frame_index / 30.0, 1e-3) << entry.path();
+  }
   EXPECT_TRUE(std::filesystem::exists(OutFile("report") / "cloud.png"));
   EXPECT_FALSE(std::filesystem::exists(OutFile("depth.tmp")));
   EXPECT_FALSE(std::filesystem::exists(OutFile("cloud.ply.voxels")));

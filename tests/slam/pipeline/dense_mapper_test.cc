@@ -36,7 +36,7 @@ TEST_F(DenseMapperTest, AfterAFailureThereIsNoDepth) {
   mapper.Flush();
   ASSERT_NE(mapper.failure(), nullptr);
   EXPECT_THROW(std::rethrow_exception(mapper.failure()), UserError);
-  EXPECT_EQ(mapper.ComputeDepth({}, {}, nullptr).measured, 0);
+  EXPECT_EQ(mapper.ComputeDepth({}, {}, {}).measured, 0);
 }
 
 TEST_F(DenseMapperTest, TellsTheGroundFromTenAgreeingKeyframesOnly) {

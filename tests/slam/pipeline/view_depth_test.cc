@@ -55,12 +55,12 @@ class ComputeDepthTest : public testing::Test {
 
   ViewDepthReport Compute(const std::vector<DenseView>& views,
                           const ViewDepthOptions& options = kAll,
-                          const ViewProgress& progress = nullptr) {
+                          const ViewDepthCallbacks& callbacks = {}) {
     for (const DenseView& view : views) Show(view.frame_index, view.world_from_camera);
     return ComputeDepth(
         views, [&views](size_t view) { return views[view].neighbours; },
         [this](const DenseView&) { return landmarks_; }, options, images_, &completer_, 2, store_,
-        progress);
+        callbacks);
   }
 
   // Stores an image of the room.
@@ -170,7 +170,7 @@ TEST_F(ComputeDepthTest, AnInterruptLeavesTheRestToTheNetwork) {
     done.push_back(number);
     return number < 2;
   };
-  EXPECT_EQ(Compute(views, kAll, two_of_four).measured, 2);
+  EXPECT_EQ(Compute(views, kAll, {.progress = two_of_four}).measured, 2);
   EXPECT_EQ(done, (std::vector<int>{0, 1, 2, 3}));
   EXPECT_LT(MedianError(views[1]), 0.05);
   EXPECT_NEAR(store_.Get(20).range.at<float>(60, 100), 2.4, 0.01);

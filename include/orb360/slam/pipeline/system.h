@@ -49,7 +49,7 @@ class System {
   /// Returns the ground under each map, after Finish. A map with ground is metric.
   std::span<const std::optional<KnownGround>> grounds() const;
   /// Computes the dense depth of some frames, after Finish. Throws UserError where the disk fails.
-  ViewDepthReport ComputeDepth(const Reconstruction&, const ViewProgress& = nullptr);
+  ViewDepthReport ComputeDepth(const Reconstruction&, const ViewDepthCallbacks& = {});
   /// Returns that depth, or null without EnableDepth. Throws UserError where images were not kept.
   const DepthMapStore* depth_maps() const;
 

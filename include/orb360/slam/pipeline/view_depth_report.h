@@ -8,6 +8,16 @@ namespace orb360 {
 /// exact.
 using ViewProgress = std::function<bool(int done, int count)>;
 
+struct SparseSample;
+/// Receives what the network completes, view by view: image, and points from landmarks and stereo.
+using SparseSampleSink = std::function<void(const SparseSample&)>;
+
+/// What is called while depth is computed. Each may be null.
+struct ViewDepthCallbacks {
+  ViewProgress progress = {};
+  SparseSampleSink sink = {};
+};
+
 /// Of how many reference views stereo has measured a part, and why not of the others.
 struct ViewDepthReport {
   int measured = 0;         ///< Views of which stereo has measured a part.
