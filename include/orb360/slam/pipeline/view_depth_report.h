@@ -14,8 +14,8 @@ using SparseSampleSink = std::function<void(const SparseSample&)>;
 
 /// What is called while depth is computed. Each may be null.
 struct ViewDepthCallbacks {
-  ViewProgress progress = {};
-  SparseSampleSink sink = {};
+  ViewProgress progress = {};  ///< How far it has got; ends stereo.
+  SparseSampleSink sink = {};  ///< What the network completes.
 };
 
 /// Of how many reference views stereo has measured a part, and why not of the others.
