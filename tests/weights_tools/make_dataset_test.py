@@ -42,6 +42,20 @@ class MakeDatasetTest(unittest.TestCase):
         for effect in ("--noise", "--dual-lens", "--auto-exposure", "--jpeg-quality"):
             self.assertTrue(5 < sum(effect in spec.options for spec in specs) < 55, effect)
 
+    def test_drives_with_stereo_are_tracked_with_the_network_and_others_without(self) -> None:
+        for has_stereo, name in ((True, "stereo7"), (False, "tracked7")):
+            spec = town_spec(7, 24, 512, is_tracked=True, has_stereo=has_stereo)
+            self.assertEqual(spec.name, name)
+            self.assertTrue(spec.is_tracked)
+            with (
+                mock.patch.object(make_dataset, "_call") as call,
+                mock.patch.object(make_dataset, "read_drive", return_value=[]),
+            ):
+                make_dataset.render(spec, self.programs("exit 9"), self.folder)
+            run = [str(part) for part in call.call_args_list[-1].args[0]]
+            self.assertIn("--save-sparse", run)
+            self.assertEqual("none" in run[run.index("run") + 2 : run.index("--mask")], not has_stereo)
+
     def test_what_is_kept_for_measurements_is_refused(self) -> None:
         with self.assertRaisesRegex(ValueError, "kept for other measurements"):
             circuit_spec(Path("tracks/road/street-1/street-1.acc"), 24, 512)

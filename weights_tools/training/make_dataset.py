@@ -44,13 +44,17 @@ class DriveSpec:
     name: str  # of the shard
     options: Sequence[str]  # of `town render`, without the folder
     frames: int
-    is_tracked: bool = False  # by SLAM; then only its keyframes are kept
+    is_tracked: bool = False  # by SLAM; then only frames with points of its own are kept
+    has_stereo: bool = False  # ranges by stereo are among these points
     circuit: Path | None = None
     path: Sequence[str] = field(default=())  # options of `town path`
 
 
-def town_spec(seed: int, frames: int, width: int, is_tracked: bool = False) -> DriveSpec:
+def town_spec(
+    seed: int, frames: int, width: int, is_tracked: bool = False, has_stereo: bool = False
+) -> DriveSpec:
     """Draws light, traffic, height and tilt of the camera and sensor effects from the seed."""
+    is_tracked = is_tracked or has_stereo
     random = np.random.RandomState([seed, is_tracked])
     options = ["--town", str(seed), "--light", LIGHTS[random.randint(len(LIGHTS))]]
     options += ["--traffic", f"{random.uniform():.2f}"]
@@ -60,8 +64,8 @@ def town_spec(seed: int, frames: int, width: int, is_tracked: bool = False) -> D
     options += _sensor(random)
     # A frame each second when there is no tracking: some ten metres from one to the next.
     options += ["--fps", "20" if is_tracked else "1", "--width", str(width)]
-    name = f"tracked{seed}" if is_tracked else f"town{seed}"
-    return DriveSpec(name, options, frames, is_tracked)
+    kind = "stereo" if has_stereo else "tracked" if is_tracked else "town"
+    return DriveSpec(f"{kind}{seed}", options, frames, is_tracked, has_stereo)
 
 
 def circuit_spec(mesh: Path, frames: int, width: int) -> DriveSpec:
@@ -113,7 +117,7 @@ def make_all(specs: Sequence[DriveSpec], programs: Programs, out: Path) -> int:
 
 
 def render(spec: DriveSpec, programs: Programs, folder: Path) -> list[shards.Frame]:
-    """The frames that have a depth; of a tracked drive the keyframes. Leaves files in the folder."""
+    """The frames that have a depth, and of a tracked drive points. Leaves files in the folder."""
     drive, run = folder / "drive", folder / "run"
     where = []
     if spec.circuit:
@@ -124,7 +128,8 @@ def render(spec: DriveSpec, programs: Programs, folder: Path) -> list[shards.Fra
     _call([programs.town, "render", *where, *spec.options, *frames, "--masks", "--out", drive])
     if not spec.is_tracked:
         return read_drive(drive)
-    _call([programs.orb360, "run", drive, "--weights", "none", "--mask", "none",
+    weights = [] if spec.has_stereo else ["--weights", "none"]
+    _call([programs.orb360, "run", drive, *weights, "--mask", "none",
            "--save-sparse", "--out", run])  # fmt: skip
     return [frame for frame in read_drive(drive, run=run) if len(frame.points) > 0]
 
@@ -144,7 +149,9 @@ def main() -> int:
     parser.add_argument("--frames", type=int, default=FRAMES, help="of a drive (default: %(default)s)")
     parser.add_argument("--width", type=int, default=WIDTH, help="of the images (default: %(default)s)")
     parser.add_argument("--tracked-seeds", type=int, nargs="*", default=[],
-                        help="towns that SLAM tracks, for sparse points of its own")  # fmt: skip
+                        help="towns that SLAM tracks, for landmarks as points")  # fmt: skip
+    parser.add_argument("--stereo-seeds", type=int, nargs="*", default=[],
+                        help="towns that SLAM tracks, for landmarks and ranges by stereo as points")
     parser.add_argument("--tracked-frames", type=int, default=TRACKED_FRAMES,
                         help="of these (default: %(default)s)")
     parser.add_argument("--circuits", type=Path, nargs="*", default=[],
@@ -157,6 +164,8 @@ def main() -> int:
     specs += [town_spec(seed, frames, width) for seed in range(*arguments.seeds)]
     for seed in arguments.tracked_seeds:
         specs.append(town_spec(seed, arguments.tracked_frames, width, is_tracked=True))
+    for seed in arguments.stereo_seeds:
+        specs.append(town_spec(seed, arguments.tracked_frames, width, has_stereo=True))
     made = make_all(specs, programs, arguments.out)
     return 0 if made or not specs else 1
 
