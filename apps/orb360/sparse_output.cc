@@ -19,10 +19,14 @@ struct KeyframeOfMap {
 }  // namespace
 
 std::filesystem::path MakeSparseFolder(const std::filesystem::path& folder) {
-  const std::filesystem::path sparse = folder / "sparse";
+  const std::filesystem::path sparse = folder / kSparseName;
   std::error_code error;
   std::filesystem::create_directories(sparse, error);
   if (error) ThrowWriteError(sparse, error.value());
+  // Other frames get depth in another run; its files would be taken for those of this one.
+  for (const auto& entry : std::filesystem::directory_iterator(sparse)) {
+    if (entry.path().extension() == ".h5") std::filesystem::remove(entry.path(), error);
+  }
   return sparse;
 }
 

@@ -3,14 +3,16 @@
 #include <filesystem>
 #include <span>
 
+#include <orb360/slam/depth/sparse_sample.h>
 #include <orb360/slam/io/sequence.h>
 #include <orb360/slam/map/map.h>
 
 namespace orb360 {
 
-struct SparseSample;
+inline constexpr const char* kSparseName = "sparse";
 
-/// Returns `folder`/sparse, which is created. Throws UserError where that fails.
+/// Creates `folder`/sparse and removes what an earlier run has written there. Returns it. Throws
+/// UserError where that fails.
 std::filesystem::path MakeSparseFolder(const std::filesystem::path& folder);
 
 /// Writes what the network completes to `folder`/000123.h5, named by the frame index

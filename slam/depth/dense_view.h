@@ -16,6 +16,7 @@ struct DenseView {
   /// Indices of the views that see the same landmarks, so that their poses fit this one's. Only
   /// those are compared.
   std::vector<size_t> neighbours;
+  double timestamp = 0;  ///< Seconds.
 };
 
 /// Returns the depth of a frame, possibly several times for the same frame. The images must not

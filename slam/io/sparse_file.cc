@@ -149,7 +149,7 @@ SparseSample ReadSparseSample(const std::filesystem::path& path) {
   const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   SparseSample sample;
   if (!file.is_valid() || !Decode(file.get(), &sample)) {
-    throw UserError(path.string() + ": not a keyframe as `orb360 run --save-sparse` writes it");
+    throw UserError(path.string() + ": not sparse depth as `orb360 run --save-sparse` writes it");
   }
   return sample;
 }

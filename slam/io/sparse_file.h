@@ -2,21 +2,9 @@
 
 #include <filesystem>
 
-#include <opencv2/core.hpp>
-
-#include <orb360/slam/depth/sparse_depth.h>
-#include <orb360/slam/geometry/rigid3.h>
+#include <orb360/slam/depth/sparse_sample.h>
 
 namespace orb360 {
-
-/// The data of one keyframe that depth completion needs.
-struct SparseSample {
-  cv::Mat image;  // CV_8UC3, BGR
-  SparseDepth sparse;
-  int frame_index = 0;
-  double timestamp = 0;      // s
-  Rigid3 world_from_camera;  // map frame and units, camera -X forward
-};
 
 /// Writes one HDF5 file (docs/formats/sparse_depth.md): datasets `image` (height x width x 3,
 /// uint8, RGB), `range` and `confidence` (height x width, float32, 0 = no point; range along the

@@ -2,33 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 
-#include "slam/io/sparse_file.h"
 #include "slam/pipeline/dense_views.h"
 #include "slam/pipeline/view_depth.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
-namespace {
-
-// Of the keyframes before and after a view in time, that which is nearer in space: tracking may
-// have gone on elsewhere in between. `ids`: keyframes by frame index, not empty.
-KeyframeId NearestKeyframe(const Map& map, const std::map<int, KeyframeId>& ids,
-                           const DenseView& view) {
-  const auto after = ids.lower_bound(view.frame_index);
-  if (after == ids.begin()) return after->second;
-  const KeyframeId before = std::prev(after)->second;
-  if (after == ids.end()) return before;
-  const auto distance = [&](KeyframeId id) {
-    return (map.PoseOf(id).translation - view.world_from_camera.translation).norm();
-  };
-  return distance(before) < distance(after->second) ? before : after->second;
-}
-
-}  // namespace
-
 DenseMapper::DenseMapper(const std::filesystem::path& weights, const std::filesystem::path& folder,
                          const DepthOptions& options, int num_threads)
     : options_(options),
@@ -56,26 +36,19 @@ ViewDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished, std::s
                                  [this](int index) { return images_.store().Contains(index); });
   const auto neighbours_of = [&](size_t view) { return covisible.NeighboursOf(view); };
   const auto landmarks_of = [&](const DenseView& view) {
-    const Map& map = maps[view.map];
-    return ProjectLandmarks(map, NearestKeyframe(map, id_of[view.map], view),
-                            view.world_from_camera, camera(), {});
+    const int reference =
+        std::ranges::lower_bound(finished.frames, view.frame_index, {}, &FramePose::index)
+            ->reference;
+    return ProjectLandmarks(maps[view.map], id_of[view.map].at(reference), view.world_from_camera,
+                            camera(), {});
   };
   ViewDepthOptions options{.spacing = options_.view_spacing,
                            .min_points = options_.min_points,
                            .keeps_completed = options_.completion};
   if (!options_.stereo) options.baselines.clear();
-  ViewDepthCallbacks timed = callbacks;
-  if (callbacks.sink) {
-    timed.sink = [&](SparseSample sample) {
-      sample.timestamp =
-          std::ranges::lower_bound(finished.frames, sample.frame_index, {}, &FramePose::index)
-              ->timestamp;
-      callbacks.sink(sample);
-    };
-  }
   try {
     return orb360::ComputeDepth(covisible.views(), neighbours_of, landmarks_of, options,
-                                images_.store(), &completer_, num_threads_, depth_maps_, timed);
+                                images_.store(), &completer_, num_threads_, depth_maps_, callbacks);
   } catch (const UserError&) {
     images_.Clear();
     throw;

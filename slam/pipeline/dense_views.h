@@ -10,7 +10,7 @@
 namespace orb360 {
 
 /// The frames of a reconstruction that may get dense depth, and which of them see the same: those
-/// at or between keyframes that see the same landmarks.
+/// whose reference keyframes are one, or see the same landmarks.
 class CovisibleViews {
  public:
   /// Takes those frames for whose index `is_view` holds and whose own images have told their poses,
@@ -26,8 +26,8 @@ class CovisibleViews {
  private:
   std::vector<DenseView> views_;
   std::vector<std::vector<size_t>> sees_the_same_;  ///< By keyframe, with itself: keyframes.
-  std::vector<std::vector<size_t>> keyframes_at_;   ///< By view: one or two keyframes around it.
-  std::vector<std::vector<size_t>> views_at_;       ///< By keyframe: the views of keyframes_at_.
+  std::vector<size_t> keyframe_of_;                 ///< By view: its reference keyframe.
+  std::vector<std::vector<size_t>> views_of_;       ///< By keyframe: the views of keyframe_of_.
 };
 
 /// Returns all views of CovisibleViews with their neighbours.

@@ -99,6 +99,13 @@ double FrontEnd::Motion() const {
          std::max(local_.median_range, 1e-12);
 }
 
+bool FrontEnd::HasMoved(bool has_ground) const {
+  // Where all landmarks are far, a step that the ground shows is little beside their range.
+  constexpr double kMinGroundStep = 0.1;  // heights of the camera (GroundSweepOptions)
+  return Motion() >= options_.keyframe.min_motion ||
+         (has_ground && Motion() * local_.median_range >= kMinGroundStep * options_.scale.height());
+}
+
 bool FrontEnd::NeedsKeyframe(const Map& map, bool has_ground) const {
   const TrackedFrame& last = std::get<Tracking>(state_).last;
   const KeyframeOptions& options = options_.keyframe;
@@ -108,7 +115,7 @@ bool FrontEnd::NeedsKeyframe(const Map& map, bool has_ground) const {
   if (has_ground && motion * local_.median_range > kMaxGroundStep * options_.scale.height()) {
     return true;
   }
-  if (!HasMoved()) return false;
+  if (motion < options.min_motion) return false;
   // Before the ground is known, nobody knows how long a step is. Carriers move by a fraction of the
   // camera's height to three heights in this time.
   constexpr double kMaxStepTime = 0.25;  // seconds

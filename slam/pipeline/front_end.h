@@ -94,9 +94,9 @@ class FrontEnd {
   /// Whether the last frame should become a keyframe of the map, whose ground is known or not.
   /// State: tracking.
   bool NeedsKeyframe(const Map& map, bool has_ground) const;
-  /// Whether the last frame is far enough from its reference keyframe to become one. State:
-  /// tracking.
-  bool HasMoved() const { return Motion() >= options_.keyframe.min_motion; }
+  /// Whether the last frame of a run should become a keyframe: unless the camera stands where its
+  /// reference keyframe is. State: tracking.
+  bool HasMoved(bool has_ground) const;
   /// Adds the collected counts to the landmarks of the map, and makes the local map anew where
   /// another keyframe than its reference shares most landmarks with the last frame. State:
   /// tracking.

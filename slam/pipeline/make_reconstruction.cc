@@ -8,6 +8,14 @@
 
 namespace orb360 {
 
+namespace {
+
+int FrameOfReference(const Map& map, KeyframeId reference) {
+  return map.keyframe(map.LivingKeyframe(reference)).frame_index;
+}
+
+}  // namespace
+
 Reconstruction MakeReconstruction(std::span<const Map> maps, const FrameAnchors& anchors,
                                   int num_threads) {
   Reconstruction result;
@@ -18,7 +26,8 @@ Reconstruction MakeReconstruction(std::span<const Map> maps, const FrameAnchors&
                              .timestamp = anchor.timestamp,
                              .map = anchor.map,
                              .world_from_camera = {},
-                             .is_interpolated = anchor.is_interpolated});
+                             .is_interpolated = anchor.is_interpolated,
+                             .reference = FrameOfReference(maps[anchor.map], anchor.reference)});
     ordered.push_back(&anchor);
     result.interpolated += anchor.is_interpolated;
     MapSummary& summary = result.maps[anchor.map];
@@ -42,8 +51,11 @@ Reconstruction MakeReconstruction(std::span<const Map> maps, const FrameAnchors&
     result.maps[m].landmarks = map.num_landmarks();
     for (const KeyframeId id : map.KeyframeIds()) {
       const Keyframe& keyframe = map.keyframe(id);
-      result.keyframes.push_back({keyframe.frame_index, keyframe.timestamp, static_cast<int>(m),
-                                  keyframe.world_from_camera});
+      result.keyframes.push_back({.index = keyframe.frame_index,
+                                  .timestamp = keyframe.timestamp,
+                                  .map = static_cast<int>(m),
+                                  .world_from_camera = keyframe.world_from_camera,
+                                  .reference = keyframe.frame_index});
       const std::vector<uint8_t> is_mapped = FindMappedCorners(keyframe);
       for (int f = 0; f < keyframe.features->size(); ++f) {
         num_matched += keyframe.features->keypoints[f].is_corner() &&
@@ -65,7 +77,9 @@ Reconstruction MakeReconstruction(std::span<const Map> maps, const FrameAnchors&
     const auto place = position_of.find(frame.index);
     if (place == position_of.end()) continue;
     const FramePose& keyframe = result.keyframes[place->second];
-    if (keyframe.map == frame.map) frame.world_from_camera = keyframe.world_from_camera;
+    if (keyframe.map != frame.map) continue;
+    frame.world_from_camera = keyframe.world_from_camera;
+    frame.reference = keyframe.index;
   }
   for (const Map& map : maps) {
     for (const CovisibilityEdge& edge : FindCovisibilityEdges(map, kCovisible)) {

@@ -45,7 +45,7 @@ void Pipeline::Apply(const MapUpdate& update) {
 void Pipeline::MapLastFrame() {
   if (keeps_map_ || front_end_.tracking() == nullptr || !front_end_.HasPyramid()) return;
   front_end_.UpdateLocalMap(&atlas_.map());
-  if (!front_end_.HasMoved()) return;
+  if (!front_end_.HasMoved(atlas_.ReliableGround().has_value())) return;
   StartMapping({});
   AdoptMap();
 }

@@ -6,8 +6,6 @@
 #include <map>
 #include <optional>
 
-#include "slam/io/sparse_file.h"
-
 namespace orb360 {
 namespace {
 
@@ -170,8 +168,8 @@ ViewDepthReport ComputeDepth(std::span<const DenseView> views, const NeighbourFi
       last = nullptr;
       range = 0;
     }
-    const double spacing =
-        std::min(options.spacing * range, path_lengths[view.map] / options.min_views);
+    double spacing = path_lengths[view.map] / options.min_views;
+    if (range > 0) spacing = std::min(spacing, options.spacing * range);
     if (last != nullptr && DistanceBetween(view, *last) <= spacing) continue;
     last = &view;
     const std::vector<SparsePoint> landmarks = landmarks_of(view);
@@ -199,7 +197,7 @@ ViewDepthReport ComputeDepth(std::span<const DenseView> views, const NeighbourFi
         options.keeps_completed && static_cast<int>(landmarks.size()) >= options.min_points;
     if (!is_measured && !is_completed) continue;
     if (callbacks.sink)
-      callbacks.sink({color, sparse, view.frame_index, 0.0, view.world_from_camera});
+      callbacks.sink({color, sparse, view.frame_index, view.timestamp, view.world_from_camera});
     DenseDepth depth = completer->Complete(color, sparse);
     range = TrustedRange(depth, options.min_trusted_confidence);
     if (!options.baselines.empty()) Distrust(options.completion_error_factor, &depth);

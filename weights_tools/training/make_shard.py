@@ -1,7 +1,8 @@
 """Packs a rendered drive: python3 -m weights_tools.training.make_shard DRIVE SHARD.npz
 
 DRIVE is a folder of `town render --masks`. Frames without depth (--depth-every) are left out. What
-`orb360 run DRIVE --save-sparse` found there can be packed as well (--run).
+`orb360 run DRIVE --save-sparse` found there can be packed as well (--run): landmarks and ranges by stereo,
+or with `--weights none` landmarks alone.
 """
 
 import argparse
@@ -121,7 +122,7 @@ def read_points(path: Path | None, metres: np.ndarray) -> np.ndarray:
     with _sparse_file(path) as file:
         ranges, confidence = file["range"][()], file["confidence"][()]
     if ranges.shape != metres.shape:
-        raise ValueError(f"{path}: has another size than the drive; run orb360 without --resize")
+        raise ValueError(f"{path}: has another size than the drive, as with ranges by stereo of more than 1024 columns")
     rows, columns = np.nonzero((ranges > 0) & (metres > 0))
     ranges, truth = ranges[rows, columns], metres[rows, columns]
     metre = np.median(ranges / truth) if len(rows) else 1

@@ -8,19 +8,20 @@
 namespace orb360 {
 namespace {
 
-FramePose FrameAt(int index, int map = 0) {
+FramePose FrameAt(int index, int reference, int map = 0) {
   const Eigen::Vector3d position(0.1 * index, 0, 0);
   return {.index = index,
           .timestamp = 0.1 * index,
           .map = map,
-          .world_from_camera = {Eigen::Quaterniond::Identity(), position}};
+          .world_from_camera = {Eigen::Quaterniond::Identity(), position},
+          .reference = reference};
 }
 
 /// Frames 0, 5 ... 30, of which 0, 10, 20 and 30 are keyframes and 10 has no depth.
 Reconstruction FourKeyframes() {
   Reconstruction result;
-  for (int i = 0; i <= 30; i += 5) result.frames.push_back(FrameAt(i));
-  for (int i = 0; i <= 30; i += 10) result.keyframes.push_back(FrameAt(i));
+  for (int i = 0; i <= 30; i += 5) result.frames.push_back(FrameAt(i, i / 10 * 10));
+  for (int i = 0; i <= 30; i += 10) result.keyframes.push_back(FrameAt(i, i));
   result.covisibility = {{0, 1, 50}, {1, 2, 50}, {2, 3, 50}};
   result.maps.push_back({.is_metric = true});
   return result;
@@ -44,13 +45,14 @@ TEST(MakeDenseViews, AreNeighboursWhereBothHaveDepthAndSeeTheSameLandmarks) {
   EXPECT_EQ(views[2].neighbours, std::vector<size_t>{1});
 }
 
-TEST(MakeDenseViews, FramesAreNeighboursWhereKeyframesAroundThemSeeTheSameLandmarks) {
+TEST(MakeDenseViews, FramesAreNeighboursWhereTheirKeyframesSeeTheSameLandmarks) {
   const auto is_view = [](int frame_index) { return frame_index != 10; };
   const std::vector<DenseView> views = MakeDenseViews(FourKeyframes(), Rigid3(), is_view);
-  ASSERT_EQ(views.size(), 6u);                                        // 0, 5, 15, 20, 25, 30
-  EXPECT_EQ(views[0].neighbours, (std::vector<size_t>{1, 2}));        // 20 sees other landmarks
-  EXPECT_EQ(views[1].neighbours, (std::vector<size_t>{0, 2, 3, 4}));  // 5 is between 0 and 10
-  EXPECT_EQ(views[5].neighbours, (std::vector<size_t>{2, 3, 4}));
+  ASSERT_EQ(views.size(), 6u);                                  // 0, 5, 15, 20, 25, 30
+  EXPECT_EQ(views[0].neighbours, (std::vector<size_t>{1, 2}));  // 20 sees other landmarks
+  EXPECT_EQ(views[1].neighbours, (std::vector<size_t>{0, 2}));
+  EXPECT_EQ(views[2].neighbours, (std::vector<size_t>{0, 1, 3, 4}));  // 15 goes with 10
+  EXPECT_EQ(views[5].neighbours, (std::vector<size_t>{3, 4}));
 }
 
 TEST(MakeDenseViews, AreNotThoseWhoseImagesShowedNothing) {
@@ -64,8 +66,8 @@ TEST(MakeDenseViews, OfDifferentMapsAreNoNeighbours) {
   Reconstruction reconstruction = FourKeyframes();
   reconstruction.maps.push_back({.is_metric = true});
   for (const int index : {22, 28}) {
-    reconstruction.frames.push_back(FrameAt(index, 1));
-    reconstruction.keyframes.push_back(FrameAt(index, 1));
+    reconstruction.frames.push_back(FrameAt(index, index, 1));
+    reconstruction.keyframes.push_back(FrameAt(index, index, 1));
   }
   reconstruction.covisibility.push_back({4, 5, 50});
   std::ranges::sort(reconstruction.frames, {}, &FramePose::index);

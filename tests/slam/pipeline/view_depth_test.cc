@@ -137,6 +137,30 @@ TEST_F(ComputeDepthTest, AShortPathHasEnoughReferenceViewsToo) {
   for (int i = 0; i < 5; ++i) EXPECT_EQ(store_.Contains(10 * i), i % 2 == 0) << i;
 }
 
+TEST_F(ComputeDepthTest, TheSinkReceivesRangesByStereoAmongThePointsOrLandmarksAlone) {
+  for (const bool has_sources : {true, false}) {
+    const std::vector<DenseView> views =
+        ViewsAt(has_sources ? std::vector{-0.5, 0.0, 0.5, 1.0} : std::vector{0.0, 0.3});
+    std::vector<SparseSample> samples;
+    Compute(views, kAll, {.sink = [&](const SparseSample& s) { samples.push_back(s); }});
+    ASSERT_EQ(samples.size(), views.size());
+    for (const SparseSample& sample : samples) {
+      EXPECT_TRUE(store_.Contains(sample.frame_index));
+      EXPECT_EQ(sample.image.size(), sample.sparse.range.size());
+      const cv::Mat is_point = sample.sparse.range > 0;
+      const cv::Mat is_landmark = cv::abs(sample.sparse.range - 2.4) < 1e-5;
+      const int num_other = cv::countNonZero(is_point & ~is_landmark);
+      EXPECT_EQ(num_other > 300, has_sources) << num_other;
+    }
+  }
+}
+
+TEST_F(ComputeDepthTest, WithoutAnyLandmarkFewViewsAreTriedToo) {
+  landmarks_.clear();
+  const std::vector<DenseView> views = ViewsAt({0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6});
+  EXPECT_EQ(Compute(views, {.min_views = 2}).without_sources, 2);
+}
+
 TEST_F(ComputeDepthTest, WhereNothingTellsDepthViewsAreNotTriedOneByOne) {
   const std::vector<DenseView> views = ViewsAt({0, 0.3, 0.6, 0.9, 1.2, 1.5});
   landmarks_.resize(49);

@@ -67,21 +67,26 @@ TEST(MeasureGroundStep, AboveADamTheHeightIsThatOverItsTop) {
   }
 }
 
-TEST(MeasureGroundStep, OnATextureThatRepeatsAShortStepIsNotThePeriod) {
-  const Asphalt asphalt(13);
-  const Asphalt dirt(14);
-  constexpr double kPeriod = 1.1;  // heights
-  const auto wrapped = [](double x) { return x - kPeriod * std::floor(x / kPeriod); };
-  const Ground tiles = [&](const Eigen::Vector2d& place) {
-    // Lattices along the motion, so that the period lies along it.
+// Boards along the motion, all alike, `period` heights long; what lies beside them does not repeat.
+Ground Boards(double period, double half_width) {
+  return [=, board = Asphalt(13), beside = Asphalt(14)](const Eigen::Vector2d& place) {
     const Eigen::Vector2d turned(0.8 * place.x() - 0.6 * place.y(),
                                  0.6 * place.x() + 0.8 * place.y());
-    return 0.5 * (asphalt({wrapped(turned.x()), wrapped(turned.y())}) + dirt(place));
+    if (std::abs(turned.y()) > half_width) return beside(place);
+    const double along = turned.x() - period * std::floor(turned.x() / period);
+    return board(2.5 * Eigen::Vector2d(along, turned.y()));
   };
-  const auto found = Measure(tiles, 0.14);
+}
+
+TEST(MeasureGroundStep, BoardsBelowDoNotLieHigherWhereTheyRepeat) {
+  // The period and the step together are a whole number of coarse cells, the step alone is not.
+  const auto found = Measure(Boards(1.1, 0.6), 0.14);
   ASSERT_TRUE(found);
-  EXPECT_NEAR(std::log(found->ratio / 0.14), 0.0, 0.03);
-  EXPECT_FALSE(Measure(tiles, 0.004));
+  EXPECT_NEAR(std::log(found->ratio / 0.14), 0.0, 0.05);
+}
+
+TEST(MeasureGroundStep, StandingStillOnBoardsIsNoStepOfTheirLength) {
+  EXPECT_FALSE(Measure(Boards(2.3, 5.0), 0.004));  // one period is in reach
 }
 
 TEST(MeasureGroundStep, AnErrorOfTheNormalCancels) {

@@ -62,22 +62,24 @@ TEST(TriangulateDisparities, TheStandardDeviationIsWhatThatOfTheDisparityMakesOf
   const DisparityTriangulationOptions options{.min_disparity_sigma = 0,
                                               .disparity_sigma_factor = 1};
   constexpr double kShift = 0.02;
-  const InverseRanges found = TriangulateDisparities(DisparitiesOfSpheres(0), kLength, options);
-  const InverseRanges moved =
-      TriangulateDisparities(DisparitiesOfSpheres(kShift), kLength, options);
-  int count = 0;
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 10; x < kWidth - 10; ++x) {
-      const float before = found.value.at<float>(y, x);
-      const float after = moved.value.at<float>(y, x);
-      if (!(before > 0 && after > 0)) continue;
-      // 0.3 pixels, and fewer independent pixels in a window towards the baseline.
-      const double spread = 0.3 / std::sqrt(std::sin((x + 0.5) * kPixel));
-      EXPECT_NEAR(found.sigma.at<float>(y, x) * kShift / ((after - before) * spread), 1.0, 0.03);
-      ++count;
+  ForEachDispatchTarget([&] {
+    const InverseRanges found = TriangulateDisparities(DisparitiesOfSpheres(0), kLength, options);
+    const InverseRanges moved =
+        TriangulateDisparities(DisparitiesOfSpheres(kShift), kLength, options);
+    int count = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 10; x < kWidth - 10; ++x) {
+        const float before = found.value.at<float>(y, x);
+        const float after = moved.value.at<float>(y, x);
+        if (!(before > 0 && after > 0)) continue;
+        // 0.3 pixels, and fewer independent pixels in a window towards the baseline.
+        const double spread = 0.3 / std::sqrt(std::sin((x + 0.5) * kPixel));
+        EXPECT_NEAR(found.sigma.at<float>(y, x) * kShift / ((after - before) * spread), 1.0, 0.03);
+        ++count;
+      }
     }
-  }
-  EXPECT_GT(count, 1000);
+    EXPECT_GT(count, 1000);
+  });
 }
 
 TEST(TriangulateDisparities, UnknownDisparitiesHaveNoRange) {

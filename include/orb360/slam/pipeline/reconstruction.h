@@ -22,6 +22,8 @@ struct FramePose {
   Rigid3 world_from_camera;  ///< Pose of the camera.
   /// Whether the pose lies between those of other frames, because this one showed nothing.
   bool is_interpolated = false;
+  /// Index of the frame of a keyframe of the same map that sees the same; of a keyframe its own.
+  int reference = 0;
 };
 
 /// A landmark of the result.

@@ -2,13 +2,14 @@
 
 #include <functional>
 
+#include <orb360/slam/depth/sparse_sample.h>
+
 namespace orb360 {
 
 /// Receives before each frame how many of how many are done. False makes the rest faster and less
 /// exact.
 using ViewProgress = std::function<bool(int done, int count)>;
 
-struct SparseSample;
 /// Receives what the network completes, view by view: image, and points from landmarks and stereo.
 using SparseSampleSink = std::function<void(const SparseSample&)>;
 
