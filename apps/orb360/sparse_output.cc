@@ -19,7 +19,7 @@ struct KeyframeOfMap {
 }  // namespace
 
 std::filesystem::path MakeSparseFolder(const std::filesystem::path& folder) {
-  const std::filesystem::path sparse = folder / kSparseName;
+  std::filesystem::path sparse = folder / kSparseName;
   std::error_code error;
   std::filesystem::create_directories(sparse, error);
   if (error) ThrowWriteError(sparse, error.value());

@@ -87,7 +87,8 @@ class ComputeDepthTest : public testing::Test {
   static std::vector<SparsePoint> WrongLandmarks() {
     std::vector<SparsePoint> landmarks;
     for (int i = 0; i < 64 * 128; ++i) {
-      landmarks.push_back({i, {0.5 + 2 * (i % 128), 0.5 + 2 * (i / 128)}, 2.4, 1.0});
+      const int row = i / 128;
+      landmarks.push_back({i, {0.5 + 2 * (i % 128), 0.5 + 2 * row}, 2.4, 1.0});
     }
     return landmarks;
   }
