@@ -113,23 +113,6 @@ RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, b
   return record;
 }
 
-/// Returns a sink that writes to `folder`/sparse. A failure is recorded and ends writing, so that
-/// it costs no depth.
-SparseSampleSink SparseWriter(const std::filesystem::path& folder, RunRecord* record) {
-  const auto attempt = [record](auto&& write) {
-    if (record->failure) return;
-    try {
-      write();
-    } catch (const std::exception&) {
-      record->failure = std::current_exception();
-    }
-  };
-  attempt([&] { MakeSparseFolder(folder); });
-  return [attempt, sparse = folder / kSparseName](const SparseSample& sample) {
-    attempt([&] { WriteSparseView(sparse, sample); });
-  };
-}
-
 /// Computes and fuses dense depth. A failure of the disk is recorded and not thrown,
 /// so that the trajectory is written.
 std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
@@ -151,7 +134,7 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
       progress.Update("computing depth", done, count, "frames");
       return CaughtInterrupt() == 0;
     };
-    if (options.saves_sparse) callbacks.sink = SparseWriter(output.folder(), record);
+    if (options.saves_sparse) callbacks.sink = SparseWriter(output.folder(), &record->failure);
     record->depth = system->ComputeDepth(reconstruction, callbacks);
     const bool has_depth = std::ranges::any_of(reconstruction.frames, [&](const FramePose& frame) {
       return system->depth_maps()->Contains(frame.index);

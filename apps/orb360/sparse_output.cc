@@ -16,6 +16,12 @@ struct KeyframeOfMap {
   KeyframeId id;
 };
 
+void WriteSparseView(const std::filesystem::path& folder, const SparseSample& sample) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%06d.h5", sample.frame_index);
+  WriteSparseSample(folder / name, sample);
+}
+
 }  // namespace
 
 std::filesystem::path MakeSparseFolder(const std::filesystem::path& folder) {
@@ -30,10 +36,25 @@ std::filesystem::path MakeSparseFolder(const std::filesystem::path& folder) {
   return sparse;
 }
 
-void WriteSparseView(const std::filesystem::path& folder, const SparseSample& sample) {
-  char name[32];
-  std::snprintf(name, sizeof name, "%06d.h5", sample.frame_index);
-  WriteSparseSample(folder / name, sample);
+SparseSampleSink SparseWriter(const std::filesystem::path& folder, std::exception_ptr* failure) {
+  const auto keep_failure = [failure] {
+    if (!*failure) *failure = std::current_exception();
+  };
+  try {
+    return [keep_failure, sparse = MakeSparseFolder(folder),
+            has_failed = false](const SparseSample& sample) mutable {
+      if (has_failed) return;
+      try {
+        WriteSparseView(sparse, sample);
+      } catch (const std::exception&) {
+        has_failed = true;
+        keep_failure();
+      }
+    };
+  } catch (const std::exception&) {
+    keep_failure();
+    return nullptr;
+  }
 }
 
 void WriteSparseKeyframes(const std::filesystem::path& folder, std::span<const Map> maps,

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <exception>
 #include <filesystem>
 #include <span>
 
-#include <orb360/slam/depth/sparse_sample.h>
 #include <orb360/slam/io/sequence.h>
 #include <orb360/slam/map/map.h>
+#include <orb360/slam/pipeline/view_depth_report.h>
 
 namespace orb360 {
 
@@ -15,9 +16,10 @@ inline constexpr const char* kSparseName = "sparse";
 /// UserError where that fails.
 std::filesystem::path MakeSparseFolder(const std::filesystem::path& folder);
 
-/// Writes what the network completes to `folder`/000123.h5, named by the frame index
-/// (WriteSparseSample). Throws UserError where the file cannot be written.
-void WriteSparseView(const std::filesystem::path& folder, const SparseSample& sample);
+/// Returns a sink that writes what the network completes to `folder`/sparse/000123.h5, named by the
+/// frame index (WriteSparseSample). The first error ends writing and becomes `failure`, unless
+/// there is one already, so that it costs no depth.
+SparseSampleSink SparseWriter(const std::filesystem::path& folder, std::exception_ptr* failure);
 
 /// Writes the image of every keyframe with its sparse ranges and their confidence to
 /// `folder` in the same way. `sequence` is the input of the

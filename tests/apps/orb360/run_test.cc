@@ -252,6 +252,17 @@ TEST_F(RunTest, ByDefaultWhatMovesWithTheCameraIsMasked) {
   EXPECT_EQ(Summary()["masked_fraction"], 0.0);
 }
 
+TEST_F(RunTest, WhereSparseDepthCannotBeWrittenTheCloudIs) {
+  WriteRoom();
+  WriteMeanNetwork(folder_ / "net.h5");
+  std::filesystem::create_directories(OutFile(""));
+  std::ofstream(OutFile("sparse")) << "no folder";
+  const ProgramResult result = Run({"--weights", folder_ / "net.h5", "--save-sparse"});
+  EXPECT_NE(result.status, 0);
+  EXPECT_NE(result.err.find("sparse"), std::string::npos) << result.err;
+  EXPECT_GT(ReadSurfacePly(OutFile("cloud.ply")).size(), 100u);
+}
+
 TEST_F(RunTest, SaveSparseWritesEveryKeyframeWithItsImage) {
   WriteRoom();
   EXPECT_EQ(Run({"--save-sparse", "--start", "2"}).status, 0);
