@@ -18,6 +18,15 @@ std::optional<Number> ParseNumber(std::string_view text) {
   return number;
 }
 
+/// Returns a number with so many decimals, independent of the locale.
+inline std::string ToFixedText(double number, int decimals) {
+  char buffer[400];  // A double has up to 309 digits before the point.
+  // Adding zero turns -0 into 0.
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, number + 0.0,
+                                          std::chars_format::fixed, decimals);
+  return {buffer, end};
+}
+
 /// Returns the shortest text that ParseNumber reads back to the same number.
 template <typename Number>
 std::string ToText(Number number) {

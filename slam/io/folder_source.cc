@@ -1,9 +1,12 @@
 #include "slam/io/folder_source.h"
 
 #include <algorithm>
+#include <span>
 
 #include "slam/io/full_sphere.h"
 #include "slam/io/image_file.h"
+#include "slam/io/jpeg_metadata.h"
+#include "slam/io/panorama_xml.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
@@ -20,25 +23,6 @@ std::string_view TakeNumber(std::string_view& text) {
   return number;
 }
 
-std::vector<std::filesystem::path> ListImages(const std::filesystem::path& folder,
-                                              const std::string& name) {
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    // File managers leave files with a leading dot behind.
-    if (IsImageFileName(entry.path()) && !entry.path().filename().string().starts_with('.') &&
-        !entry.is_directory()) {
-      files.push_back(entry.path());
-    }
-  }
-  if (files.empty()) {
-    throw UserError(name + ": contains no images (jpg, png, bmp, tif, webp, ppm)");
-  }
-  std::ranges::sort(files, [](const auto& a, const auto& b) {
-    return NaturalLess(a.filename().native(), b.filename().native());
-  });
-  return files;
-}
-
 void RequireSize(const std::filesystem::path& file, cv::Size size, cv::Size expected) {
   if (size == expected) return;
   throw UserError(file.string() + ": is " + ToString(size) + ", the images before it are " +
@@ -47,22 +31,55 @@ void RequireSize(const std::filesystem::path& file, cv::Size size, cv::Size expe
 
 /// Returns the size of the first image whose size can be found. Throws UserError if the header of
 /// another image states a different size.
-cv::Size CommonSize(const std::vector<std::filesystem::path>& files, const std::string& name) {
+cv::Size CommonSize(std::span<const FrameList::Image> images, const std::string& name) {
   std::optional<cv::Size> common;
-  for (const std::filesystem::path& file : files) {
-    std::optional<cv::Size> size = ProbeImageSize(file);
+  for (const FrameList::Image& image : images) {
+    std::optional<cv::Size> size = ProbeImageSize(image.path);
     if (!size && !common) {
-      const cv::Mat image = LoadImage(file).image;
-      if (!image.empty()) size = image.size();
+      const cv::Mat pixels = LoadImage(image.path).image;
+      if (!pixels.empty()) size = pixels.size();
     }
-    if (size && common) RequireSize(file, *size, *common);
+    if (size && common) RequireSize(image.path, *size, *common);
     if (!common) common = size;
   }
   if (!common) {
-    throw UserError(name + ": none of its " + std::to_string(files.size()) +
+    throw UserError(name + ": none of its " + std::to_string(images.size()) +
                     " images can be decoded");
   }
   return *common;
+}
+
+/// Returns what GPano says of all images. Throws UserError where not all show the same part of the
+/// sphere. Contract: there is one.
+PanoramaMetadata CommonPanorama(std::span<const FrameList::Image> images) {
+  std::optional<PanoramaMetadata> common;
+  for (const FrameList::Image& image : images) {
+    const PanoramaMetadata panorama =
+        ReadPanoramaXml(image.path.string(), ReadJpegMetadata(image.path).xmp, "GPano")
+            .value_or(PanoramaMetadata());
+    if (!common) common = panorama;
+    if (panorama.crop != common->crop) {
+      throw UserError(image.path.string() +
+                      ": shows another part of the sphere than the images before it (metadata "
+                      "GPano); all images of a folder must show the same part");
+    }
+  }
+  return *common;
+}
+
+/// Gives the images their EXIF times if all have one, and sets whether their order changed. Returns
+/// whether the times can be timestamps.
+bool OrderByExifTime(FrameList* list) {
+  for (FrameList::Image& image : list->images) {
+    const std::optional<double> time = ExifTime(ReadJpegMetadata(image.path).exif);
+    if (!time) return false;
+    image.timestamp = *time;
+  }
+  list->is_reordered = !std::ranges::is_sorted(list->images, {}, &FrameList::Image::timestamp);
+  std::ranges::stable_sort(list->images, {}, &FrameList::Image::timestamp);
+  return list->images.size() > 1 &&
+         std::ranges::adjacent_find(list->images, {}, &FrameList::Image::timestamp) ==
+             list->images.end();
 }
 
 }  // namespace
@@ -86,35 +103,83 @@ bool NaturalLess(std::string_view a, std::string_view b) {
   return whole_a < whole_b;  // Equal but for leading zeros: any fixed order.
 }
 
-FolderSource::FolderSource(const std::filesystem::path& folder, std::string name, double frame_rate,
-                           std::optional<double> camera_height)
-    : files_(ListImages(folder, name)) {
-  ORB360_CHECK(frame_rate > 0.0, frame_rate);
-  info_.image_size = CommonSize(files_, name);
+std::vector<std::filesystem::path> ListImages(const std::filesystem::path& folder,
+                                              const std::string& name) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    // File managers leave files with a leading dot behind.
+    if (IsImageFileName(entry.path()) && !entry.path().filename().string().starts_with('.') &&
+        !entry.is_directory()) {
+      files.push_back(entry.path());
+    }
+  }
+  if (files.empty()) {
+    throw UserError(name + ": contains no images (jpg, png, bmp, tif, webp, ppm, avif, heic)");
+  }
+  std::ranges::sort(files, [](const auto& a, const auto& b) {
+    return NaturalLess(a.filename().native(), b.filename().native());
+  });
+  return files;
+}
+
+FrameList ListFrames(const std::filesystem::path& folder, const std::string& name,
+                     const std::optional<double>& frame_rate) {
+  FrameList list{{}, frame_rate.value_or(kFolderFrameRate), false};
+  ORB360_CHECK(list.frame_rate > 0.0, list.frame_rate);
+  for (std::filesystem::path& path : ListImages(folder, name)) {
+    list.images.push_back({std::move(path), 0.0});
+  }
+  std::vector<FrameList::Image>& images = list.images;
+  if (!frame_rate && OrderByExifTime(&list)) {
+    const double first = images.front().timestamp;
+    for (FrameList::Image& image : images) image.timestamp -= first;
+    list.frame_rate = static_cast<double>(images.size() - 1) / images.back().timestamp;
+  } else {
+    for (size_t i = 0; i < images.size(); ++i) {
+      images[i].timestamp = static_cast<double>(i) / list.frame_rate;
+    }
+  }
+  return list;
+}
+
+FolderSource::FolderSource(const std::filesystem::path& folder, std::string name,
+                           std::optional<double> frame_rate, std::optional<double> camera_height)
+    : list_(ListFrames(folder, name, frame_rate)) {
+  info_.frame_rate = list_.frame_rate;
+  stored_size_ = CommonSize(list_.images, name);
+  const PanoramaLayout layout =
+      MakePanoramaLayout(name, stored_size_, 1.0, CommonPanorama(list_.images));
+  placer_.emplace(layout);
+  info_.image_size = layout.shown;
+  info_.coverage = placer_->coverage();
+  if (list_.is_reordered) {
+    warnings_.push_back(folder.string() +
+                        ": the names of the images are not in the order of their EXIF times; "
+                        "ordered by these");
+  }
   info_.name = std::move(name);
-  info_.frame_rate = frame_rate;
-  info_.frame_count = static_cast<int>(files_.size());
+  info_.frame_count = static_cast<int>(list_.images.size());
   info_.camera_height = camera_height;
 }
 
 bool FolderSource::Skip() {
-  if (next_ == files_.size()) return false;
+  if (next_ == list_.images.size()) return false;
   ++next_;
   return true;
 }
 
 std::optional<Frame> FolderSource::Read() {
-  if (next_ == files_.size()) return std::nullopt;
-  const std::filesystem::path& file = files_[next_];
+  if (next_ == list_.images.size()) return std::nullopt;
+  const auto& [file, timestamp] = list_.images[next_];
   LoadedImage loaded = LoadImage(file);
   if (!loaded.image.empty()) {
-    RequireSize(file, loaded.image.size(), info_.image_size);
+    RequireSize(file, loaded.image.size(), stored_size_);
+    loaded.image = placer_->Place(loaded.image);
   } else {
     warnings_.push_back(file.string() + ": " + loaded.problem + "; frame " + std::to_string(next_) +
                         " is skipped");
   }
-  const int index = static_cast<int>(next_++);
-  return Frame{index, index / info_.frame_rate, loaded.image};
+  return Frame{static_cast<int>(next_++), timestamp, loaded.image};
 }
 
 }  // namespace orb360

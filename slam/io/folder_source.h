@@ -1,11 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "slam/io/panorama_layout.h"
 #include <orb360/slam/io/frame_source.h>
 
 namespace orb360 {
@@ -17,15 +19,40 @@ inline constexpr double kFolderFrameRate = 30.0;
 /// other characters byte by byte.
 bool NaturalLess(std::string_view a, std::string_view b);
 
-/// The images of a folder in natural order. Timestamps are index / frame rate. A file that cannot
+/// Returns the image files of a folder in natural order, without hidden ones. Throws UserError,
+/// which calls the folder `name`, where there is none.
+std::vector<std::filesystem::path> ListImages(const std::filesystem::path& folder,
+                                              const std::string& name);
+
+/// The images of a folder as frames.
+struct FrameList {
+  struct Image {
+    std::filesystem::path path;
+    double timestamp;  ///< Seconds.
+  };
+  std::vector<Image> images;  ///< In the order of time.
+  double frame_rate;          ///< Frames per second; of EXIF times the mean one.
+  bool is_reordered;          ///< Whether EXIF times contradict the order of the names.
+};
+
+/// Returns the images of ListImages with their times. Without a frame rate, and where all images
+/// are JPEG files with EXIF times, these are used: they order the images if the names contradict
+/// them, and are the timestamps, from 0, if no two are the same. Otherwise timestamps are index /
+/// frame rate (kFolderFrameRate where none is given). Throws UserError as ListImages does.
+FrameList ListFrames(const std::filesystem::path& folder, const std::string& name,
+                     const std::optional<double>& frame_rate);
+
+/// The frames of ListFrames; a warning tells where EXIF times contradict the names. Metadata of the
+/// namespace GPano that crop the panorama place the images in the full sphere. A file that cannot
 /// be decoded is skipped with a warning and counts as a frame. Images of different sizes are
 /// refused; for JPEG and PNG this happens before the first image is decoded.
 class FolderSource : public FrameSource {
  public:
-  /// Throws UserError for a folder without images, without an image that can be decoded, or with
-  /// images of different sizes. Messages call the input `name`.
+  /// Throws UserError for a folder without images, without an image that can be decoded, with
+  /// images of different sizes or crops, or with images that are no full spheres. Messages call the
+  /// input `name`.
   FolderSource(const std::filesystem::path& folder, std::string name,
-               double frame_rate = kFolderFrameRate, std::optional<double> camera_height = {});
+               std::optional<double> frame_rate = {}, std::optional<double> camera_height = {});
 
   const SourceInfo& info() const override { return info_; }
   /// Throws UserError at an image of another size.
@@ -34,7 +61,9 @@ class FolderSource : public FrameSource {
   std::vector<std::string> TakeWarnings() override { return std::exchange(warnings_, {}); }
 
  private:
-  std::vector<std::filesystem::path> files_;
+  const FrameList list_;
+  cv::Size stored_size_;
+  std::optional<PanoramaPlacer> placer_;
   SourceInfo info_;
   std::vector<std::string> warnings_;
   size_t next_ = 0;

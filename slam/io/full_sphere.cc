@@ -19,11 +19,12 @@ void RequireFullSphere(const std::string& name, cv::Size size) {
                     ": a square image may be stereo with one eye above the other; crop it to "
                     "one eye (an equirectangular image is twice as wide as high)");
   }
-  throw UserError(problem +
-                  ": an equirectangular image is twice as wide as high; export the recording as "
-                  "equirectangular (360°) video, or scale it to " +
-                  ToString({size.width, size.width / 2}) +
-                  " if it is a full sphere that was squeezed");
+  throw UserError(
+      problem +
+      ": an equirectangular image is twice as wide as high; export the recording as "
+      "equirectangular (360°) video (a raw one of two fisheye lenses is read with --lens), or "
+      "scale it to " +
+      ToString({size.width, size.width / 2}) + " if it is a full sphere that was squeezed");
 }
 
 std::string ToString(cv::Size size) {

@@ -8,9 +8,15 @@
 #include <sstream>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <opencv2/imgcodecs.hpp>
 #include <turbojpeg.h>
+
+#include "slam/io/atomic_file.h"
+#include "slam/io/video/frame_converter.h"
+#include "slam/io/video/video_track.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {
@@ -103,11 +109,25 @@ cv::Mat Decode(const std::string& data) {
                       cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
 }
 
+/// Whether a file is in the container of AVIF and HEIC (ISO 23008-12): its first box is `ftyp`.
+bool IsHeif(std::string_view data) { return data.size() > 8 && data.substr(4, 4) == "ftyp"; }
+
+/// Decodes the primary image by FFmpeg, which opens it as a video of one frame; empty on failure.
+cv::Mat DecodeHeif(const std::filesystem::path& path) {
+  try {
+    VideoTrack track(path.string(), 0, 1);
+    return track.Advance() ? FrameConverter().ToBgr(track.frame()) : cv::Mat();
+  } catch (const UserError&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 bool IsImageFileName(const std::filesystem::path& path) {
   static constexpr std::array kExtensions = {".jpg",  ".jpeg", ".png", ".bmp", ".tif",
-                                             ".tiff", ".webp", ".ppm", ".pgm", ".pnm"};
+                                             ".tiff", ".webp", ".ppm", ".pgm", ".pnm",
+                                             ".avif", ".heic", ".heif"};
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -150,10 +170,31 @@ LoadedImage LoadImage(const std::filesystem::path& path) {
   } catch (const cv::Exception&) {
     image.release();  // A header that promises more than the memory holds.
   }
+  if (image.empty() && IsHeif(data)) {
+    image = DecodeHeif(path);
+    if (image.empty()) {
+      return {{},
+              "is a HEIF image (AVIF, HEIC) of a kind that FFmpeg cannot decode; convert it to "
+              "JPEG or PNG"};
+    }
+  }
   if (image.empty()) return {{}, "cannot be decoded"};
   if (image.depth() == CV_16U) image.convertTo(image, CV_8U, 255.0 / 65535.0);
   if (image.type() != CV_8UC3) return {{}, "has neither 8 nor 16 bits a channel"};
   return {image, {}};
+}
+
+std::string EncodeImage(const std::string& extension, const cv::Mat& image) {
+  constexpr int kJpegQuality = 95;
+  std::vector<unsigned char> bytes;
+  const bool is_encoded =
+      cv::imencode(extension, image, bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+  ORB360_CHECK(is_encoded, extension, image.type());
+  return {bytes.begin(), bytes.end()};
+}
+
+void WriteImage(const std::filesystem::path& path, const cv::Mat& image) {
+  WriteFileAtomically(path, EncodeImage(path.extension().string(), image));
 }
 
 }  // namespace orb360

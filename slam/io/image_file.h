@@ -9,7 +9,7 @@
 namespace orb360 {
 
 /// Returns true when the extension of the name is that of a format that this program reads: JPEG,
-/// PNG, BMP, TIFF, WebP or PNM, in upper or lower case.
+/// PNG, BMP, TIFF, WebP, PNM, AVIF or HEIC, in upper or lower case.
 bool IsImageFileName(const std::filesystem::path& path);
 
 /// Returns the size stated in the header of a JPEG or PNG file. Returns nullopt for other formats,
@@ -28,5 +28,13 @@ struct LoadedImage {
 /// are scaled by 255/65535, an alpha channel is dropped, and an orientation tag is ignored. A file
 /// that is empty, cut off or of an unknown kind gives a problem, not an exception.
 LoadedImage LoadImage(const std::filesystem::path& path);
+
+/// Encodes an image of 8 or 16 bits per channel in the format of an extension such as ".jpg"; JPEG
+/// with quality 95. Contract: OpenCV writes this format.
+std::string EncodeImage(const std::string& extension, const cv::Mat& image);
+
+/// Writes an image of 8 or 16 bits per channel atomically, encoded by the name's extension
+/// (EncodeImage). Throws UserError if the file cannot be written.
+void WriteImage(const std::filesystem::path& path, const cv::Mat& image);
 
 }  // namespace orb360

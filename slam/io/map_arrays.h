@@ -1,6 +1,8 @@
 #pragma once
 
+#include <concepts>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include <orb360/slam/map/map.h>
@@ -42,6 +44,7 @@ struct MapArrays {
 /// Calls `visit(name, column, width)` for each column of a MapArrays, const or not. `name` is the
 /// dataset of the file, and `width` the number of values in a row.
 template <typename Arrays, typename Visit>
+requires std::same_as<std::remove_const_t<Arrays>, MapArrays>
 void ForEachColumn(Arrays& a, const Visit& visit) {
   visit("keyframe_frame_index", a.frame_index, 1);
   visit("keyframe_timestamp", a.timestamp, 1);

@@ -1,5 +1,6 @@
 #include "slam/io/ply.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <fstream>
@@ -36,7 +37,26 @@ constexpr size_t kSurfaceBeginBytes = 160;
 constexpr size_t kChunkBytes = size_t{1} << 20;
 
 UserError NotOurs(const std::filesystem::path& path) {
-  return UserError(path.string() + ": is not a cloud that orb360 wrote");
+  return UserError(path.string() +
+                   ": is not a cloud that orb360 wrote, or is damaged; run `orb360 run` again");
+}
+
+/// The point that is stored in kPointBytes bytes.
+SurfacePoint ColoredPointAt(const char* bytes) {
+  SurfacePoint point;
+  std::memcpy(point.position.data(), bytes, 3 * sizeof(float));
+  std::memcpy(point.rgb.data(), bytes + 3 * sizeof(float), point.rgb.size());
+  return point;
+}
+
+/// The point that is stored in kSurfaceBytes bytes.
+SurfacePoint SurfacePointAt(const char* bytes) {
+  SurfacePoint point;
+  std::memcpy(point.position.data(), bytes, 3 * sizeof(float));
+  std::memcpy(point.normal.data(), bytes + 3 * sizeof(float), 3 * sizeof(float));
+  std::memcpy(point.rgb.data(), bytes + 6 * sizeof(float), 3);
+  std::memcpy(&point.confidence, bytes + 6 * sizeof(float) + 3, sizeof(float));
+  return point;
 }
 
 std::string ReadBytes(const std::filesystem::path& path) {
@@ -151,13 +171,47 @@ std::vector<SurfacePoint> ReadSurfacePly(const std::filesystem::path& path) {
   }
   std::vector<SurfacePoint> points(*count);
   for (SurfacePoint& point : points) {
-    std::memcpy(point.position.data(), data.data(), 3 * sizeof(float));
-    std::memcpy(point.normal.data(), data.data() + 3 * sizeof(float), 3 * sizeof(float));
-    std::memcpy(point.rgb.data(), data.data() + 6 * sizeof(float), 3);
-    std::memcpy(&point.confidence, data.data() + 6 * sizeof(float) + 3, sizeof(float));
+    point = SurfacePointAt(data.data());
     data.remove_prefix(kSurfaceBytes);
   }
   return points;
+}
+
+void ReadCloudPoints(const std::filesystem::path& path,
+                     const std::function<void(const SurfacePoint&)>& take) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path)) {
+    throw UserError(path.string() +
+                    ": cannot be opened as a cloud; `orb360 run` and `orb360 fuse` make one");
+  }
+  constexpr size_t kMaxHeaderBytes = 4096;
+  std::string begin(kMaxHeaderBytes, '\0');
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  begin.resize(static_cast<size_t>(file.gcount()));
+  const bool is_surface = begin.find(kSurfaceProperties) != std::string::npos;
+  const std::string_view properties = is_surface ? kSurfaceProperties : kHeaderEnd;
+  constexpr std::string_view kElement = "\nelement vertex ";
+  const size_t end = begin.find(properties);
+  const size_t element = begin.find(kElement);
+  if (!begin.starts_with("ply\n") || end == std::string::npos || element > end) throw NotOurs(path);
+  const size_t number = element + kElement.size();
+  const auto count =
+      ParseNumber<size_t>(std::string_view(begin).substr(number, end - std::min(end, number)));
+  const size_t header = end + properties.size();
+  const size_t point_bytes = is_surface ? kSurfaceBytes : kPointBytes;
+  const std::uintmax_t bytes = std::filesystem::file_size(path) - header;
+  if (!count || bytes % point_bytes != 0 || *count != bytes / point_bytes) throw NotOurs(path);
+  file.clear();
+  file.seekg(static_cast<std::streamoff>(header));
+  std::string piece(kChunkBytes / point_bytes * point_bytes, '\0');
+  for (std::uintmax_t left = bytes; left > 0;) {
+    piece.resize(std::min<std::uintmax_t>(left, piece.size()));
+    if (!file.read(piece.data(), static_cast<std::streamsize>(piece.size()))) throw NotOurs(path);
+    left -= piece.size();
+    for (size_t at = 0; at < piece.size(); at += point_bytes) {
+      take(is_surface ? SurfacePointAt(piece.data() + at) : ColoredPointAt(piece.data() + at));
+    }
+  }
 }
 
 }  // namespace orb360

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -57,5 +58,11 @@ bool IsSurfacePly(const std::filesystem::path& path);
 
 /// Reads a file that SurfacePlyWriter wrote. Throws UserError for any other file.
 std::vector<SurfacePoint> ReadSurfacePly(const std::filesystem::path& path);
+
+/// Passes on each point of a file that WritePly or SurfacePlyWriter wrote, which may be larger than
+/// the memory. Points of WritePly have no normal and the confidence 0. Throws UserError for any
+/// other file.
+void ReadCloudPoints(const std::filesystem::path& path,
+                     const std::function<void(const SurfacePoint&)>& take);
 
 }  // namespace orb360

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <cctype>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <thread>
 #include <utility>
 
@@ -11,7 +13,9 @@
 #include "slam/io/folder_source.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/image_file.h"
-#include "slam/io/video_source.h"
+#include "slam/io/lenses/dual_fisheye_video.h"
+#include "slam/io/lenses/lens_video_source.h"
+#include "slam/io/video/video_source.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/slam/io/sequence.h>
 
@@ -36,8 +40,19 @@ cv::Mat Resized(const cv::Mat& image, cv::Size size) {
   return resized;
 }
 
-std::unique_ptr<FrameSource> OpenSource(const std::string& input) {
+/// Whether a path ends in an extension, which is in lower case, in any case.
+bool HasExtension(const std::filesystem::path& path, const std::string& extension) {
+  std::string own = path.extension().string();
+  std::ranges::transform(own, own.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return own == extension;
+}
+
+std::unique_ptr<FrameSource> OpenSource(const std::string& input, const std::string& lens) {
   if (!std::filesystem::exists(input)) throw UserError(input + ": no such file or folder");
+  if (!lens.empty() && std::filesystem::is_directory(input)) {
+    throw UserError(input + ": is a folder; --lens is for a video of two fisheye lenses");
+  }
   if (IsDataset(input)) {
     const Dataset dataset = OpenDataset(input);
     if (!std::filesystem::is_directory(dataset.images())) {
@@ -49,6 +64,13 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& input) {
   if (std::filesystem::is_directory(input)) return std::make_unique<FolderSource>(input, input);
   if (IsImageFileName(input)) {
     throw UserError(input + ": is a single image; give a video or a folder of images");
+  }
+  if (!lens.empty()) return OpenDualFisheyeVideo(input, FindLensCalibration(lens));
+  if (HasExtension(input, ".360")) return OpenEacVideo(input);
+  if (HasExtension(input, ".insv") || HasExtension(input, ".osv")) {
+    throw UserError(input +
+                    ": is a raw recording of two fisheye lenses; give their calibration with "
+                    "--lens, such as --lens insta360, or export it as equirectangular video");
   }
   return std::make_unique<VideoSource>(input);
 }
@@ -84,6 +106,8 @@ class Sequence::Decoder {
  private:
   void DecodeAhead();
   bool DecodeAll();
+  bool DecodeOnly();
+  bool Push(Frame frame);
 
   const std::unique_ptr<FrameSource> source_;
   const SequenceOptions options_;
@@ -95,7 +119,7 @@ class Sequence::Decoder {
 void Sequence::Decoder::DecodeAhead() {
   Step last;
   try {
-    if (!DecodeAll()) return;
+    if (!(options_.only.empty() ? DecodeAll() : DecodeOnly())) return;
   } catch (...) {
     last.error = std::current_exception();
   }
@@ -113,9 +137,7 @@ bool Sequence::Decoder::DecodeAll() {
     std::optional<Frame> frame = source_->Read();
     if (!frame) return true;
     if (!frame->image.empty()) {
-      frame->image = Resized(frame->image, image_size_);
-      if (options_.fps > 0.0) frame->timestamp = frame->index / options_.fps;
-      if (!queue_.Push({std::move(frame), source_->TakeWarnings(), nullptr})) return false;
+      if (!Push(std::move(*frame))) return false;
       ++given;
     }
     for (int i = 1; i < options_.stride; ++i) {
@@ -125,16 +147,44 @@ bool Sequence::Decoder::DecodeAll() {
   return true;
 }
 
+/// Pushes the frames that were asked for one by one. Returns false when the queue has been closed.
+bool Sequence::Decoder::DecodeOnly() {
+  int next = 0;
+  for (const int index : options_.only) {
+    for (; next < index; ++next) {
+      if (!source_->Skip()) return true;
+    }
+    std::optional<Frame> frame = source_->Read();
+    if (!frame) return true;
+    ++next;
+    if (!frame->image.empty() && !Push(std::move(*frame))) return false;
+  }
+  return true;
+}
+
+/// Hands over a frame. Returns false when the queue has been closed.
+bool Sequence::Decoder::Push(Frame frame) {
+  frame.image = Resized(frame.image, image_size_);
+  if (options_.fps > 0.0) frame.timestamp = frame.index / options_.fps;
+  return queue_.Push({std::move(frame), source_->TakeWarnings(), nullptr});
+}
+
 Sequence::Sequence(std::unique_ptr<FrameSource> source, const SequenceOptions& options)
     : options_(options), name_(source->info().name), camera_height_(source->info().camera_height) {
   ORB360_CHECK(
-      options.fps >= 0.0 && options.stride >= 1 && options.start >= 0 && options.max_frames >= 0,
+      options.fps >= 0.0 && options.stride >= 1 && options.start >= 0 && options.max_frames >= 0 &&
+          std::ranges::adjacent_find(options.only, std::greater_equal()) == options.only.end(),
       options.fps, options.stride, options.start, options.max_frames, options.resize);
   const SourceInfo& info = source->info();
   RequireFullSphere(name_, info.image_size);
   image_size_ = options.resize.empty() ? info.image_size : options.resize;
   frame_rate_ = options.fps > 0.0 ? options.fps : info.frame_rate;
+  if (!info.coverage.empty()) {
+    // What interpolation mixes with the black around the image is left out as well.
+    coverage_ = Resized(info.coverage, image_size_) == 255;
+  }
   if (info.frame_count) frame_count_ = SelectedCount(*info.frame_count, options);
+  if (!options.only.empty()) frame_count_ = static_cast<int>(options.only.size());
   decoder_ = std::make_unique<Decoder>(std::move(source), options, image_size_);
 }
 
@@ -157,7 +207,7 @@ std::optional<Frame> Sequence::Next() {
 }
 
 std::unique_ptr<Sequence> OpenSequence(const std::string& input, const SequenceOptions& options) {
-  return std::make_unique<Sequence>(OpenSource(input), options);
+  return std::make_unique<Sequence>(OpenSource(input, options.lens), options);
 }
 
 }  // namespace orb360

@@ -6,21 +6,12 @@
 
 #include "nn/base/number_text.h"
 #include "slam/io/atomic_file.h"
+#include "slam/io/optical_frame.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
 namespace {
-
-/// Rotation from the optical camera frame (x right, y down, z forward) to the paper's (-X forward,
-/// +Y right, +Z up).
-Eigen::Quaterniond CameraFromOptical() {
-  Eigen::Matrix3d columns;
-  columns.col(0) = Eigen::Vector3d::UnitY();   // right
-  columns.col(1) = -Eigen::Vector3d::UnitZ();  // down
-  columns.col(2) = -Eigen::Vector3d::UnitX();  // forward
-  return Eigen::Quaterniond(columns);
-}
 
 void AppendNumber(std::string* line, double value, std::chars_format format, int precision) {
   std::array<char, 400> buffer;  // A fixed-point double has up to 309 digits before the point.
@@ -90,7 +81,7 @@ Rigid3 FileWorldFromMap(const Rigid3& map_from_first_camera,
 
 std::string FormatTumLine(const StampedPose& pose) {
   const Rigid3& camera = pose.world_from_camera;
-  Eigen::Quaterniond rotation = (camera.rotation * CameraFromOptical()).normalized();
+  Eigen::Quaterniond rotation = WorldFromOptical(camera).rotation;
   if (rotation.w() < 0.0) rotation.coeffs() = -rotation.coeffs();
   std::string line;
   AppendNumber(&line, pose.timestamp, std::chars_format::fixed, 9);

@@ -195,10 +195,10 @@ void Pipeline::FinishMap() {
 // Bundle adjustment weighs heights over planes of landmarks, which may be kerbs, as much as steps
 // over the ground. All that the images show of the ground, together, knows the scale better, and so
 // do positions.
-void Pipeline::CorrectScale(std::span<const PositionFix> positions) {
+void Pipeline::CorrectScale(const Positions& positions) {
   if (is_map_loaded_) return;  // Its unit of length is kept.
   const EstimatedScale scale =
-      EstimateScale(atlas_.maps(), atlas_.grounds(), options_.scale, positions);
+      EstimateScale(atlas_.maps(), atlas_.grounds(), options_.scale, positions, atlas_.anchors());
   for (size_t i = 0; i < scale.maps.size(); ++i) {
     atlas_.ChangeUnit(static_cast<int>(i), std::exp(scale.maps[i].log_scale));
   }
@@ -209,8 +209,9 @@ ViewDepthReport Pipeline::ComputeDepth(const Reconstruction& finished,
   return dense_ ? dense_->ComputeDepth(finished, atlas_.maps(), callbacks) : ViewDepthReport();
 }
 
-Reconstruction Pipeline::Finish(std::span<const PositionFix> positions) {
-  for (const PositionFix& fix : positions) ORB360_CHECK(fix.IsValid(), fix.timestamp, fix.sigma);
+Reconstruction Pipeline::Finish(const Positions& positions) {
+  for (const PositionFix& fix : positions.fixes)
+    ORB360_CHECK(fix.IsValid(), fix.timestamp, fix.sigma);
   if (back_end_.has_map()) AdoptMap();
   if (!atlas_.is_lent()) FinishMap();  // Otherwise a job has thrown, and its map is lost.
   atlas_.Finish();
@@ -219,7 +220,8 @@ Reconstruction Pipeline::Finish(std::span<const PositionFix> positions) {
   CorrectScale(positions);
   Reconstruction result = MakeReconstruction(atlas_.maps(), atlas_.anchors(), num_threads_);
   const std::span<const std::optional<KnownGround>> grounds = atlas_.grounds();
-  EstimatedScale scale = EstimateScale(atlas_.maps(), grounds, options_.scale, positions);
+  EstimatedScale scale =
+      EstimateScale(atlas_.maps(), grounds, options_.scale, positions, atlas_.anchors());
   for (size_t i = 0; i < result.maps.size(); ++i) {
     result.maps[i].is_metric = scale.maps[i].sigma > 0;
   }

@@ -28,7 +28,7 @@ class Pipeline {
   void LoadMap(const StoredMap& stored, bool keeps_map);
   void EnableDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
   FrameReport Process(const Frame& frame);
-  Reconstruction Finish(std::span<const PositionFix> positions);
+  Reconstruction Finish(const Positions& positions);
   ViewDepthReport ComputeDepth(const Reconstruction& finished, const ViewDepthCallbacks& callbacks);
 
   const Atlas& atlas() const { return atlas_; }
@@ -62,7 +62,7 @@ class Pipeline {
   /// Adopts all pending results, maps the last frame, and adjusts the map once more where loops
   /// were closed.
   void FinishMap();
-  void CorrectScale(std::span<const PositionFix> positions);
+  void CorrectScale(const Positions& positions);
 
   /// Adapts everything that refers to the present map to a change of the map.
   void Apply(const MapUpdate& update);

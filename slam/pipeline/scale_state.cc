@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "slam/pipeline/assumed_height.h"
 #include "slam/pipeline/ground.h"
 #include "slam/pipeline/lens_distance.h"
 #include "slam/pipeline/scale_drift.h"
-#include "slam/scale/position_scale.h"
+#include "slam/scale/position_alignment.h"
 #include "slam/scale/scale_smoother.h"
 
 namespace orb360 {
@@ -117,22 +118,62 @@ MapScale ScaleOf(const Map& map, int number, const std::optional<KnownGround>& g
   return result;
 }
 
-// Joins the scale of a map with that of positions along its keyframes. The ground and the positions
-// have no error in common.
-void UsePositions(const Map& map, std::span<const PositionFix> positions, MapScale* scale) {
+/// The path of this run in a map: of its frames or, where none is given, of its keyframes.
+std::vector<PathPoint> PathOf(const Map& map, int number, const FrameAnchors& frames) {
   std::vector<PathPoint> path;
+  for (const auto& [index, anchor] : frames) {
+    if (anchor.map != number) continue;
+    const Rigid3 pose = map.PoseOf(anchor.reference) * anchor.reference_from_camera;
+    path.push_back({anchor.timestamp, pose.translation});
+  }
   for (const KeyframeId id : map.KeyframeIds()) {
     const Keyframe& keyframe = map.keyframe(id);
-    if (!keyframe.IsOfThisRun()) continue;
+    if (!frames.empty() || !keyframe.IsOfThisRun()) continue;
     path.push_back({keyframe.timestamp, keyframe.world_from_camera.translation});
   }
   std::ranges::stable_sort(path, {}, &PathPoint::timestamp);
-  const std::optional<ScaleMeasurement> measured = MeasureScaleByPositions(path, positions);
-  if (!measured) return;
+  return path;
+}
+
+/// The vertical of a map: the normal of its ground, or else that of its first camera.
+UpDirection UpOf(const Map& map, const std::optional<KnownGround>& ground) {
+  if (ground) return {ground->up.normalized(), kGroundUpSigma};
+  const Rigid3& first = map.keyframe(map.KeyframeIds().front()).world_from_camera;
+  return {first.rotation * Eigen::Vector3d::UnitZ(), kCameraUpSigma};
+}
+
+/// The scale of each map by the positions; none where they do not tell it.
+std::vector<std::optional<ScaleMeasurement>> MeasureByPositions(
+    std::span<const Map> maps, std::span<const std::optional<KnownGround>> grounds,
+    const Positions& given, const FrameAnchors& frames) {
+  std::vector<std::optional<ScaleMeasurement>> measured(maps.size());
+  if (given.fixes.empty()) return measured;
+  std::vector<size_t> longest_first(maps.size());
+  std::iota(longest_first.begin(), longest_first.end(), 0);
+  std::ranges::stable_sort(longest_first, std::ranges::greater(),
+                           [&](size_t m) { return maps[m].num_keyframes(); });
+  Positions positions = given;
+  for (const size_t m : longest_first) {
+    if (maps[m].num_keyframes() == 0) continue;
+    const AlignmentResult result = AlignPositions(PathOf(maps[m], static_cast<int>(m), frames),
+                                                  positions, UpOf(maps[m], grounds[m]));
+    if (!result.alignment) continue;
+    const PositionAlignment& alignment = *result.alignment;
+    measured[m] =
+        ScaleMeasurement{std::log(alignment.local_from_path.scale), alignment.log_scale_sigma};
+    positions.clock_offset = alignment.clock_offset;
+    positions.clock_offset_sigma = alignment.clock_offset_sigma;
+  }
+  return measured;
+}
+
+// Joins the scale of a map with that of positions along its keyframes. The ground and the positions
+// have no error in common.
+void UsePositions(const ScaleMeasurement& measured, MapScale* scale) {
   scale->has_positions = true;
-  ScaleMeasurement fused = *measured;
+  ScaleMeasurement fused = measured;
   if (scale->sigma > 0) {
-    fused = FuseScales({scale->log_scale, scale->sigma}, *measured, &scale->is_conflict);
+    fused = FuseScales({scale->log_scale, scale->sigma}, measured, &scale->is_conflict);
   }
   for (KeyframeScale& keyframe : scale->keyframes) {
     if (keyframe.sigma == 0) {
@@ -162,7 +203,8 @@ std::vector<std::string> Sources(int num_steps, int num_planes) {
 
 EstimatedScale EstimateScale(std::span<const Map> maps,
                              std::span<const std::optional<KnownGround>> grounds,
-                             const ScaleOptions& options, std::span<const PositionFix> positions) {
+                             const ScaleOptions& options, const Positions& positions,
+                             const FrameAnchors& frames) {
   EstimatedScale result;
   MetricScale& whole = result.whole;
   whole.is_height_assumed = options.camera_height == 0;
@@ -170,6 +212,8 @@ EstimatedScale EstimateScale(std::span<const Map> maps,
   const double height_sigma = whole.is_height_assumed ? AssumedHeightSigma(whole.surroundings_rise)
                                                       : options.camera_height_sigma;
   const EstimatedLensDistance lenses = EstimateLensDistance(maps);
+  const std::vector<std::optional<ScaleMeasurement>> measured =
+      MeasureByPositions(maps, grounds, positions, frames);
   int num_steps = 0;
   int num_planes = 0;
   double length = 0;
@@ -180,7 +224,7 @@ EstimatedScale EstimateScale(std::span<const Map> maps,
   bool is_conflict = false;
   for (size_t m = 0; m < maps.size(); ++m) {
     MapScale scale = ScaleOf(maps[m], static_cast<int>(m), grounds[m], height_sigma, lenses);
-    UsePositions(maps[m], positions, &scale);
+    if (measured[m]) UsePositions(*measured[m], &scale);
     has_positions = has_positions && scale.has_positions;
     is_conflict = is_conflict || scale.is_conflict;
     result.keyframes.insert(result.keyframes.end(), scale.keyframes.begin(), scale.keyframes.end());

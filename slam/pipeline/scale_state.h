@@ -4,7 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "slam/scale/position_scale.h"
+#include "slam/pipeline/frame_anchor.h"
+#include "slam/scale/scale_measurement.h"
 #include <orb360/slam/map/ground.h>
 #include <orb360/slam/map/map.h>
 #include <orb360/slam/pipeline/metric_scale.h>
@@ -22,12 +23,14 @@ struct EstimatedScale {
 
 /// Estimates the scale of finished maps, each with the ground over which it has been brought to
 /// metres (none: its unit is arbitrary), from all that the keyframes show of the ground, and from
-/// positions that something else has measured. It says
-/// how true the metres are, and moves nothing. Of several maps the least certain one tells the
-/// state, because a result has one unit of length.
+/// positions that something else has measured (AlignPositions). It says how true the metres are,
+/// and moves nothing. Of several maps the least certain one tells the state, because a result has
+/// one unit of length. The offset of the positions' clock is found along the longest map and is
+/// known in the others. `frames`: all frames with a pose, between which the path is interpolated
+/// (none: between keyframes).
 EstimatedScale EstimateScale(std::span<const Map> maps,
                              std::span<const std::optional<KnownGround>> grounds,
-                             const ScaleOptions& options,
-                             std::span<const PositionFix> positions = {});
+                             const ScaleOptions& options, const Positions& positions = {},
+                             const FrameAnchors& frames = {});
 
 }  // namespace orb360

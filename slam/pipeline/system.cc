@@ -24,9 +24,7 @@ void System::EnableDepth(const std::filesystem::path& weights,
 
 FrameReport System::Process(const Frame& frame) { return pipeline_->Process(frame); }
 
-Reconstruction System::Finish(std::span<const PositionFix> positions) {
-  return pipeline_->Finish(positions);
-}
+Reconstruction System::Finish(const Positions& positions) { return pipeline_->Finish(positions); }
 
 std::span<const Map> System::maps() const { return pipeline_->atlas().maps(); }
 

@@ -7,19 +7,20 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "tests/fuzz/map_input.h"
+#include "slam/io/map_arrays.h"
+#include "tests/fuzz/columns_input.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {
 
 void Check(std::string_view bytes) {
-  const std::optional<MapArrays> arrays = ReadMapInput(bytes);
+  const std::optional<MapArrays> arrays = ReadColumnsInput<MapArrays>(bytes);
   if (!arrays) return;
   try {
     const Map map = FromArrays(*arrays);
     map.CheckConsistency();
-    if (WriteMapInput(ToArrays(map)) != WriteMapInput(*arrays)) std::abort();
+    if (WriteColumnsInput(ToArrays(map)) != WriteColumnsInput(*arrays)) std::abort();
   } catch (const UserError&) {
     // The refusal of what is not allowed.
   }

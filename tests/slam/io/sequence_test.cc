@@ -327,6 +327,28 @@ TEST(Sequence, CanBeDroppedWhileFramesAreBeingDecoded) {
   }
 }
 
+TEST(Sequence, GivesOnlyTheFramesThatWereAskedFor) {
+  const TempFolder folder;
+  std::filesystem::create_directory(folder / "images");
+  for (int i = 0; i < 12; ++i) {
+    cv::imwrite((folder / ("images/" + std::to_string(i) + ".png")).string(), Numbered(i));
+  }
+  WriteVideo(folder / "video.avi", "MJPG", 12);
+  SequenceOptions options;
+  options.only = {0, 3, 4, 10, 40};  // The last one is not there.
+  for (const char* name : {"images", "video.avi"}) {
+    const auto all = ReadAll(*OpenSequence((folder / name).string(), {}));
+    const auto frames = ReadAll(*OpenSequence((folder / name).string(), options));
+    ASSERT_THAT(frames, SizeIs(4)) << name;
+    for (size_t i = 0; i < frames.size(); ++i) {
+      const Frame& same = all[static_cast<size_t>(options.only[i])];
+      EXPECT_EQ(frames[i].index, options.only[i]);
+      EXPECT_EQ(frames[i].timestamp, same.timestamp);
+      EXPECT_EQ(cv::norm(frames[i].image, same.image, cv::NORM_INF), 0.0);
+    }
+  }
+}
+
 TEST(Sequence, EndsForGood) {
   const TempFolder folder;
   WriteImages(folder, 1);

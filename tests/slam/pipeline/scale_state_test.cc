@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -139,16 +140,20 @@ TEST(ScaleState, NearLandmarksPassTheScaleOnBetterThanFarOnes) {
   EXPECT_GT(sigma_at_end(100.0, 200.0), 3 * sigma_at_end(3.0, 12.0));
 }
 
-// What a receiver says of a walk whose unit of length is `metres`.
-std::vector<PositionFix> FixesOf(const Map& map, double metres, double sigma) {
+// What a receiver says of a walk whose unit of length is `metres`, with errors of the standard
+// deviation that it states: the residuals count as much as what is stated.
+Positions FixesOf(const Map& map, double metres, double sigma) {
   std::vector<PositionFix> fixes;
   for (const KeyframeId id : map.KeyframeIds()) {
     const Keyframe& keyframe = map.keyframe(id);
-    fixes.push_back({keyframe.timestamp + 1e-3,
-                     metres * keyframe.world_from_camera.translation + Eigen::Vector3d(7, 8, 9),
-                     sigma});
+    const Eigen::Vector3d phase(37.0 * id, 59.0 * id + 1, 83.0 * id + 2);
+    const Eigen::Vector3d error = sigma * std::numbers::sqrt2 * phase.array().sin();
+    fixes.push_back(
+        {keyframe.timestamp + 1e-3,
+         metres * keyframe.world_from_camera.translation + Eigen::Vector3d(7, 8, 9) + error, sigma,
+         sigma});
   }
-  return fixes;
+  return {fixes};
 }
 
 EstimatedScale EstimateBy(const Map& map, const std::optional<KnownGround>& ground, double metres,
@@ -174,13 +179,13 @@ TEST(ScaleState, PositionsMakeItMetricWithoutGround) {
 TEST(ScaleState, PositionsAndGroundThatAgreeAreSurerThanEach) {
   const Map map = WalkOver(std::vector<double>(12, 1.0));
   const double by_ground = Estimate(map, kGround).whole.sigma;
-  const double by_positions = EstimateBy(map, std::nullopt, 1.0, 0.1).whole.sigma;
-  const EstimatedScale both = EstimateBy(map, kGround, 1.01, 0.1);
+  const MetricScale by_positions = EstimateBy(map, std::nullopt, 1.03, 0.1).whole;
+  const EstimatedScale both = EstimateBy(map, kGround, 1.03, 0.1);
   EXPECT_EQ(both.whole.state, ScaleState::kMetric);
   EXPECT_LT(both.whole.sigma, by_ground);
-  EXPECT_LT(both.whole.sigma, by_positions);
+  EXPECT_LT(both.whole.sigma, by_positions.sigma);
   EXPECT_GT(both.whole.value, 1.0);
-  EXPECT_LT(both.whole.value, 1.01);
+  EXPECT_LT(both.whole.value, by_positions.value);
 }
 
 TEST(ScaleState, IsRoughWherePositionsContradictTheGround) {

@@ -196,11 +196,12 @@ TEST(SystemSlow, GoesOnInAMapOfAnEarlierRun) {
     later.Process(MakeFrame(i, room.Render(kHallCamera, TruePose(frames.back()))));
   }
   // A receiver that contradicts the map does not change its unit, which others use.
-  std::vector<PositionFix> fixes;
+  Positions positions;
   for (size_t i = 0; i < frames.size(); ++i) {
-    fixes.push_back({static_cast<double>(i) / 25.0, 1.3 * TruePose(frames[i]).translation, 0.01});
+    positions.fixes.push_back(
+        {static_cast<double>(i) / 25.0, 1.3 * TruePose(frames[i]).translation, 0.01});
   }
-  const Reconstruction result = later.Finish(fixes);
+  const Reconstruction result = later.Finish(positions);
   EXPECT_EQ(result.scale.state, ScaleState::kRough);
   EXPECT_NEAR(Compare(result.frames, frames).scale, 1.0, 0.03);
   EXPECT_EQ(result.maps.size(), 1u);

@@ -78,12 +78,12 @@ TEST(SystemSlow, PositionsGiveMetresWhereNoGroundDoes) {
   std::vector<PositionFix> fixes;
   for (int i = 0; i < 100; ++i) {
     system.Process(MakeFrame(i, room.Render(kHallCamera, TruePose(i))));
-    fixes.push_back({i / 25.0, TruePose(i).translation, 0.01});
+    fixes.push_back({i / 25.0, TruePose(i).translation, 0.01, 0.01});
   }
   std::vector<PositionFix> wrong = fixes;
   wrong[7].sigma = -1;
-  EXPECT_THROW(system.Finish(wrong), ContractError) << "and nothing is lost";
-  const Reconstruction result = system.Finish(fixes);
+  EXPECT_THROW(system.Finish({wrong}), ContractError) << "and nothing is lost";
+  const Reconstruction result = system.Finish({fixes});
   EXPECT_EQ(result.scale.state, ScaleState::kMetric);
   EXPECT_EQ(result.scale.sources, std::vector<std::string>{"positions"});
   EXPECT_NEAR(result.scale.value, 1.0, 1e-6);

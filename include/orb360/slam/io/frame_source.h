@@ -14,7 +14,8 @@ struct Frame {
   int index = 0;
   /// Time by the source's clock, seconds.
   double timestamp = 0.0;
-  /// Image of the full sphere in equirectangular projection, CV_8UC3, BGR.
+  /// Image of the full sphere in equirectangular projection, CV_8UC3, BGR. Sequence scales it where
+  /// it has not the size that the source announces.
   cv::Mat image;
 };
 
@@ -22,7 +23,8 @@ struct Frame {
 struct SourceInfo {
   /// The path as the user gave it; messages use it.
   std::string name;
-  /// Width and height of the images, pixels.
+  /// Width and height of the full sphere as it is shown, pixels. Stored images have other sizes
+  /// where their pixels are not square.
   cv::Size image_size;
   /// Frame rate, frames per second.
   double frame_rate = 0.0;
@@ -31,6 +33,9 @@ struct SourceInfo {
   std::optional<int> frame_count;
   /// Height of the camera above the ground, metres, if the input states it.
   std::optional<double> camera_height;
+  /// CV_8U, a full sphere of any size: 0 where no image of the input shows anything. Empty if the
+  /// images cover the whole sphere.
+  cv::Mat coverage{};
 };
 
 /// Frames in order, from a file, a folder or a renderer. Sequence selects the frames that a user

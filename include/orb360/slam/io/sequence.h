@@ -21,8 +21,15 @@ struct SequenceOptions {
   int start = 0;
   /// Largest number of frames; 0: all.
   int max_frames = 0;
+  /// Indices of the only frames that are used, ascending, each once, in place of the selection by
+  /// the numbers above; empty: not given.
+  /// Others are not decoded where the format allows it.
+  std::vector<int> only = {};
   /// Size to which every image is scaled; empty: not scaled. Must be near 2:1 (IsFullSphere).
   cv::Size resize;
+  /// Calibration file or name of a preset, for a video of two fisheye lenses that is stitched while
+  /// it is read. Empty: the input is equirectangular, or tells its projection.
+  std::string lens;
 };
 
 /// The frames that a user asked for, in order. They are decoded ahead on another thread. All
@@ -50,6 +57,9 @@ class Sequence {
   std::optional<int> frame_count() const { return frame_count_; }
   /// Height of the camera above the ground, metres, if the input states it.
   std::optional<double> camera_height() const { return camera_height_; }
+  /// Mask of image_size, CV_8U: 0 where the input shows nothing, 255 elsewhere. Empty if it shows
+  /// the whole sphere.
+  const cv::Mat& coverage() const { return coverage_; }
 
   /// Returns one line for each problem of the frames so far, such as damaged images or a truncated
   /// video. Each line is returned once.
@@ -64,12 +74,14 @@ class Sequence {
   cv::Size image_size_;
   double frame_rate_ = 0.0;
   std::optional<int> frame_count_;
+  cv::Mat coverage_;
   std::vector<std::string> warnings_;
   bool has_given_frame_ = false;
   std::unique_ptr<Decoder> decoder_;
 };
 
-/// Opens a video file, a folder of images, or a sequence folder (Dataset). Throws UserError if the
+/// Opens a video file, a folder of images, or a sequence folder (Dataset). A `.360` file and, with
+/// options.lens, a video of two fisheye lenses are stitched. Throws UserError if the
 /// input does not exist, cannot be read, or does not consist of full spheres.
 std::unique_ptr<Sequence> OpenSequence(const std::string& input, const SequenceOptions& options);
 

@@ -42,7 +42,7 @@ class System {
   /// size or type than 8-bit BGR. After another exception only Finish may be called.
   FrameReport Process(const Frame& frame);
   /// Waits for all jobs and returns everything; no frame may follow. `positions` add to the scale.
-  Reconstruction Finish(std::span<const PositionFix> positions = {});
+  Reconstruction Finish(const Positions& positions = {});
 
   /// Returns the maps in the order of their start, after Finish.
   std::span<const Map> maps() const;
