@@ -27,6 +27,9 @@ inline const CLI::Validator kIsNumber(
 void AddRunCommand(CLI::App* app, Command* chosen);
 void AddEvaluateCommand(CLI::App* app, Command* chosen);
 void AddFuseCommand(CLI::App* app, Command* chosen);
+void AddGeoreferenceCommand(CLI::App* app, Command* chosen);
+void AddExportCommand(CLI::App* app, Command* chosen);
+void AddCalibrateCommand(CLI::App* app, Command* chosen);
 void AddConfigCommand(CLI::App* app, Command* chosen);
 void AddCompleteCommand(CLI::App* app, Command* chosen);
 void AddWeightsCommand(CLI::App* app, Command* chosen);

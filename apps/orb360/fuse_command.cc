@@ -29,8 +29,6 @@ struct FuseOptions {
   bool is_quiet = false;
 };
 
-struct Interrupted {};
-
 int Fuse(const FuseOptions& options) {
   CatchInterrupts();
   const std::filesystem::path folder = std::filesystem::path(options.run) / kViewsName;
@@ -61,7 +59,7 @@ int Fuse(const FuseOptions& options) {
   try {
     Progress progress(std::nullopt, options.is_quiet);
     fusion.progress = [&](int done, int count) {
-      if (CaughtInterrupt() != 0) throw Interrupted();
+      ThrowIfInterrupted();
       progress.Update("fusing depth", done, count, "views");
     };
     std::optional<MeshWriter> mesh;

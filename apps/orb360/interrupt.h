@@ -9,4 +9,12 @@ void CatchInterrupts();
 /// Returns the signal that was caught, or 0.
 int CaughtInterrupt();
 
+/// Ends work that an interrupt has stopped.
+struct Interrupted {};
+
+/// Throws Interrupted if a signal was caught.
+inline void ThrowIfInterrupted() {
+  if (CaughtInterrupt() != 0) throw Interrupted();
+}
+
 }  // namespace orb360

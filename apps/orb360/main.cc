@@ -10,6 +10,10 @@
 #include <CLI/CLI.hpp>
 #include <opencv2/core/utils/logger.hpp>
 
+extern "C" {
+#include <libavutil/log.h>
+}
+
 #include "apps/orb360/commands.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/slam/version.h>
@@ -38,6 +42,9 @@ int Main(int argc, char** argv) {
   orb360::AddRunCommand(&app, &command);
   orb360::AddEvaluateCommand(&app, &command);
   orb360::AddFuseCommand(&app, &command);
+  orb360::AddGeoreferenceCommand(&app, &command);
+  orb360::AddExportCommand(&app, &command);
+  orb360::AddCalibrateCommand(&app, &command);
   orb360::AddConfigCommand(&app, &command);
   orb360::AddCompleteCommand(&app, &command);
   orb360::AddWeightsCommand(&app, &command);
@@ -52,8 +59,10 @@ int Main(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // UserErrors report the files that OpenCV cannot read, so its own messages are switched off.
+  // UserErrors report the files that OpenCV and FFmpeg cannot read, so their own messages are
+  // switched off.
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  av_log_set_level(AV_LOG_QUIET);
   // A closed pipe must not end a run whose results go to files.
   std::signal(SIGPIPE, SIG_IGN);
   try {

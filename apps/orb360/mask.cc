@@ -25,11 +25,33 @@ cv::Mat LoadMask(const std::string& file, cv::Size size) {
   return mask >= 128;
 }
 
-cv::Mat ChooseMask(const std::string& choice, const std::string& input,
-                   const SequenceOptions& options, const Sequence& sequence) {
+namespace {
+
+cv::Mat ChooseWithoutCoverage(const std::string& choice, const std::string& input,
+                              const SequenceOptions& options, const Sequence& sequence) {
   if (choice == "none" || (choice == "auto" && IsRendered(input))) return {};
   if (choice == "auto") return FindSelfMask(input, options, sequence.frame_rate());
   return LoadMask(choice, sequence.image_size());
+}
+
+}  // namespace
+
+cv::Mat ChooseMask(const std::string& choice, const std::string& input,
+                   const SequenceOptions& options, const Sequence& sequence) {
+  const cv::Mat chosen = ChooseWithoutCoverage(choice, input, options, sequence);
+  const cv::Mat& coverage = sequence.coverage();
+  if (coverage.empty()) return chosen;
+  if (chosen.empty()) return coverage;
+  return chosen & coverage;
+}
+
+void SaveMask(const std::filesystem::path& folder, const cv::Mat& mask) {
+  const std::filesystem::path path = folder / kMaskName;
+  if (mask.empty()) {
+    std::filesystem::remove(path);
+  } else {
+    WriteImage(path, mask);
+  }
 }
 
 double ExcludedFraction(const cv::Mat& mask) {

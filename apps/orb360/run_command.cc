@@ -19,15 +19,15 @@
 #include "apps/orb360/interrupt.h"
 #include "apps/orb360/mask.h"
 #include "apps/orb360/progress.h"
+#include "apps/orb360/run_options.h"
 #include "apps/orb360/run_output.h"
 #include "apps/orb360/run_summary.h"
 #include "apps/orb360/sparse_output.h"
-#include "nn/base/number_text.h"
 #include "slam/io/atomic_file.h"
-#include "slam/io/full_sphere.h"
+#include "slam/io/sparse_model_file.h"
+#include "slam/pipeline/make_sparse_model.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/nn/base/option_schema.h>
-#include <orb360/nn/models/default_weights.h>
 #include <orb360/slam/io/config.h>
 #include <orb360/slam/io/map_file.h>
 #include <orb360/slam/io/sequence.h>
@@ -37,43 +37,10 @@
 namespace orb360 {
 namespace {
 
-struct RunOptions {
-  std::string input;
-  std::string out;
-  std::string config;
-  std::string mask = "auto";
-  int threads = 0;           // 0: one for each core
-  double camera_height = 0;  // metres; 0: as the configuration or the input says
-  std::string resize;
-  std::string map_in;
-  std::string map_out;
-  bool localizes = false;
-  std::string loops = "on";
-  SequenceOptions sequence;
-  std::string weights;
-  bool saves_sparse = false;
-  bool saves_depth = false;
-  bool saves_views = false;
-  bool has_mesh = false;
-  std::string cloud_quality;  // "": as the configuration says
-  bool is_quiet = false;
-};
-
 using Clock = std::chrono::steady_clock;
 
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// Returns the size that --resize asks for; empty for "".
-cv::Size ParseSize(const std::string& text) {
-  if (text.empty()) return {};
-  const size_t x = std::min(text.find('x'), text.size() - 1);
-  const std::optional<int> width = ParseNumber<int>(std::string_view(text).substr(0, x));
-  const std::optional<int> height = ParseNumber<int>(std::string_view(text).substr(x + 1));
-  if (width && height && IsFullSphere({*width, *height})) return {*width, *height};
-  throw UserError("--resize: `" + text +
-                  "` is not WIDTHxHEIGHT with a width of twice the height, such as 2048x1024");
 }
 
 /// Sets the number of threads of OpenMP and OpenCV and returns it.
@@ -85,14 +52,19 @@ int SetThreads(int wanted) {
   return threads;
 }
 
+void Warn(const std::string& warning, RunRecord* record) {
+  std::cerr << "orb360: warning: " << warning << '\n';
+  record->warnings.push_back(warning);
+}
+
 /// Tracks frame by frame until the end of the input, an interrupt, or a failure of input or disk.
-RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, bool is_quiet) {
-  RunRecord record;
+void ProcessFrames(Sequence* sequence, System* system, RunOutput* output, bool is_quiet,
+                   RunRecord* record) {
   Progress progress(sequence->frame_count(), is_quiet);
   const auto pass_on_warnings = [&] {
     for (std::string& warning : sequence->TakeWarnings()) {
       progress.Warn(warning);
-      record.warnings.push_back(std::move(warning));
+      record->warnings.push_back(std::move(warning));
     }
   };
   try {
@@ -102,15 +74,14 @@ RunRecord ProcessFrames(Sequence* sequence, System* system, RunOutput* output, b
       if (!frame) break;
       const FrameReport report = system->Process(*frame);
       if (report.world_from_camera) output->Append(frame->timestamp, *report.world_from_camera);
-      record.times.Add(report.timing_ms);
+      record->times.Add(report.timing_ms);
       progress.Update(frame->index, report);
     }
   } catch (const UserError&) {
-    record.failure = std::current_exception();
+    record->failure = std::current_exception();
     pass_on_warnings();
   }
-  record.frames = progress.num_frames();
-  return record;
+  record->frames = progress.num_frames();
 }
 
 /// Computes and fuses dense depth. A failure of the disk is recorded and not thrown,
@@ -184,22 +155,6 @@ void WriteLargestMap(const std::string& path, int width, const Rigid3& file_worl
   WriteMap(path, {width, file_world_from_map, ground, *largest});
 }
 
-/// Completes options that were left open, and refuses what cannot be done, before any work.
-RunOptions Settle(RunOptions options) {
-  if (options.localizes) options.weights = "none";  // No keyframes are made.
-  if (options.weights.empty()) options.weights = nn::DefaultWeights().string();
-  for (const auto& [name, is_given] : {std::pair("--save-depth", options.saves_depth),
-                                       {"--save-views", options.saves_views},
-                                       {"--mesh", options.has_mesh},
-                                       {"--cloud-quality", !options.cloud_quality.empty()}}) {
-    if (is_given && options.weights == "none") {
-      throw UserError(std::string(name) +
-                      ": without a network there is no dense depth; leave it out");
-    }
-  }
-  return options;
-}
-
 /// Throws UserError for a camera height in the description of `input` that ScaleOptions excludes.
 void RequireInRange(const ScaleOptions& scale, const std::string& input) {
   try {
@@ -235,6 +190,13 @@ int Run(const RunOptions& options) {
     RequireInRange(system_options.scale, options.input);
   }
   std::optional<StoredMap> stored = ReadMapFor(sequence->image_size().width, options.map_in);
+  const std::optional<double> fps =
+      options.sequence.fps > 0 ? std::optional(options.sequence.fps) : std::nullopt;
+  RunRecord record;
+  std::string unusable;
+  const std::optional<RunPositions> positions =
+      ReadRunPositions(options.positions, options.input, fps, &unusable);
+  if (!unusable.empty()) Warn(unusable, &record);
   RunOutput output(options.out);
   if (stored) output.SetWorld(stored->file_world_from_map);
   // This throws now if the map could not be written at the end. It may be in the output folder.
@@ -256,20 +218,31 @@ int Run(const RunOptions& options) {
   if (stored) options.localizes ? system.Localize(*stored) : system.LoadMap(*stored);
   stored.reset();
   const auto start = Clock::now();
-  RunRecord record = ProcessFrames(sequence.get(), &system, &output, options.is_quiet);
+  ProcessFrames(sequence.get(), &system, &output, options.is_quiet, &record);
   const auto last_frame = Clock::now();
-  const Reconstruction reconstruction = system.Finish();
+  const Reconstruction reconstruction = system.Finish(positions ? positions->local : Positions());
   record.finishing_seconds = SecondsSince(last_frame);
   record.seconds = SecondsSince(start);
   const std::optional<DenseOutput> dense =
       FuseDepth(reconstruction, options, threads, output, &system, &record);
+  const Rigid3 file_world_from_map = output.WorldOf(reconstruction);
+  const SparseModel model =
+      MakeSparseModel(reconstruction, system.maps(), EquirectangularCamera(size.width, size.height),
+                      file_world_from_map);
+  const GeoreferenceResult placed =
+      PlaceRun(model, positions, reconstruction.up.has_value(), ParseUtcStart(options.positions));
+  if (!placed.failure.empty() && positions->is_from_input) Warn(placed.failure, &record);
   const nlohmann::json summary =
       Summarize(reconstruction, record, dense,
-                {options.input, options.mask, masked_fraction, options.weights, threads});
-  const Rigid3 file_world_from_map = output.Finish(reconstruction, summary, dense);
+                {options.input, options.sequence.lens, fps, options.mask, masked_fraction,
+                 options.weights, threads, placed.description});
+  output.Finish(reconstruction, summary, dense);
   if (!options.map_out.empty()) {
     WriteLargestMap(options.map_out, size.width, file_world_from_map, system);
   }
+  WriteSparseModel(output.folder() / kSparseModelName, model);
+  SaveGeoreference(output.folder(), placed.georeference);
+  SaveMask(output.folder(), mask);
   if (options.saves_sparse && options.weights == "none") {
     WriteSparseKeyframes(MakeSparseFolder(output.folder()), system.maps(),
                          OpenInput(options.input, sequence_options).get());
@@ -287,6 +260,7 @@ int Run(const RunOptions& options) {
                     (options.localizes ? " frames: the camera is nowhere in " + options.map_in
                                        : " frames; the camera must move and see some texture"));
   }
+  if (!placed.failure.empty() && !positions->is_from_input) throw UserError(placed.failure);
   return EXIT_SUCCESS;
 }
 
@@ -295,95 +269,7 @@ int Run(const RunOptions& options) {
 void AddRunCommand(CLI::App* app, Command* chosen) {
   CLI::App* command = app->add_subcommand("run", "Track a 360-degree video and map what it sees");
   const auto options = std::make_shared<RunOptions>();
-  SequenceOptions& sequence = options->sequence;
-  command
-      ->add_option(
-          "INPUT", options->input,
-          "Equirectangular video, folder of images, sequence folder, or town:NAME to render a "
-          "town (Town1 ... Town5, Loop, a seed) while tracking it")
-      ->required();
-  command->add_option("--out", options->out, "Folder for the results; created if need be")
-      ->required()
-      ->type_name("DIR");
-  command->add_option("--config", options->config, "Options as `orb360 config` prints them")
-      ->type_name("FILE");
-  command
-      ->add_option("--weights", options->weights,
-                   "Network for dense depth and the dense cloud (default: the one "
-                   "that comes with orb360); or none, for landmarks alone")
-      ->type_name("none|FILE");
-  command
-      ->add_option("--mask", options->mask,
-                   "What to leave out: auto finds what moves with the camera; or none; or an image "
-                   "that is black there")
-      ->type_name("auto|none|FILE")
-      ->capture_default_str();
-  command->add_option("--threads", options->threads, "Threads (default: one for each core)")
-      ->check(CLI::Range(1, 1024))
-      ->type_name("N");
-  command->add_option("--max-frames", sequence.max_frames, "Stop after so many frames")
-      ->check(CLI::Range(1, 1 << 30))
-      ->type_name("N");
-  command
-      ->add_option("--fps", sequence.fps,
-                   "Frames a second, instead of what the input says (image folders: 30)")
-      ->check(CLI::Range(1e-3, 1e6))
-      ->check(kIsNumber)
-      ->type_name("RATE");
-  command->add_option("--stride", sequence.stride, "Use every N-th frame")
-      ->check(CLI::Range(1, 1 << 30))
-      ->type_name("N");
-  command->add_option("--start", sequence.start, "First frame to use, counted from 0")
-      ->check(CLI::Range(0, 1 << 30))
-      ->type_name("N");
-  command
-      ->add_option("--camera-height", options->camera_height,
-                   "Height of the camera over the ground, metres (default: as the configuration or "
-                   "the input says, or 1.6)")
-      ->check(CLI::Range(0.01, 100.0))
-      ->check(kIsNumber)
-      ->type_name("M");
-  command->add_option("--resize", options->resize, "Scale every image first")->type_name("WxH");
-  CLI::Option* map_in =
-      command->add_option("--map-in", options->map_in, "Begin in a map that --map-out has written")
-          ->type_name("FILE");
-  CLI::Option* map_out = command
-                             ->add_option("--map-out", options->map_out,
-                                          "Keep the map, the largest of several, for later runs")
-                             ->type_name("FILE");
-  command
-      ->add_flag("--localize", options->localizes,
-                 "Only locate the camera in the map; the map stays as it is")
-      ->needs(map_in)
-      ->excludes(map_out);
-  command
-      ->add_option("--loops", options->loops,
-                   "Recognise places: close loops, join maps, find the camera after a loss")
-      ->check(CLI::IsMember({"on", "off"}))
-      ->type_name("on|off")
-      ->capture_default_str();
-  command->add_flag(
-      "--save-sparse", options->saves_sparse,
-      "Also write to DIR/sparse (HDF5) what the network completes: the image of each view "
-      "with points from landmarks and stereo; with --weights none each keyframe with "
-      "its landmarks");
-  command->add_flag(
-      "--save-depth", options->saves_depth,
-      "Also write the dense depth of each view to DIR/depth (16-bit PNG, metres * 256)");
-  command->add_flag("--save-views", options->saves_views,
-                    "Also keep in DIR/views what the dense cloud is made of (about 0.5 MB a "
-                    "view), so that `orb360 fuse DIR` can make it again");
-  command->add_flag("--mesh", options->has_mesh,
-                    "Also write the surface through the dense cloud to DIR/mesh.ply");
-  command
-      ->add_option("--cloud-quality", options->cloud_quality,
-                   "draft: of what the network completes from landmarks; normal: of what stereo "
-                   "between frames shows, and the network completes (takes longer); high: from "
-                   "images of up to 2048x1024 instead of 1024x512 (takes four times as long)")
-      ->check(CLI::IsMember({"draft", "normal", "high"}))
-      ->type_name("draft|normal|high")
-      ->default_str("normal");
-  command->add_flag("--quiet", options->is_quiet, "Show no progress");
+  AddRunOptions(command, options.get());
   command->callback([options, chosen] { *chosen = [options] { return Run(Settle(*options)); }; });
 }
 

@@ -102,9 +102,9 @@ DenseOutput RunOutput::WriteDense(const Reconstruction& reconstruction, const De
   return WriteDenseOutput(folder_, store, views, options, files.mesh);
 }
 
-Rigid3 RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,
-                         const std::optional<DenseOutput>& dense) {
-  Rigid3 file_world_from_map = WorldOf(reconstruction);
+void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,
+                       const std::optional<DenseOutput>& dense) {
+  const Rigid3 file_world_from_map = WorldOf(reconstruction);
   std::vector<ColoredPoint> cloud;
   cloud.reserve(reconstruction.landmarks.size());
   for (const CloudPoint& point : reconstruction.landmarks) {
@@ -126,7 +126,6 @@ Rigid3 RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::j
   WriteFileAtomically(folder_ / "summary.json", summary.dump(2) + "\n");
   WriteRunReport(folder_, reconstruction, summary, map_svg, dense ? dense->images : DenseImages());
   std::filesystem::remove(folder_ / kJournalName);
-  return file_world_from_map;
 }
 
 }  // namespace orb360

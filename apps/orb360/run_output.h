@@ -31,6 +31,9 @@ class RunOutput {
   /// world frame of the journal is that of the first pose, which is not levelled.
   void Append(double timestamp, const Rigid3& map_from_camera);
 
+  /// Returns the transformation from the map into the world of the finished files.
+  Rigid3 WorldOf(const Reconstruction& reconstruction) const;
+
   /// What WriteDense writes beside the cloud.
   struct DenseFiles {
     bool depth = false;  ///< The ranges of the views (SaveDepth).
@@ -44,15 +47,13 @@ class RunOutput {
 
   /// Writes trajectory.txt, keyframes.txt, scale.txt, the landmarks as cloud.ply (as landmarks.ply
   /// where there is a dense cloud), map.svg (where there is a keyframe), summary.json and the
-  /// report (WriteRunReport), then removes the journal. Returns file_world_from_map.
-  Rigid3 Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,
-                const std::optional<DenseOutput>& dense);
+  /// report (WriteRunReport), then removes the journal.
+  void Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,
+              const std::optional<DenseOutput>& dense);
 
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
-  Rigid3 WorldOf(const Reconstruction& reconstruction) const;
-
   const std::filesystem::path folder_;
   const bool is_new_folder_;
   TrajectoryJournal journal_;

@@ -73,8 +73,11 @@ std::vector<HtmlReport::Tile> MakeTiles(const Reconstruction& reconstruction,
     const bool is_assumed = scale.value("assumed_height", true);
     tiles.push_back(
         {WithUnit(100.0 * scale.value("sigma", 0.0), 1, "%"), "standard deviation of the metres"});
-    tiles.push_back({WithUnit(scale.value("camera_height", 0.0), 2, "m"),
-                     is_assumed ? "assumed camera height" : "camera height"});
+    const auto height = scale.find("camera_height");
+    if (height != scale.end() && height->is_number()) {  // Positions alone tell none.
+      tiles.push_back({WithUnit(height->get<double>(), 2, "m"),
+                       is_assumed ? "assumed camera height" : "camera height"});
+    }
   }
   return tiles;
 }

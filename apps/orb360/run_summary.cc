@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <sstream>
@@ -12,6 +13,8 @@
 #include <sys/resource.h>
 
 #include "apps/orb360/interrupt.h"
+#include "apps/orb360/run_positions.h"
+#include <orb360/nn/base/check.h>
 #include <orb360/slam/version.h>
 
 namespace orb360 {
@@ -80,6 +83,8 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
   nlohmann::json summary = {
       {"version", Version()},
       {"input", description.input},
+      {"lens", description.lens},
+      {"fps", nullptr},
       {"frames", record.frames},
       {"tracked", reconstruction.frames.size()},
       {"lost", reconstruction.lost},
@@ -108,9 +113,11 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
       {"levelled", reconstruction.up.has_value()},
       {"threads", description.threads},
       {"weights", description.weights},
+      {"positions", description.positions},
       {"interrupted", CaughtInterrupt() != 0 || record.failure != nullptr},
       {"warnings", record.warnings},
   };
+  if (description.fps) summary["fps"] = *description.fps;
   if (reconstruction.initialized_at) summary["initialized_at"] = *reconstruction.initialized_at;
   if (dense) {
     summary["cloud"] = {{"points", dense->cloud.points},
@@ -128,12 +135,34 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
   return summary;
 }
 
+RunSummary ReadSummary(const std::filesystem::path& path) {
+  try {
+    std::ifstream file(path);
+    const nlohmann::json json = nlohmann::json::parse(file);
+    RunSummary summary;
+    summary.input = json.at("input").get<std::string>();
+    summary.lens = json.value("lens", "");
+    summary.is_levelled = json.value("levelled", false);
+    if (json.contains("fps") && !json["fps"].is_null()) summary.fps = json["fps"].get<double>();
+    const nlohmann::json scale = json.value("scale", nlohmann::json::object());
+    summary.has_unknown_scale = scale.value("state", "") == ToString(ScaleState::kUnknown);
+    const bool has_positions = json.contains("positions") && !json["positions"].is_null();
+    if (!has_positions && scale.contains("value") && !scale["value"].is_null()) {
+      summary.scale = {std::log(scale["value"].get<double>()), scale.at("sigma").get<double>()};
+    }
+    return summary;
+  } catch (const nlohmann::json::exception&) {
+    throw UserError(path.string() + ": is damaged; run `orb360 run` again");
+  }
+}
+
 /// Says in one line how far the metres can be relied on, and what would help.
 std::string StateScale(const nlohmann::json& scale) {
   std::ostringstream text;
   text << std::fixed << "scale " << scale["state"].get<std::string>();
   if (scale["sources"].empty()) {
-    text << ": no ground was seen below the camera; lengths have an arbitrary unit";
+    text << ": no ground was seen below the camera; lengths have an arbitrary unit (positions "
+            "would tell it)";
     return text.str();
   }
   if (scale["sigma"].is_number()) {
@@ -144,6 +173,7 @@ std::string StateScale(const nlohmann::json& scale) {
   for (const nlohmann::json& source : scale["sources"]) {
     text << std::exchange(separator, " and ") << source.get<std::string>();
   }
+  if (scale["camera_height"].is_null()) return text.str();  // Only positions tell the scale.
   const bool is_assumed = scale["assumed_height"];
   text << std::setprecision(2)
        << (is_assumed ? "; an assumed camera height of " : ", camera height ")
@@ -171,13 +201,16 @@ std::string StateCloud(const nlohmann::json& summary) {
 }
 
 void PrintResult(const nlohmann::json& summary, const std::filesystem::path& folder) {
+  const nlohmann::json& positions = summary["positions"];
   std::cout << summary["tracked"] << " of " << summary["frames"] << " frames tracked in "
             << summary["maps"] << (summary["maps"] == 1 ? " map, " : " maps, ")
             << summary["keyframes"] << " keyframes, " << summary["landmarks"] << " landmarks, "
             << std::lround(summary["frames_per_second"].get<double>()) << " frames a second\n"
             << StateScale(summary["scale"]) << StateCloud(summary)
-            << "\nwrote trajectory.txt, keyframes.txt, scale.txt, cloud.ply, map.svg, summary.json "
-               "and report/report.html to "
+            << (positions.is_null() ? "" : "\n" + StatePositions(positions))
+            << "\nwrote trajectory.txt, keyframes.txt, scale.txt, cloud.ply, reconstruction.h5, "
+               "map.svg, summary.json"
+            << (IsPlaced(positions) ? ", georeference.json" : "") << " and report/report.html to "
             << folder.string() << std::endl;
 }
 

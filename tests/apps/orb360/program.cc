@@ -44,7 +44,7 @@ Program::~Program() {
 void Program::Signal(int signal) const { kill(pid_, signal); }
 
 bool Program::HasEnded() {
-  if (!has_ended_) has_ended_ = waitpid(pid_, &wait_status_, WNOHANG) == pid_;
+  if (!has_ended_) has_ended_ = wait4(pid_, &wait_status_, WNOHANG, &usage_) == pid_;
   return has_ended_;
 }
 
@@ -58,10 +58,11 @@ bool Program::WaitForOutput(const std::string& text) {
 }
 
 ProgramResult Program::Wait() {
-  if (!has_ended_) waitpid(pid_, &wait_status_, 0);
+  if (!has_ended_) wait4(pid_, &wait_status_, 0, &usage_);
   has_ended_ = true;
   return {WIFEXITED(wait_status_) ? WEXITSTATUS(wait_status_) : 128 + WTERMSIG(wait_status_),
-          ReadText(folder_ / "out"), ReadText(folder_ / "err")};
+          ReadText(folder_ / "out"), ReadText(folder_ / "err"),
+          static_cast<double>(usage_.ru_maxrss) / 1024.0};
 }
 
 }  // namespace orb360

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include <sys/resource.h>
 #include <sys/types.h>
 
 #include "tests/slam/io/temp_folder.h"
@@ -14,6 +15,7 @@ struct ProgramResult {
   int status = 0;  ///< Exit status; 128 + signal where a signal ended it, as in a shell.
   std::string out;
   std::string err;
+  double peak_memory_mb = 0;  ///< Largest resident memory, MiB.
 };
 
 /// A program that was built, running with the given arguments.
@@ -39,6 +41,7 @@ class Program {
   TempFolder folder_;  // standard output and error
   pid_t pid_ = -1;
   int wait_status_ = 0;
+  rusage usage_{};
   bool has_ended_ = false;
 };
 

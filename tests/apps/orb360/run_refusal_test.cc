@@ -49,6 +49,16 @@ TEST_F(RunTest, PerspectiveVideoIsRefusedWithTheReason) {
                                HasSubstr("equirectangular")));
 }
 
+TEST_F(RunTest, RawFisheyeRecordingsNeedACalibration) {
+  WriteBlanks();
+  EXPECT_THAT(Refusal({"--lens", "insta360"}), HasSubstr("is a folder"));
+  std::filesystem::remove_all(Input());
+  WriteText(Input(), "no video");
+  EXPECT_THAT(Refusal({"--lens", "nokia"}),
+              AllOf(HasSubstr("--lens: `nokia`"), HasSubstr("gopro-fusion")));
+  EXPECT_THAT(Refusal({"--lens", "insta360"}), HasSubstr("cannot be read as a video"));
+}
+
 TEST_F(RunTest, InputThatIsNotThereOrEmptyIsRefused) {
   EXPECT_THAT(Refusal(), HasSubstr(Input() + ": no such file or folder"));
   std::filesystem::create_directory(Input());

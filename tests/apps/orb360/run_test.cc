@@ -13,6 +13,7 @@
 
 #include "slam/io/ply.h"
 #include "slam/io/sparse_file.h"
+#include "slam/io/sparse_model_file.h"
 #include "tests/apps/orb360/program.h"
 #include "tests/apps/orb360/run_fixture.h"
 #include "tests/apps/orb360/textured_room.h"
@@ -71,7 +72,8 @@ TEST_F(RunTest, TheSameInputGivesTheSameBytesWithOneAndTwoThreads) {
       RunOrb360({"run", Input(), "--out", folder_ / "two", "--threads", "2", "--weights", "none"})
           .status,
       0);
-  for (const char* name : {"trajectory.txt", "keyframes.txt", "cloud.ply", "map.svg"}) {
+  for (const char* name :
+       {"trajectory.txt", "keyframes.txt", "cloud.ply", "map.svg", "reconstruction.h5"}) {
     EXPECT_EQ(ReadText(OutFile(name)), ReadText(folder_ / "two" / name)) << name;
   }
 }
@@ -238,6 +240,41 @@ TEST_F(RunTest, AMaskKeepsLandmarksOutOfWhatItCovers) {
   }
   EXPECT_GT(cloud.size(), 100u);
   EXPECT_LT(below, cloud.size() / 50);
+  // Exporters find the mask in the folder, until a run there has none.
+  EXPECT_EQ(cv::norm(cv::imread(OutFile("mask.png"), cv::IMREAD_UNCHANGED), mask, cv::NORM_INF),
+            0.0);
+  EXPECT_EQ(Run({"--mask", "none"}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(OutFile("mask.png")));
+}
+
+TEST_F(RunTest, TheReconstructionHasTheFramesOfTheTrajectoryAndTheLandmarksOfTheCloud) {
+  WriteRoom();
+  EXPECT_EQ(Run().status, 0);
+  const SparseModel model = ReadSparseModel(OutFile("reconstruction.h5"));
+  EXPECT_EQ(model.width, kSize.width);
+  EXPECT_EQ(model.height, kSize.height);
+  const std::vector<StampedPose> poses = ReadTrajectory(OutFile("trajectory.txt"));
+  ASSERT_EQ(model.frames.size(), poses.size());
+  Eigen::Matrix3d camera_from_optical;
+  camera_from_optical << 0, 0, -1, 1, 0, 0, 0, -1, 0;
+  for (size_t i = 0; i < poses.size(); ++i) {
+    const PosedFrame& frame = model.frames[i];
+    EXPECT_EQ(frame.index, static_cast<int>(i));
+    EXPECT_NEAR(frame.timestamp, poses[i].timestamp, 1e-9);
+    EXPECT_LT(
+        (frame.world_from_optical.translation - poses[i].world_from_camera.translation).norm(),
+        1e-8);
+    const Eigen::Quaterniond rotation =
+        poses[i].world_from_camera.rotation * Eigen::Quaterniond(camera_from_optical);
+    EXPECT_LT(frame.world_from_optical.rotation.angularDistance(rotation), 1e-7);
+  }
+  const auto is_keyframe = [](const PosedFrame& frame) { return frame.is_keyframe; };
+  EXPECT_EQ(std::ranges::count_if(model.frames, is_keyframe), Summary()["keyframes"]);
+  const std::vector<ColoredPoint> cloud = ReadPly(OutFile("cloud.ply"));
+  ASSERT_EQ(model.points.size(), cloud.size());
+  for (size_t p = 0; p < cloud.size(); ++p) {
+    EXPECT_LT((model.points[p].position.cast<float>() - cloud[p].position).norm(), 1e-5);
+  }
 }
 
 TEST_F(RunTest, ByDefaultWhatMovesWithTheCameraIsMasked) {
