@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <omp.h>
 
@@ -12,6 +13,7 @@
 #include "apps/town/option_checks.h"
 #include "apps/town/progress_bar.h"
 #include "apps/town/sequence/imported_drive.h"
+#include "apps/town/sequence/interior_drive.h"
 #include "apps/town/sequence/named_town.h"
 #include "apps/town/sequence/render_folder.h"
 #include "apps/town/sequence/sequence_writer.h"
@@ -23,6 +25,7 @@ namespace {
 
 struct Arguments {
   std::string town;
+  std::string interior;
   ImportedSpec imported;
   std::filesystem::path out;
   std::optional<int> frames;
@@ -81,6 +84,33 @@ std::unique_ptr<Drive> MakeTownDrive(const Arguments& arguments) {
   return std::make_unique<TownDrive>(spec, recording);
 }
 
+/// Prints what is wrong in one line, unless the list is empty.
+void Warn(const std::string& consequence, const std::vector<std::string>& problems) {
+  if (problems.empty()) return;
+  std::string all;
+  for (const std::string& problem : problems) {
+    all += all.empty() ? "" : "; ";
+    all += problem;
+  }
+  std::fprintf(stderr, "town: warning: %s (%zu): %s\n", consequence.c_str(), problems.size(),
+               all.c_str());
+}
+
+std::unique_ptr<Drive> MakeInteriorDrive(const Arguments& arguments) {
+  constexpr int kWidth = 1024;
+  constexpr int kFrames = 1200;  // a minute at 20 a second
+  InteriorSpec spec = ParseInterior(arguments.interior);
+  if (arguments.traffic)
+    throw UserError("--traffic is for a --town: nothing moves in an --interior");
+  Recording recording = RecordingOf(arguments, kWidth, 0);
+  spec.light = arguments.light;
+  spec.mount = {arguments.camera_height, arguments.pitch_degrees * kDegree,
+                arguments.roll_degrees * kDegree, arguments.shaking};
+  recording.frames = arguments.frames.value_or(kFrames);
+  recording.sensor.seed = spec.seed;
+  return std::make_unique<InteriorDrive>(spec, recording);
+}
+
 std::unique_ptr<Drive> MakeImportedDrive(const Arguments& arguments) {
   constexpr int kWidth = 1024;
   Recording recording = RecordingOf(arguments, kWidth, 0);
@@ -97,27 +127,23 @@ std::unique_ptr<Drive> MakeImportedDrive(const Arguments& arguments) {
                     " frames: ask for no more with --frames");
   }
   auto drive = std::make_unique<ImportedDrive>(spec, path, recording);
-  if (!drive->missing_textures().empty()) {
-    std::string problems;
-    for (const std::string& problem : drive->missing_textures()) {
-      problems += problems.empty() ? "" : "; ";
-      problems += problem;
-    }
-    std::fprintf(stderr, "town: warning: grey stands for %zu textures: %s\n",
-                 drive->missing_textures().size(), problems.c_str());
-  }
+  Warn("grey stands for textures", drive->missing_textures());
+  Warn("decorations are left out", drive->missing_decorations());
   return drive;
 }
 
 void Render(const Arguments& arguments) {
-  if (arguments.town.empty() == arguments.imported.scene.empty())
-    throw UserError("render takes either --town or --scene (see town render --help)");
-  if (!arguments.town.empty() && !arguments.imported.path.empty())
-    throw UserError("--path is for a --scene: a town has a path of its own");
+  const int chosen =
+      !arguments.town.empty() + !arguments.interior.empty() + !arguments.imported.scene.empty();
+  if (chosen != 1)
+    throw UserError("render takes either --town or --scene or --interior (see town render --help)");
+  if (arguments.imported.scene.empty() && !arguments.imported.path.empty())
+    throw UserError("--path is for a --scene: towns and interiors have paths of their own");
   RequireWritable(arguments.out);
   if (arguments.threads > 0) omp_set_num_threads(arguments.threads);
-  const std::unique_ptr<Drive> drive =
-      arguments.town.empty() ? MakeImportedDrive(arguments) : MakeTownDrive(arguments);
+  const std::unique_ptr<Drive> drive = !arguments.town.empty()       ? MakeTownDrive(arguments)
+                                       : !arguments.interior.empty() ? MakeInteriorDrive(arguments)
+                                                                     : MakeImportedDrive(arguments);
   ProgressBar bar;
   const FolderOptions options{arguments.depth_every, arguments.exr, arguments.masks};
   RenderIntoFolder(*drive, arguments.out, options,
@@ -127,8 +153,11 @@ void Render(const Arguments& arguments) {
 void AddSceneOptions(CLI::App* command, Arguments* arguments) {
   ImportedSpec& imported = arguments->imported;
   command->add_option("--town", arguments->town, "Town1 ... Town5, Loop, or a seed");
-  command->add_option("--scene", imported.scene,
-                      "Instead of a town: a file of textured meshes (OBJ, glTF, AC3D, ...)");
+  command->add_option("--interior", arguments->interior,
+                      "Instead of a town: the rooms of a building, by a seed");
+  command->add_option(
+      "--scene", imported.scene,
+      "Instead of a town: a file of textured meshes (OBJ, glTF, AC3D, Quake's BSP, ...)");
   command->add_option(
       "--path", imported.path,
       "The camera's path through the scene: lines `time x y z [qx qy qz qw]`, z up, "
@@ -142,8 +171,10 @@ void AddSceneOptions(CLI::App* command, Arguments* arguments) {
       ->default_str("y");
   command->add_option("--textures", imported.options.texture_folders,
                       "Folders with textures besides that of the scene");
-  command->add_option("--light", arguments->light,
-                      "noon, morning, sunset or overcast [the town's own; noon for a seed]");
+  command->add_option(
+      "--light", arguments->light,
+      "noon, morning, sunset or overcast [the town's own; noon for a seed; drawn from "
+      "the seed indoors]");
   command
       ->add_option("--traffic", arguments->traffic,
                    "Density of what moves, 0 to 1 [the town's own; 0 for a seed]")
@@ -156,8 +187,9 @@ void AddImageOptions(CLI::App* command, Arguments* arguments) {
                    "Folder to write; an interrupted rendering there is resumed")
       ->required();
   command
-      ->add_option("--frames", arguments->frames,
-                   "Number of frames [the town's own; 600 for a seed; the whole path]")
+      ->add_option(
+          "--frames", arguments->frames,
+          "Number of frames [the town's own; 600 for a seed; 1200 indoors; the whole path]")
       ->check(CLI::Range(1, 1000000));
   command
       ->add_option("--width", arguments->width,
@@ -179,7 +211,7 @@ void AddImageOptions(CLI::App* command, Arguments* arguments) {
       ->default_str("adaptive");
   command->add_option("--fps", arguments->fps, "Frames per second")
       ->capture_default_str()
-      ->check(CLI::Range(1.0, 1000.0));
+      ->check(CLI::Range(0.01, 1000.0));
   command
       ->add_option("--depth-every", arguments->depth_every, "Write the depth of every n-th frame")
       ->capture_default_str()
@@ -193,7 +225,8 @@ void AddImageOptions(CLI::App* command, Arguments* arguments) {
 void AddCameraOptions(CLI::App* command, Arguments* arguments) {
   command
       ->add_option("--camera-height", arguments->camera_height,
-                   "Metres above the road [drawn from the seed, 1.8 to 2.2]")
+                   "Metres above the road or the floor [drawn from the seed, 1.8 to 2.2; indoors "
+                   "0.3 to 2.2]")
       ->check(CLI::Range(0.2, 10.0));
   command
       ->add_option("--camera-pitch", arguments->pitch_degrees,

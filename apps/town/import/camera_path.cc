@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 #include <numbers>
 #include <optional>
 #include <sstream>
 #include <string>
 
+#include "slam/io/atomic_file.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360::town {
@@ -25,22 +27,6 @@ bool HasPositionsOnly(const std::filesystem::path& file) {
     if (count > 0) return count == 4;
   }
   return false;
-}
-
-/// Returns the distance to the nearest surface in a direction of any length, in units of that
-/// length; at most `far`.
-float DistanceAlong(const RayScene& scene, const Vector3f& origin, const Vector3f& direction,
-                    float far) {
-  RTCRayHit16 rays{};
-  // Where vectors are shorter than a packet, Embree traces all lanes with tnear <= tfar, whatever
-  // `valid` says.
-  std::ranges::fill(rays.ray.tfar, -1.0F);
-  alignas(64) std::array<int, kPacket> valid{};
-  valid[0] = -1;
-  SetRay(rays.ray, 0, origin, direction, far);
-  rays.hit.geomID[0] = RTC_INVALID_GEOMETRY_ID;
-  scene.Intersect(valid.data(), &rays);
-  return rays.ray.tfar[0];
 }
 
 }  // namespace
@@ -77,6 +63,20 @@ Rigid3 CameraPath::At(double time) const {
   return {pa.rotation.slerp(t, pb.rotation),
           s * s * (1 + 2 * t) * pa.translation + t * t * (1 + 2 * s) * pb.translation +
               duration * s * t * (s * Velocity(i - 1) - t * Velocity(i))};
+}
+
+void WriteCameraPath(const std::vector<double>& times,
+                     const std::vector<Eigen::Vector3d>& positions,
+                     const std::filesystem::path& file) {
+  ORB360_CHECK(times.size() == positions.size(), times.size());
+  std::ostringstream text;
+  text << "# time x y z; z up, metres, seconds\n" << std::fixed;
+  for (size_t i = 0; i < times.size(); ++i) {
+    const Eigen::Vector3d& p = positions[i];
+    text << std::setprecision(6) << times[i] << std::setprecision(3) << ' ' << p.x() << ' ' << p.y()
+         << ' ' << p.z() << '\n';
+  }
+  WriteFileAtomically(file, text.str());
 }
 
 std::vector<StampedPose> LookAhead(const std::vector<double>& times,
@@ -135,16 +135,20 @@ CameraPath ReadCameraPath(const std::filesystem::path& file) {
   return CameraPath(std::move(poses));
 }
 
+bool IsFree(const RayScene& scene, const Vector3f& from, const Vector3f& to) {
+  // The ray is slightly longer, so that a surface exactly at the end of a step is hit.
+  constexpr float kFar = 1.01F;
+  const Vector3f step = to - from;
+  return step.norm() < 1e-6F || DistanceAlong(scene, from, step, kFar) >= kFar;
+}
+
 void RequireFreePath(const RayScene& scene, const CameraPath& path, double end) {
   constexpr double kStep = 0.05;  // seconds
   Vector3f from = path.At(path.begin()).translation.cast<float>();
   double time = path.begin();
   while (time < end) {
     const Vector3f to = path.At(std::min(time + kStep, end)).translation.cast<float>();
-    const Vector3f step = to - from;
-    // The ray is slightly longer, so that a surface exactly at the end of a step is hit.
-    constexpr float kFar = 1.01F;
-    if (step.norm() >= 1e-6F && DistanceAlong(scene, from, step, kFar) < kFar) {
+    if (!IsFree(scene, from, to)) {
       std::ostringstream message;
       message << "the path goes through a surface at time " << time << ", near (" << from.x()
               << ", " << from.y() << ", " << from.z()

@@ -34,10 +34,18 @@ class CameraPath {
 /// '#' begins a comment. Throws UserError with file and line.
 CameraPath ReadCameraPath(const std::filesystem::path& file);
 
+/// Writes such a path of places: seconds with six decimals, metres with three. Throws UserError.
+void WriteCameraPath(const std::vector<double>& times,
+                     const std::vector<Eigen::Vector3d>& positions,
+                     const std::filesystem::path& file);
+
 /// Returns level poses that look from each place to the next one. Where the camera stands it keeps
 /// its direction; before it first moves it looks where it will go.
 std::vector<StampedPose> LookAhead(const std::vector<double>& times,
                                    const std::vector<Eigen::Vector3d>& positions);
+
+/// Returns false if a surface is between two places, or at the second one.
+bool IsFree(const RayScene& scene, const Vector3f& from, const Vector3f& to);
 
 /// Checks that a path meets no surface until `end`, in seconds of its own time. It looks ahead in
 /// steps so short that bends are followed however rare the frames are. Throws UserError that names

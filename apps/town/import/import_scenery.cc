@@ -8,6 +8,8 @@
 
 #include "apps/town/import/ac3d.h"
 #include "apps/town/import/assimp_scene.h"
+#include "apps/town/import/quake_scene.h"
+#include "apps/town/import/supertuxkart_scene.h"
 #include "apps/town/import/texture_file.h"
 #include <orb360/nn/base/check.h>
 
@@ -37,18 +39,19 @@ void AddMaterials(const SourceScene& source, const std::vector<std::filesystem::
   };
   if (source.materials.size() > std::numeric_limits<MaterialId>::max())
     throw UserError("the mesh has more than 65535 materials: join some");
-  std::map<std::string, Loaded> loaded;
+  std::map<std::pair<std::string, bool>, Loaded> loaded;  // by name and is_opaque
   const auto plain = [](float level) { return Texture(1, 1, {Rgba{level, level, level, 1}}); };
   palette->textures.push_back(plain(1));  // for surfaces without a texture
-  loaded[""] = {0, false};
+  for (const bool is_opaque : {false, true}) loaded[{"", is_opaque}] = {0, false};
   for (const SourceMaterial& material : source.materials) {
-    auto [entry, is_new] = loaded.try_emplace(material.texture);
+    auto [entry, is_new] = loaded.try_emplace({material.texture, material.is_opaque});
     if (is_new) {
       bool has_holes = false;
+      const Alpha alpha = material.is_opaque ? Alpha::kIgnored : Alpha::kCoverage;
       try {
         ImageTexture image = material.image.empty()
-                                 ? ReadTexture(FindTexture(material.texture, folders))
-                                 : MakeTexture(material.image, material.texture);
+                                 ? ReadTexture(FindTexture(material.texture, folders), alpha)
+                                 : MakeTexture(material.image, material.texture, alpha);
         has_holes = image.has_holes;
         palette->textures.push_back(std::move(image.texture));
       } catch (const UserError& error) {
@@ -59,7 +62,7 @@ void AddMaterials(const SourceScene& source, const std::vector<std::filesystem::
     }
     Material& added = palette->all.emplace_back();
     added.texture = entry->second.texture;
-    added.cutout = entry->second.has_holes && !material.is_opaque;
+    added.cutout = entry->second.has_holes;
     // Leaves and nets on flat faces transmit light from both sides.
     if (added.cutout) added.finish = Finish::kFoliage;
   }
@@ -89,17 +92,31 @@ float TilesPerMetre(const std::array<Vector3f, 3>& p, const std::array<Vector2f,
   return std::sqrt(tiles / std::max(area, 1e-9F));
 }
 
+/// Returns a vector of the file with z upward.
+Vector3f Turned(const Vector3f& v, UpAxis up) {
+  return up == UpAxis::kY ? Vector3f(v.x(), -v.z(), v.y()) : v;
+}
+
+/// Appends the light of a mesh's vertices. What has none among meshes with baked light looks as its
+/// texture does.
+void AddIrradiance(const SourceMesh& source, Mesh* mesh) {
+  const bool is_baked = source.irradiance.size() == source.positions.size();
+  for (size_t i = 0; i < source.positions.size(); ++i)
+    mesh->irradiance.emplace_back(is_baked ? source.irradiance[i] : Vector3f::Ones());
+}
+
 void AddMesh(const SourceMesh& source, const Eigen::Vector3f& colour, const ImportOptions& options,
              Mesh* mesh) {
-  const auto turn = [&](const Vector3f& v) -> Vector3f {
-    return options.up == UpAxis::kY ? Vector3f(v.x(), -v.z(), v.y()) : v;
-  };
   std::vector<Vector3f> positions;
-  for (const Vector3f& p : source.positions)
-    positions.push_back(static_cast<float>(options.scale) * turn(p));
+  constexpr float kFarthest = 1e6;  // metres; beyond it single precision is coarser than 6 cm
+  for (const Vector3f& p : source.positions) {
+    positions.push_back(ToWorld(p, options));
+    if (!(positions.back().cwiseAbs().maxCoeff() <= kFarthest))
+      throw UserError("the mesh has vertices more than 1000 km from its origin (see --scale)");
+  }
   std::vector<Vector3f> normals;
   if (source.normals.size() == positions.size()) {
-    for (const Vector3f& normal : source.normals) normals.push_back(turn(normal));
+    for (const Vector3f& normal : source.normals) normals.push_back(Turned(normal, options.up));
   } else {
     normals = SmoothNormals(positions, source.triangles);
   }
@@ -132,15 +149,24 @@ void AddMesh(const SourceMesh& source, const Eigen::Vector3f& colour, const Impo
   }
 }
 
+SourceScene ReadAnyFormat(const std::filesystem::path& path) {
+  if (path.filename() == "scene.xml") return ReadSuperTuxKartScene(path);
+  const std::string extension = LowerExtension(path);
+  if (extension == ".bsp") return ReadQuakeScene(path);
+  return extension == ".ac" || extension == ".acc" ? ReadAc3d(path) : ReadWithAssimp(path);
+}
+
 }  // namespace
+
+Vector3f ToWorld(const Vector3f& position, const ImportOptions& options) {
+  return static_cast<float>(options.scale) * Turned(position, options.up);
+}
 
 SourceScene ReadMeshFile(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) throw UserError(path.string() + ": no such file");
   if (std::filesystem::is_directory(path))
     throw UserError(path.string() + ": is a folder: name the file of meshes in it");
-  const std::string extension = LowerExtension(path);
-  SourceScene scene =
-      extension == ".ac" || extension == ".acc" ? ReadAc3d(path) : ReadWithAssimp(path);
+  SourceScene scene = ReadAnyFormat(path);
   const bool has_triangles = std::any_of(scene.meshes.begin(), scene.meshes.end(),
                                          [](const SourceMesh& m) { return !m.triangles.empty(); });
   if (!has_triangles) throw UserError(path.string() + ": holds no triangle");
@@ -155,8 +181,12 @@ Scenery MakeScenery(const SourceScene& source, const std::filesystem::path& fold
   folders.push_back(std::filesystem::absolute(folder) / "../../../data/textures");
   Scenery scenery;
   AddMaterials(source, folders, missing, &scenery.palette);
-  for (const SourceMesh& mesh : source.meshes)
+  const bool has_light = std::ranges::any_of(
+      source.meshes, [](const SourceMesh& mesh) { return !mesh.irradiance.empty(); });
+  for (const SourceMesh& mesh : source.meshes) {
     AddMesh(mesh, source.materials[mesh.material].colour, options, &scenery.fixed);
+    if (has_light) AddIrradiance(mesh, &scenery.fixed);
+  }
   scenery.fixed.PartitionCutouts(scenery.palette);
   return scenery;
 }

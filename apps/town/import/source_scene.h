@@ -16,6 +16,7 @@ struct SourceMaterial {
   std::string texture;     ///< file, relative to the mesh's folder; empty for none
   cv::Mat image = {};      ///< the texture itself, where it is inside the file
   bool is_opaque = false;  ///< whatever the texture's coverage says
+  bool is_liquid = false;  ///< nobody stands on it
 };
 
 /// Triangles of one material, in the axes and the unit of the file.
@@ -27,6 +28,9 @@ struct SourceMesh {
   /// One entry per position, or none; v points upward, in tiles.
   std::vector<Eigen::Vector2f> texture_coordinates;
   std::vector<Eigen::Vector3f> colours;  ///< linear factors, one for each position, or none
+  /// Baked light on the front, one for each position, or none: linear red, green and blue that
+  /// multiply the texture, 1 where the surface looks as its texture does.
+  std::vector<Eigen::Vector3f> irradiance;
   std::vector<std::array<uint32_t, 3>> triangles;
 };
 
@@ -34,6 +38,9 @@ struct SourceMesh {
 struct SourceScene {
   std::vector<SourceMaterial> materials;
   std::vector<SourceMesh> meshes;
+  /// Other files with decorations that could not be found, each once, with the reason.
+  std::vector<std::string> missing = {};
+  std::vector<Eigen::Vector3f> starts = {};  ///< places where people begin, if the file says
 };
 
 }  // namespace orb360::town

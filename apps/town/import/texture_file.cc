@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <string>
 #include <vector>
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "apps/town/import/lower_case.h"
 #include "apps/town/import/sgi_image.h"
+#include "apps/town/import/tga_image.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360::town {
@@ -22,10 +23,12 @@ int TextureSide(int side) {
   return std::min(static_cast<int>(std::bit_ceil(static_cast<unsigned>(side))), kLargestSide);
 }
 
-cv::Mat4b ToBgra(cv::Mat image, const std::string& name) {
+cv::Mat4b ToBgra(cv::Mat image, const std::string& name, Alpha alpha) {
   if (image.depth() == CV_16U) image.convertTo(image, CV_8U, 1.0 / 257);
   cv::Mat4b result;
   if (image.depth() == CV_8U) {
+    if (image.channels() == 4 && alpha == Alpha::kIgnored)
+      cv::cvtColor(image, image, cv::COLOR_BGRA2BGR);
     if (image.channels() == 1) cv::cvtColor(image, result, cv::COLOR_GRAY2BGRA);
     if (image.channels() == 3) cv::cvtColor(image, result, cv::COLOR_BGR2BGRA);
     if (image.channels() == 4) result = image;
@@ -80,14 +83,11 @@ void FillHoles(cv::Mat4f* image) {
 }  // namespace
 
 std::string LowerExtension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
+  return LowerCase(path.extension().string());
 }
 
-ImageTexture MakeTexture(const cv::Mat& image, const std::string& name) {
-  cv::Mat4f texels = ToLinear(ToBgra(image, name));
+ImageTexture MakeTexture(const cv::Mat& image, const std::string& name, Alpha alpha) {
+  cv::Mat4f texels = ToLinear(ToBgra(image, name, alpha));
   const bool has_holes = std::any_of(texels.begin(), texels.end(),
                                      [](const cv::Vec4f& texel) { return texel[3] < 0.5F; });
   if (has_holes) FillHoles(&texels);
@@ -107,18 +107,19 @@ ImageTexture MakeTexture(const cv::Mat& image, const std::string& name) {
   return {Texture(size.width, size.height, std::move(rows)), has_holes};
 }
 
-ImageTexture ReadTexture(const std::filesystem::path& path) {
+ImageTexture ReadTexture(const std::filesystem::path& path, Alpha alpha) {
   const std::string extension = LowerExtension(path);
   for (const char* sgi : {".rgb", ".rgba", ".sgi", ".bw"}) {
-    if (extension == sgi) return MakeTexture(ReadSgiImage(path), path.string());
+    if (extension == sgi) return MakeTexture(ReadSgiImage(path), path.string(), alpha);
   }
+  if (extension == ".tga") return MakeTexture(ReadTgaImage(path), path.string(), alpha);
   cv::Mat image;
   try {
     image = cv::imread(path.string(), cv::IMREAD_UNCHANGED);
   } catch (const cv::Exception&) {  // larger than OpenCV allows
   }
   if (image.empty()) throw UserError(path.string() + ": cannot be read as an image");
-  return MakeTexture(image, path.string());
+  return MakeTexture(image, path.string(), alpha);
 }
 
 }  // namespace orb360::town

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
-#include <numeric>
 #include <vector>
+
+#include "apps/town/render/lookout.h"
 
 namespace orb360::town {
 namespace {
@@ -13,23 +13,10 @@ namespace {
 constexpr int kDirections = 2 * kPacket;
 constexpr float kFar = 120;  // metres; what is farther away takes next to nothing of the sky
 
-/// Directions over the hemisphere about +z with a density proportional to the cosine (a Fibonacci
-/// spiral on the disc, projected upward).
-std::array<Vector3f, kDirections> CosineDirections() {
-  std::array<Vector3f, kDirections> directions;
-  for (size_t i = 0; i < directions.size(); ++i) {
-    const float squared_radius = (static_cast<float>(i) + 0.5F) / kDirections;
-    const float angle = std::numbers::pi_v<float> * (3 - std::sqrt(5.0F)) * static_cast<float>(i);
-    directions[i] = {std::sqrt(squared_radius) * std::cos(angle),
-                     std::sqrt(squared_radius) * std::sin(angle), std::sqrt(1 - squared_radius)};
-  }
-  return directions;
-}
-
 /// Returns the fraction of the directions about `normal` in which `occluded` finds nothing.
 template <typename Occluded>
 float Openness(const Vector3f& point, const Vector3f& normal, const Occluded& occluded) {
-  static const std::array<Vector3f, kDirections> kPattern = CosineDirections();
+  static const std::vector<Vector3f> kPattern = CosineDirections(kDirections);
   const Vector3f x = normal.unitOrthogonal();
   const Vector3f y = normal.cross(x);
   int open = 0;
@@ -45,25 +32,6 @@ float Openness(const Vector3f& point, const Vector3f& normal, const Occluded& oc
     for (int lane = 0; lane < kPacket; ++lane) open += rays.tfar[lane] >= 0 ? 1 : 0;
   }
   return static_cast<float>(open) / kDirections;
-}
-
-/// Returns the point from which a vertex looks: slightly off the surface and towards the inside of
-/// a triangle, so that it does not lie in the wall next to it.
-std::vector<Vector3f> LookoutPoints(const Mesh& mesh) {
-  std::vector<Vector3f> points = mesh.positions;
-  for (const Triangle& triangle : mesh.triangles) {
-    const Vector3f centre =
-        (mesh.positions[triangle.vertices[0]] + mesh.positions[triangle.vertices[1]] +
-         mesh.positions[triangle.vertices[2]]) /
-        3;
-    for (const uint32_t index : triangle.vertices) {
-      const Vector3f inward = centre - mesh.positions[index];
-      const float step = std::min(0.06F, 0.3F * inward.norm());  // metres
-      points[index] = mesh.positions[index] + step * inward.normalized() +
-                      0.02F * mesh.vertices[index].normal.cast<float>() / 127;
-    }
-  }
-  return points;
 }
 
 template <typename Occluded>
@@ -99,9 +67,11 @@ void BakeMesh(const Occluded& occluded, Mesh* mesh) {
 }  // namespace
 
 void BakeOpenness(const RayScene& scene, Scenery* scenery) {
-  BakeMesh(
-      [&](const int* valid, RTCRay16* rays) { scene.Occluded(valid, rays, Coherence::kSpread); },
-      &scenery->fixed);
+  if (scenery->fixed.irradiance.empty()) {
+    BakeMesh(
+        [&](const int* valid, RTCRay16* rays) { scene.Occluded(valid, rays, Coherence::kSpread); },
+        &scenery->fixed);
+  }
   for (uint32_t i = 0; i < scenery->models.size(); ++i) {
     const auto occluded = [&](const int* valid, RTCRay16* rays) {
       scene.OccludedByModel(i, valid, rays);

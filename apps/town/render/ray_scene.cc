@@ -127,6 +127,20 @@ void RayScene::OccludedByModel(uint32_t model, const int* valid, RTCRay16* rays)
   rtcOccluded16(valid, model_scenes_[model].get(), &context, rays);
 }
 
+float DistanceAlong(const RayScene& scene, const Vector3f& origin, const Vector3f& direction,
+                    float far) {
+  RTCRayHit16 rays{};
+  // Where vectors are shorter than a packet, Embree traces all lanes with tnear <= tfar, whatever
+  // `valid` says.
+  std::ranges::fill(rays.ray.tfar, -1.0F);
+  alignas(64) std::array<int, kPacket> valid{};
+  valid[0] = -1;
+  SetRay(rays.ray, 0, origin, direction, far);
+  rays.hit.geomID[0] = RTC_INVALID_GEOMETRY_ID;
+  scene.Intersect(valid.data(), &rays);
+  return rays.ray.tfar[0];
+}
+
 FrameScene::FrameScene(const RayScene& fixed, std::vector<Instance> moving)
     : fixed_(&fixed), moving_(std::move(moving)) {
   if (!moving_.empty()) moving_scene_ = fixed.MakeInstanceScene(moving_);

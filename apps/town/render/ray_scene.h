@@ -112,6 +112,11 @@ class RayScene {
   Scene fixed_scene_;
 };
 
+/// Returns the distance to the nearest surface in a direction of any length, in units of that
+/// length; at most `far`.
+float DistanceAlong(const RayScene& scene, const Vector3f& origin, const Vector3f& direction,
+                    float far);
+
 /// The scenery together with the objects that move through it at one moment. The RayScene must
 /// outlive it.
 class FrameScene {

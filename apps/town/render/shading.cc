@@ -6,7 +6,8 @@
 namespace orb360::town {
 namespace {
 
-constexpr uint64_t kSkyline = 1;  // seed of the mirrored houses
+constexpr uint64_t kSkyline = 1;            // seed of the mirrored houses
+constexpr float kIndoorReflectance = 0.5F;  // of what mirrors show indoors, lit as they are
 
 }  // namespace
 
@@ -46,7 +47,9 @@ void Shader::Shade(const FrameScene& scene, const EyePacket& rays,
       for (size_t i = 0; i < kLanes; ++i) {
         const auto finish = static_cast<Finish>(met->finish[i]);
         if (finish == Finish::kGlass || finish == Finish::kPaint)
-          reflected.Set(i, surroundings_.Radiance(described.mirrored.At(i)));
+          reflected.Set(i, met->is_baked[i] > 0
+                               ? Vector3f(kIndoorReflectance * met->irradiance.At(i))
+                               : surroundings_.Radiance(described.mirrored.At(i)));
       }
     }
     Illuminate(*met, described, albedo, blotches, reflected, *light_, sky_->mean(), sight);
@@ -58,9 +61,15 @@ void Shader::Shade(const FrameScene& scene, const EyePacket& rays,
     if (sight->surface[i] != 0) continue;
     Vector3f sum = Vector3f::Zero();
     for (const SampleLanes& sample : samples)
-      sum += sky_->Radiance(sample.direction.At(i)).cwiseMin(kMaximumRadiance);
+      sum += sky_->Radiance(sample.direction.At(i)).cwiseMin(kMaximumRadiance / exposure_);
     sight->shade.Set(i, sum / number);
     sight->sun.Set(i, Vector3f::Zero());
+  }
+  if (exposure_ == 1) return;
+  for (Lanes3* radiance : {&sight->shade, &sight->sun}) {
+    for (Lanes* channel : {&radiance->x, &radiance->y, &radiance->z}) {
+      for (float& value : *channel) value *= exposure_;
+    }
   }
 }
 

@@ -20,6 +20,8 @@ class Shader {
 
   const Light& light() const { return *light_; }
   const Sky& sky() const { return *sky_; }
+  /// Sets the factor on all radiance, 1 at first.
+  void set_exposure(float exposure) { exposure_ = exposure; }
 
   /// Returns the light from where the rays of a packet end, as the mean of `samples` (1 to
   /// kMaximumSamples). The first ones are the rays themselves; the others lie on the plane through
@@ -33,6 +35,7 @@ class Shader {
   const Light* light_;
   const Sky* sky_;
   Surroundings surroundings_;
+  float exposure_ = 1;
 };
 
 }  // namespace orb360::town

@@ -199,13 +199,23 @@ void IlluminateKernel(const SurfaceLanes& met, const DescribedLanes& described,
     const V3 ambient =
         MulAdd3(from_sky, Constant3(sky_mean), from_ground * Constant3(light.ground));
     V3 shade = Product(colour, ambient);
+    V glow = Constant(0.7F);  // of lamps, beyond what they reflect
+    if (met.any_baked) {
+      // The irradiance of a lamp's own faces is what it emits.
+      const auto is_baked = hn::Gt(hn::Load(d, met.is_baked.data() + i), Constant(0.5F));
+      const V3 baked = Product(colour, Load3(met.irradiance, i));
+      shade = {hn::IfThenElse(is_baked, baked.x, shade.x),
+               hn::IfThenElse(is_baked, baked.y, shade.y),
+               hn::IfThenElse(is_baked, baked.z, shade.z)};
+      glow = hn::IfThenElse(is_baked, Constant(0), glow);
+    }
     V3 sun = hn::Load(d, sight->sun_cosine.data() + i) * Product(colour, Constant3(light.sun));
     const VI finish = hn::Load(di, met.finish.data() + i);
     const auto is = [&](int32_t kind) HWY_ATTR {
       const auto same = hn::Eq(finish, hn::Set(di, kind));
       return hn::RebindMask(d, same);
     };
-    shade = MulAdd3(hn::IfThenElseZero(is(kLamp), Constant(0.7F)), colour, shade);
+    shade = MulAdd3(hn::IfThenElseZero(is(kLamp), glow), colour, shade);
     if (met.any_mirror) {
       const auto is_glass = is(kGlass);
       const auto is_mirror = hn::Or(is_glass, is(kPaint));

@@ -13,12 +13,15 @@ namespace orb360::town {
 /// A scenery under a sky, ready to be rendered.
 class Stage {
  public:
-  /// Keeps a pointer to the scenery and computes its openness, which takes seconds. The clouds are
+  /// Keeps a pointer to the scenery and computes the light of its lamps and its openness, which
+  /// takes seconds. The clouds are
   /// drawn from the seed.
   Stage(Scenery* scenery, const Light& light, uint64_t seed);
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
 
+  /// Sets the factor on the radiance of all images, 1 at first.
+  void set_exposure(float exposure) { shader_.set_exposure(exposure); }
   const RayScene& scene() const { return scene_; }
   const Shader& shader() const { return shader_; }
   FrameScene With(std::vector<Instance> moving) const { return {scene_, std::move(moving)}; }

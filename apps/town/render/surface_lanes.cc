@@ -31,6 +31,15 @@ void GatherLane(const FrameScene& scene, const Palette& palette, const EyePacket
   met->blotches[i] = material.blotches;
   met->blotch_scale[i] = 1 / (kBlotchMetres * material.tiles_per_metre);
   met->any_blotches |= material.blotches > 0;
+  const std::vector<Vector3f>& irradiance = hit.mesh->irradiance;
+  met->is_baked[i] = irradiance.empty() ? 0 : 1;
+  met->irradiance.Set(i, Vector3f::Zero());
+  if (!irradiance.empty()) {
+    met->any_baked = true;
+    met->irradiance.Set(i, (1 - met->b[i] - met->c[i]) * irradiance[triangle.vertices[0]] +
+                               met->b[i] * irradiance[triangle.vertices[1]] +
+                               met->c[i] * irradiance[triangle.vertices[2]]);
+  }
   met->openness[i] = 1;
   met->paint.Set(i, Vector3f::Ones());
   if (hit.instance == nullptr) return;
@@ -50,9 +59,10 @@ void GatherLane(const FrameScene& scene, const Palette& palette, const EyePacket
 
 void RepeatLane(size_t from, size_t to, SurfaceLanes* met) {
   for (Lanes* lanes : {&met->b, &met->c, &met->range, &met->texels_per_metre, &met->openness,
-                       &met->blotches, &met->blotch_scale})
+                       &met->blotches, &met->blotch_scale, &met->is_baked})
     (*lanes)[to] = (*lanes)[from];
-  for (Lanes3* lanes : {&met->geometric_normal, &met->paint}) lanes->Set(to, lanes->At(from));
+  for (Lanes3* lanes : {&met->geometric_normal, &met->paint, &met->irradiance})
+    lanes->Set(to, lanes->At(from));
   if (met->any_turned) {
     for (Lanes& element : met->rotation) element[to] = element[from];
   }
@@ -71,7 +81,7 @@ bool Gather(const FrameScene& scene, const Palette& palette, const EyePacket& ra
   int first_hit = 0;
   while (first_hit < kLanes && !rays.Hits(first_hit)) ++first_hit;
   if (first_hit == kLanes) return false;
-  met->any_turned = met->any_blotches = met->any_mirror = false;
+  met->any_turned = met->any_blotches = met->any_baked = met->any_mirror = false;
   for (int lane = 0; lane < kLanes; ++lane) {
     if (rays.Hits(lane)) GatherLane(scene, palette, rays, lane, met);
   }

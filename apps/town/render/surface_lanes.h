@@ -29,6 +29,8 @@ struct SurfaceLanes {
   Lanes texels_per_metre;  ///< of level 0, the geometric mean of both directions
   Lanes3 paint;            ///< factor on the colour
   Lanes openness;          ///< factor on the vertices'
+  Lanes3 irradiance;       ///< in place of the sky's light; valid only if `any_baked`
+  Lanes is_baked;          ///< 1 where the light is `irradiance`, else 0
   Lanes blotches;          ///< strength of the large-scale variation
   Lanes blotch_scale;      ///< its tiles for each of the texture's
   alignas(64) std::array<int32_t, kLanes> finish;
@@ -38,6 +40,7 @@ struct SurfaceLanes {
   std::array<bool, kLanes> hits;
   bool any_turned;
   bool any_blotches;
+  bool any_baked;
   bool any_mirror;
 };
 

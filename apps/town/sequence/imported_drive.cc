@@ -11,13 +11,18 @@ ImportedDrive::ImportedDrive(const ImportedSpec& spec, const CameraPath& path,
       spec_(spec),
       light_(MakeLight(spec.light, 0)),
       path_(path),
-      scenery_(
-          MakeScenery(ReadMeshFile(spec.scene), spec.scene.parent_path(), spec.options, &missing_)),
+      scenery_(Import(spec)),
       stage_(&scenery_, light_, 0) {
   std::vector<Rigid3> poses;
   for (int frame = 0; frame < frames(); ++frame) poses.push_back(WorldFromCamera(frame));
   RequireFreePath(stage_.scene(), path_, path_.begin() + (frames() - 1) / fps());
   camera_height_ = HeightAboveGround(stage_.scene(), poses);
+}
+
+Scenery ImportedDrive::Import(const ImportedSpec& spec) {
+  const SourceScene source = ReadMeshFile(spec.scene);
+  missing_decorations_ = source.missing;
+  return MakeScenery(source, spec.scene.parent_path(), spec.options, &missing_);
 }
 
 std::string ImportedDrive::Origin() const {

@@ -29,6 +29,8 @@ class ImportedDrive : public Drive {
   std::string Origin() const override;
   /// Returns the textures that could not be read, with the reasons.
   const std::vector<std::string>& missing_textures() const { return missing_; }
+  /// Returns the decorations that could not be found, with the reasons.
+  const std::vector<std::string>& missing_decorations() const { return missing_decorations_; }
 
  protected:
   const Stage& stage() const override { return stage_; }
@@ -36,10 +38,13 @@ class ImportedDrive : public Drive {
   std::vector<Instance> MovingAt(double) const override { return {}; }
 
  private:
+  Scenery Import(const ImportedSpec& spec);
+
   ImportedSpec spec_;
   Light light_;  // an unknown one is refused before the mesh is read
   CameraPath path_;
   std::vector<std::string> missing_;
+  std::vector<std::string> missing_decorations_;
   Scenery scenery_;
   Stage stage_;
   std::optional<double> camera_height_;

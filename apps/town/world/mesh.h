@@ -35,10 +35,15 @@ struct Mesh {
   std::vector<Vector3f> positions;
   std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;
+  /// By vertex, the radiance that a white matte surface there has without the direct sun (the
+  /// irradiance over pi), linear red, green, blue. Empty: the sky lights the mesh, as far as
+  /// Vertex::openness lets it.
+  std::vector<Vector3f> irradiance;
   size_t opaque_count = 0;  ///< triangles before this one have no cut-outs; set by PartitionCutouts
 
   /// Moves the triangles of materials with cut-outs to the end.
   void PartitionCutouts(const Palette& palette);
+  /// Appends another mesh's faces; both have no irradiance.
   void Append(const Mesh& other, const Eigen::Affine3f& mesh_from_other);
 };
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "apps/town/world/lamp.h"
 #include "apps/town/world/materials.h"
 #include "apps/town/world/mesh.h"
 
@@ -23,6 +24,9 @@ struct Scenery {
   Mesh fixed;                ///< ground and buildings
   std::vector<Mesh> models;  ///< trees, lamp posts, cars, ... shared by instances
   std::vector<Instance> instances;
+  /// What lights `fixed` from within. If there are any, Stage bakes their light into its
+  /// irradiance; instances are lit by the sky.
+  std::vector<Lamp> lamps;
 };
 
 }  // namespace orb360::town

@@ -64,7 +64,11 @@ TEST_F(TownCommandTest, AnswersBadTownsWithOneLine) {
   ExpectRefused("describe Town1 Town9", "unknown town 'Town9'");
   ExpectRefused("render --town 1 --light dusk" + Out(),
                 "unknown light 'dusk': use noon, morning, sunset or overcast");
-  ExpectRefused("render" + Out(), "either --town or --scene");
+  ExpectRefused("render" + Out(), "either --town or --scene or --interior");
+  ExpectRefused("render --interior Cellar" + Out(), "unknown interior 'Cellar': use a seed");
+  ExpectRefused("render --interior 1 --traffic 1" + Out(), "--traffic is for a --town");
+  ExpectRefused("render --interior 1 --light dusk" + Out(), "unknown light 'dusk'");
+  ExpectRefused("render --interior 1 --town 1" + Out(), "either --town or --scene");
   ExpectRefused("render --town 1 --path " + Write("p.txt", "0 1 2 3\n1 1 2 4\n") + Out(),
                 "--path is for a --scene");
   ExpectRefused("render --town 1 --out /dev/null/x", "/dev/null is a file");
@@ -104,9 +108,27 @@ TEST_F(TownCommandTest, AnswersBadCircuitsAndRecordingsWithOneLine) {
   const std::string path_out = " --out " + (folder_ / "path.txt").string();
   ExpectRefused("path --torcs " + (folder_ / "no.acc").string() + path_out, "no.acc: no such file");
   ExpectRefused("path --torcs " + Wall() + path_out, "has no ring of road");
+  ExpectRefused("path" + path_out, "one of --torcs, --kart and --walk");
+  ExpectRefused("path --walk 1 --laps 2 --scene " + Wall() + path_out, "--laps is for");
+  ExpectRefused("path --walk 1 --scene " + Wall() + path_out,
+                "wall.obj: nobody can walk here: there is no floor");
+  ExpectRefused("path --walk 1 --scene " + Wall() + " --start 900,0,0" + path_out,
+                "wall.obj: the start is outside");
+  ExpectRefused("path --walk 1 --scene " + Write("cut.bsp", "IBSP") + path_out,
+                "cut.bsp: is damaged");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "path.txt"));
   ExpectRefused("stitch " + folder_.string() + Out(), "front: no such folder");
   ExpectRefused("stitch " + (folder_ / "nowhere").string() + Out(), "front: no such folder");
+}
+
+TEST_F(TownCommandTest, WalksAreRendered) {
+  const std::string scene =
+      Write("floor.obj", "v 0 0 0\nv 20 0 0\nv 20 0 -20\nv 0 0 -20\nf 1 2 3 4\n");
+  const std::string path = (folder_ / "walk.txt").string();
+  EXPECT_EQ(RunTown("path --walk 7 --length 10 --scene " + scene + " --out " + path).status, 0);
+  EXPECT_EQ(
+      RunTown("render --width 64 --fps 2 --scene " + scene + " --path " + path + Out()).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out/rgb/000016.jpg"));  // 10 m at 1.2 m/s
 }
 
 TEST_F(TownCommandTest, AnswersAFullDiskWithOneLine) {
