@@ -1,7 +1,7 @@
 """A network that can be trained: a description with parameters."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 
 import numpy as np
 import torch
@@ -18,18 +18,21 @@ SOFTPLUS_BETA = 10.0
 class Network(nn.Module):
     """Parameters are named layers.LAYER.weight and layers.LAYER.bias.
 
-    With `normalizes`, batches are normalized behind 3 x 3 convolutions while it is trained
-    (Ioffe and Szegedy, "Batch Normalization"); otherwise, and in files, that is part of the weights.
+    With `normalizes`, batches are normalized behind 3 x 3 convolutions, whose names begin with `only`,
+    while it is trained (Ioffe and Szegedy, "Batch Normalization"); otherwise, and in files, that is
+    part of the weights.
     """
 
-    def __init__(self, description: Description, seed: int = 0, normalizes: bool = False) -> None:
+    def __init__(
+        self, description: Description, seed: int = 0, normalizes: bool = False, only: str = ""
+    ) -> None:
         super().__init__()
         self.description = description
         self.normalizations = nn.ModuleDict(
             {
                 layer.name: nn.BatchNorm2d(layer.outputs, momentum=0.05)
                 for layer in description.layers
-                if normalizes and _is_inner_convolution(layer)
+                if normalizes and _is_inner_convolution(layer) and layer.name.startswith(only)
             }
         )
         self.layers = nn.ModuleDict(
@@ -53,9 +56,11 @@ class Network(nn.Module):
             self.layers[layer.name]["bias"] = nn.Parameter(bias.clone())
 
     @torch.no_grad()
-    def calibrate(self, inputs: Mapping[str, Tensor], bfloat16: bool = False) -> None:
-        """Initializes the batch normalization so that it changes nothing for these inputs, and
-        training continues from loaded weights."""
+    def calibrate(
+        self, inputs: Mapping[str, Tensor], layers: Collection[str], bfloat16: bool = False
+    ) -> None:
+        """Initializes the batch normalization behind these layers so that it changes nothing for
+        these inputs, and their training continues from loaded weights."""
 
         def observe(norm: nn.BatchNorm2d) -> Callable[[Tensor], Tensor]:
             def identity(x: Tensor) -> Tensor:
@@ -68,7 +73,10 @@ class Network(nn.Module):
 
             return identity
 
-        behind = {name: observe(norm) for name, norm in self.normalizations.items()}
+        behind = {
+            name: observe(norm) if name in layers else norm
+            for name, norm in self.normalizations.items()
+        }
         run(self.description.graph, self._plain_weights(), inputs, bfloat16, behind)
 
     @property
@@ -81,10 +89,18 @@ class Network(nn.Module):
         layers = filter(_is_inner_convolution, self.description.layers)
         return [self.layers[layer.name]["weight"] for layer in layers]
 
-    def fix_propagation(self) -> None:
-        """Excludes normalized convolutions from training."""
+    def fix_others(self, prefix: str) -> None:
+        """Excludes from training all layers whose names do not begin so."""
         for layer in self.description.layers:
-            self.layers[layer.name].requires_grad_(not layer.is_normalized)
+            if not layer.name.startswith(prefix):
+                self.layers[layer.name].requires_grad_(False)
+
+    def fix_propagation(self) -> None:
+        """Excludes the normalized convolutions of the first estimate from training. Those of a
+        refinement, whose layers begin with "refined", come later and go on."""
+        for layer in self.description.layers:
+            if layer.is_normalized and not layer.name.startswith("refined"):
+                self.layers[layer.name].requires_grad_(False)
 
     def weights(self) -> dict[str, Tensor]:
         """Weights in the form that operations and files have."""

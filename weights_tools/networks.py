@@ -1,14 +1,20 @@
-"""The published networks and the project's own, as descriptions.
+"""The project's own networks, as descriptions, and all networks by name.
 
 Widths are parameters so that tests can run small copies; the defaults are the networks themselves.
 """
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
-from weights_tools.builder import Builder, Description, Layer, Pair, Symbol
+from weights_tools.builder import Builder, Description, Pair, Symbol
+from weights_tools.published_networks import (
+    encoder_decoder,
+    image_and_points,
+    multi_stream,
+    unguided,
+)
 
 # Units of inputs and outputs, for people who read a file.
-METRES = {"image": "RGB in 0..1", "depth": "metres, 0 where unknown", "confidence": "0..1"}
 LOG_DEPTH = {
     "image": "RGB in 0..1",
     "depth": "any unit, 0 where unknown",
@@ -21,95 +27,57 @@ LOG_DEPTH = {
 }
 
 
-def unguided() -> Description:
-    """Confidence propagation without an image; Eldesokey et al. 2019: 481 parameters."""
-    b = Builder("unguided normalized convolutions", 8, "zero")
-    pair = _unguided(b, Pair(b.input("depth", 1), b.input("confidence", 1)))
-    return b.build({"depth": pair.x, "confidence": pair.c}, METRES)
-
-
-def _unguided(b: Builder, sparse: Pair) -> Pair:
-    n1 = b.normalized_layer("n1", 1, 2, 5)
-    n2, n3 = (b.normalized_layer(name, 2, 2, 5) for name in ("n2", "n3"))
-    n4, n5, n6 = (b.normalized_layer(name, 4, 2, 3) for name in ("n4", "n5", "n6"))
-    n7 = b.normalized_layer("n7", 2, 1, 1)
-
-    level = b.normalized_convolution("level0.n1", sparse, n1)
-    level = b.normalized_convolution("level0.n2", level, n2)
-    level0 = b.normalized_convolution("level0", level, n3)
-    level = b.confidence_pool("level1.pool", level0, "quarter")
-    level = b.normalized_convolution("level1.n2", level, n2)
-    level1 = b.normalized_convolution("level1", level, n3)
-    level = b.confidence_pool("level2.pool", level1, "quarter")
-    level2 = b.normalized_convolution("level2", level, n2)
-    level = b.confidence_pool("level3.pool", level2, "quarter")
-    level3 = b.normalized_convolution("level3", level, n2)
-
-    def join(name: str, first: Pair, second: Pair, layer: Layer) -> Pair:
-        both = b.concatenate_pairs(f"{name}.concatenated", first, second)
-        return b.normalized_convolution(name, both, layer)
-
-    up = b.upsample_nearest_pair("level3.up", level3)
-    decoded = join("decoded2", level2, up, n4)
-    up = b.upsample_nearest_pair("decoded2.up", decoded)
-    decoded = join("decoded1", level1, up, n5)
-    up = b.upsample_nearest_pair("decoded1.up", decoded)
-    decoded = join("decoded0", up, level0, n6)  # the other order, as published
-    return b.normalized_convolution("propagated", decoded, n7)
-
-
-def encoder_decoder(encoder: int = 80, decoder: Sequence[int] = (64, 64, 32, 32)) -> Description:
-    """Guided by the image from the first layer, as the paper describes it: 484,203 parameters."""
-    b = Builder("guided encoder-decoder", 32, "zero")
-    image, sparse = _image_and_points(b)
-    propagated = _unguided(b, sparse)
-
-    x = b.concatenate("fused", propagated.x, image, propagated.c)
-    skips = []
-    for i in range(1, 6):
-        x = b.convolution(f"encoder{i}", x, encoder, stride=2, slope=0)
-        skips.append(x)
-    skips = [sparse.x, *skips[:-1]]
-    for i, outputs in zip(range(4, -1, -1), [*decoder, 1], strict=True):
-        up = b.upsample_nearest(f"decoder{i}.up", x)
-        both = b.concatenate(f"decoder{i}.concatenated", up, skips[i])
-        x = b.convolution(f"decoder{i}", both, outputs, slope=0.2)
-    return b.build({"depth": x, "confidence": propagated.c}, METRES)
-
-
-def multi_stream(depth: int = 16, image: int = 64, narrow: int = 32) -> Description:
-    """Fuses depth and image late, at full resolution: 356,242 parameters."""
-    b = Builder("guided multi-stream", 8, "zero")
-    panorama, sparse = _image_and_points(b)
-    propagated = _unguided(b, sparse)
-
-    def stream(name: str, x: Symbol, widths: Sequence[int]) -> Symbol:
-        for i, width in enumerate(widths, 1):
-            x = b.convolution(f"{name}{i}", x, width, slope=0)
-        return x
-
-    coloured = b.concatenate("coloured", panorama, propagated.c)
-    x = b.concatenate(
-        "streams",
-        stream("depth", propagated.x, [depth] * 6),
-        stream("image", coloured, [image] * 6),
-    )
-    x = stream("joint", x, [image] * 3 + [narrow] * 3)
-    x = b.convolution("completed", x, 1, size=1)
-    return b.build({"depth": x, "confidence": propagated.c}, METRES)
-
-
 def depth_completion(
+    widths: Sequence[int] = (32, 64, 96, 128, 160),
+    hidden: int = 64,
+    refined: int = 32,
+    padding: str = "wrap_replicate",
+) -> Description:
+    """The project's own: 2.48 million parameters, 5.6 GMAC at 512 x 1024.
+
+    What needs to see far works at half of the size (`coarse_depth_completion`); its depth is then
+    corrected by the points and sharpened by the whole image.
+    """
+    # 128 of the image's pixels are one at the last level, which must be even to cross the poles.
+    b = Builder(
+        "panoramic depth completion", 256 if padding == "wrap_cross_pole" else 128, padding
+    )
+    image, sparse = image_and_points(b)
+    points, scale = b.median_log("points", sparse.x, sparse.c)
+    # The rule takes the square root, which leaves the confidence itself.
+    squared = Pair(points.x, b.pointwise("multiply", "points.squared", points.c, points.c))
+    half_points = b.confidence_pool("points.half", squared, "sqrt")
+    half_image = b.average_pool("image.half", image)
+    coarse = _complete(b, half_points, half_image, widths, hidden)
+    log_depth = _refine(b, image, points, half_points, coarse.log_depth, refined)
+    odds = b.upsample_bilinear("log_odds.half", coarse.log_odds)
+    return _build_completion(b, log_depth, odds, scale, coarse.log_metric_scale)
+
+
+def coarse_depth_completion(
     widths: Sequence[int] = (32, 64, 96, 128, 160),
     hidden: int = 64,
     padding: str = "wrap_replicate",
 ) -> Description:
-    """The project's own: 2.46 million parameters, 12.39 GMAC at 512 x 1024."""
-    # 64 of the image's pixels are one at the last level, which must be even to cross the poles.
+    """The part of depth_completion that works at half of the size: 2.46 million parameters."""
     multiple = 128 if padding == "wrap_cross_pole" else 64
-    b = Builder("panoramic depth completion", multiple, padding)
-    image, sparse = _image_and_points(b)
+    b = Builder("coarse panoramic depth completion", multiple, padding)
+    image, sparse = image_and_points(b)
     points, scale = b.median_log("points", sparse.x, sparse.c)
+    coarse = _complete(b, points, image, widths, hidden)
+    return _build_completion(b, coarse.log_depth, coarse.log_odds, scale, coarse.log_metric_scale)
+
+
+class _Completion(NamedTuple):
+    log_depth: Symbol
+    log_odds: Symbol  # of the confidence and of the ground, at half of the size
+    log_metric_scale: Symbol
+
+
+def _complete(
+    b: Builder, points: Pair, image: Symbol, widths: Sequence[int], hidden: int
+) -> _Completion:
+    """An encoder-decoder with the points as they are propagated, at the size of its inputs."""
     propagated = _propagate(b, points)
 
     encoded = _encode(b, _features(b, points, propagated, image), widths)
@@ -125,20 +93,63 @@ def depth_completion(
     other = b.pointwise("add", "propagated.more", other, against)
     other = b.pointwise("multiply", "trusted", other, b.pointwise("sigmoid", "trust", trust))
     coarse = b.pointwise("add", "coarse", own, other)
-    log_depth = b.convex_upsample("log_depth", coarse, b.slice("shares", heads, 4, 36))
-    odds = b.upsample_bilinear("log_odds", b.slice("log_odds.half", heads, 2, 2))
-    likely = b.pointwise("sigmoid", "likely", odds)
-    confidence, ground = b.slice("completed.c", likely, 0, 1), b.slice("ground", likely, 1, 1)
+    log_depth = b.convex_upsample("completed", coarse, b.slice("shares", heads, 4, 36))
+    odds = b.slice("completed.odds", heads, 2, 2)
 
     x = b.global_average_pool("global.mean", encoded[-1])
     x = b.dense("global1", x, hidden, slope=_LEAK)
     log_metric_scale = b.dense("global2", x, 1, gain=_SMALL)
+    return _Completion(log_depth, odds, log_metric_scale)
+
+
+def _refine(
+    b: Builder, image: Symbol, points: Pair, half_points: Pair, log_depth: Symbol, width: int
+) -> Symbol:
+    """Spreads what the points differ by from a depth of half the size, and doubles its size."""
+    against = b.pointwise("affine", "completed.negative", log_depth, scale=-1.0, offset=0.0)
+    off = b.pointwise("add", "refined.difference", half_points.x, against)
+    known = b.pointwise("multiply", "refined.known", off, half_points.c)
+    seen = b.concatenate("refined.image", image, points.c)
+    seen = b.convolution("refined1", seen, width - 8, stride=2, slope=_LEAK)
+    x = b.concatenate("refined.features", seen, log_depth, known, half_points.c)
+    x = b.convolution("refined2", x, width, slope=_LEAK)
+    x = b.convolution("refined3", x, width, slope=_LEAK)
+    heads = b.convolution("refined4", x, 2 + 36, size=1, gain=_SMALL)
+
+    # A point counts as far as it is believed; its difference reaches as far as the other says.
+    believed = b.pointwise("sigmoid", "refined.belief", b.slice("refined.odds", heads, 0, 1))
+    believed = b.pointwise("multiply", "refined.points.c", half_points.c, believed)
+    spread = _spread(b, Pair(off, believed))
+    near = b.pointwise("clamp", "refined.clamped", spread.c, minimum=1e-8, maximum=1.0)
+    near = b.convolution("refined5", b.pointwise("log", "refined.near", near), 1, size=1)
+    reach = b.pointwise("add", "refined.reach", b.slice("refined.far", heads, 1, 1), near)
+    reach = b.pointwise("sigmoid", "refined.share", reach)
+    change = b.pointwise("multiply", "refined.change", reach, spread.x)
+    corrected = b.pointwise("add", "refined.corrected", log_depth, change)
+    return b.convex_upsample("log_depth", corrected, b.slice("refined.shares", heads, 2, 36))
+
+
+def _spread(b: Builder, pair: Pair) -> Pair:
+    """Means of what is known nearby. Each coarser level counts a quarter, so that the nearest
+    points prevail."""
+    first, shared = (b.normalized_layer(f"refined_{name}", 1, 1, 5) for name in ("first", "shared"))
+    levels = [b.normalized_convolution("refined.level0", pair, first)]
+    for i in range(1, 4):
+        pooled = b.confidence_pool(f"refined.level{i}.pool", levels[-1], "quarter")
+        levels.append(b.normalized_convolution(f"refined.level{i}", pooled, shared))
+    return _merge(b, "refined_spread", levels)
+
+
+def _build_completion(
+    b: Builder, log_depth: Symbol, odds: Symbol, scale: Symbol, log_metric_scale: Symbol
+) -> Description:
+    likely = b.pointwise("sigmoid", "likely", b.upsample_bilinear("log_odds", odds))
     outputs = {
         "log_depth": log_depth,
-        "confidence": confidence,
+        "confidence": b.slice("completed.c", likely, 0, 1),
         "scale": scale,
         "log_metric_scale": log_metric_scale,
-        "ground": ground,
+        "ground": b.slice("ground", likely, 1, 1),
     }
     return b.build(outputs, LOG_DEPTH)
 
@@ -158,10 +169,6 @@ _SMALL = 0.1
 _LEVELS = 7  # fewer leave pixels of a panorama that see none of SLAM's points
 
 
-def _image_and_points(b: Builder) -> tuple[Symbol, Pair]:
-    return b.input("image", 3), Pair(b.input("depth", 1), b.input("confidence", 1))
-
-
 def _propagate(b: Builder, points: Pair) -> Pair:
     """A dense first estimate from the points alone, with its confidence."""
     first, second = b.normalized_layer("n1", 1, 2, 5), b.normalized_layer("n2", 2, 2, 5)
@@ -172,14 +179,21 @@ def _propagate(b: Builder, points: Pair) -> Pair:
         # With the rule `quarter` hardly any confidence would remain at the last level.
         pooled = b.confidence_pool(f"level{i}.pool", levels[-1], "sqrt")
         levels.append(b.normalized_convolution(f"level{i}", pooled, shared))
-    decoded = levels.pop()
-    for i, skip in reversed(list(enumerate(levels))):
-        up = b.upsample_nearest_pair(f"propagated{i}.up", decoded)
-        both = b.concatenate_pairs(f"propagated{i}.concatenated", skip, up)
-        layer = b.normalized_layer(f"propagated{i}", 4, 2, 3)
-        decoded = b.normalized_convolution(f"propagated{i}", both, layer)
+    decoded = _merge(b, "propagated", levels)
     last = b.normalized_layer("propagated", 2, 1, 1)
     return b.normalized_convolution("propagated", decoded, last)
+
+
+def _merge(b: Builder, name: str, levels: Sequence[Pair]) -> Pair:
+    """Merges the levels of a pyramid, given from the finest on, beginning with the coarsest."""
+    merged = levels[-1]
+    for i, level in reversed(list(enumerate(levels[:-1]))):
+        up = b.upsample_nearest_pair(f"{name}{i}.up", merged)
+        both = b.concatenate_pairs(f"{name}{i}.concatenated", level, up)
+        channels = level.x.channels
+        layer = b.normalized_layer(f"{name}{i}", 2 * channels, channels, 3)
+        merged = b.normalized_convolution(f"{name}{i}", both, layer)
+    return merged
 
 
 def _features(b: Builder, points: Pair, propagated: Pair, image: Symbol) -> Symbol:
@@ -240,5 +254,6 @@ NETWORKS: dict[str, Callable[[], Description]] = {
     "encoder_decoder": encoder_decoder,
     "multi_stream": multi_stream,
     "depth_completion": depth_completion,
+    "coarse_depth_completion": coarse_depth_completion,
     "propagation": propagation,
 }

@@ -38,7 +38,7 @@ def references() -> list[Reference]:
         network("unguided", networks.unguided(), (32, 64)),
         network("encoder_decoder", networks.encoder_decoder(12, (10, 10, 6, 6)), (32, 64)),
         network("multi_stream", networks.multi_stream(4, 10, 6), (16, 24)),
-        network("depth_completion", networks.depth_completion(_NARROW, 10), (64, 128)),
+        network("depth_completion", networks.depth_completion(_NARROW, 10, 12), (128, 256)),
     ]
 
 
@@ -47,11 +47,11 @@ def full_networks() -> list[Reference]:
     return [
         network("encoder_decoder", networks.encoder_decoder(), (64, 128)),
         network("multi_stream", networks.multi_stream(), (64, 128)),
-        network("depth_completion", networks.depth_completion(), (64, 128)),
+        network("depth_completion", networks.depth_completion(), (128, 256)),
         network(
             "depth_completion_across_poles",
             networks.depth_completion(padding="wrap_cross_pole"),
-            (128, 256),
+            (256, 512),
         ),
     ]
 

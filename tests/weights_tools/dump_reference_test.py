@@ -39,7 +39,7 @@ class DumpReferenceTest(unittest.TestCase):
         return worst[1]
 
     def test_files_are_small(self) -> None:
-        self.assertLess(sum(path.stat().st_size for path in DATA.iterdir()), 2_000_000)
+        self.assertLess(sum(path.stat().st_size for path in DATA.iterdir()), 3_000_000)
 
     def test_every_operation_is_there(self) -> None:
         operations = {node.op for r in references() for node in r.graph.nodes}
@@ -70,7 +70,7 @@ class DumpReferenceTest(unittest.TestCase):
         }
         self.assertEqual(parameters["encoder_decoder"], 484_203)
         self.assertEqual(parameters["multi_stream"], 356_242)
-        self.assertEqual(parameters["depth_completion"], 2_463_944)
+        self.assertEqual(parameters["depth_completion"], 2_483_253)
 
 
 if __name__ == "__main__":

@@ -16,11 +16,11 @@ import numpy as np
 
 from tests.weights_tools import drives
 from weights_tools import network_file, networks
-from weights_tools.evaluation import evaluate_depth, results, tables, visualization
-from weights_tools.evaluation.classical import interpolate
+from weights_tools.evaluation import evaluate_depth, evaluated_drives, results, tables, visualization
 from weights_tools.evaluation.depth_errors import DepthErrors
 from weights_tools.export import export, untrained
 from weights_tools.network import Network
+from weights_tools.training.sparse_points import simulate
 from weights_tools.training.train import Settings
 
 
@@ -35,6 +35,8 @@ class DepthErrorsTest(unittest.TestCase):
             self.assertAlmostEqual(measures["rmse"], 0.8)
             self.assertAlmostEqual(measures["mae"], 0.8)
             self.assertAlmostEqual(measures["delta1"], 1.0)
+            self.assertAlmostEqual(measures["imae"], 1000 / 8 - 1000 / 8.8)
+            self.assertAlmostEqual(measures["irmse"], 1000 / 8 - 1000 / 8.8)
         self.assertTrue(np.isnan(errors.measures(range_bin=0)["absrel"]))
 
     def test_pixels_count_by_solid_angle_bin_and_band(self) -> None:
@@ -63,37 +65,6 @@ class DepthErrorsTest(unittest.TestCase):
             errors = DepthErrors()
             errors.add(truth, factor * truth)
             self.assertEqual(errors.measures()["delta1"], expected)
-
-
-class ClassicalTest(unittest.TestCase):
-    def test_across_the_seam_and_the_pole(self) -> None:
-        depth = np.zeros((32, 64), np.float32)
-        depth[16, 63], depth[16, 31] = 5.0, 9.0
-        nearest, weighted = interpolate(depth, np.ones_like(depth), 1)
-        self.assertEqual(nearest[16, 0], 5.0)
-        self.assertEqual(nearest[0, 60], 5.0)
-        self.assertEqual(nearest[16, 40], 9.0)
-        self.assertAlmostEqual(float(weighted[16, 63]), 5.0, places=4)
-        # Half way between both.
-        self.assertAlmostEqual(float(weighted[16, 47]), 7.0, places=4)
-
-    def test_confidence_and_distance_weigh(self) -> None:
-        depth = np.zeros((64, 128), np.float32)
-        depth[32, 40], depth[32, 50] = 4.0, 8.0
-        confidence = np.where(depth == 4, 0.2, 0.8).astype(np.float32)
-        _, weighted = interpolate(depth, confidence, 1)
-        a, b = 0.2 / 4**2, 0.8 / 6**2
-        self.assertAlmostEqual(float(weighted[32, 44]), (4 * a + 8 * b) / (a + b), places=2)
-
-    def test_step_takes_the_pixels_it_says(self) -> None:
-        random = np.random.RandomState(0)
-        depth = random.uniform(1, 9, (16, 32)).astype(np.float32)
-        nearest, _ = interpolate(depth, np.ones_like(depth), 4)
-        np.testing.assert_array_equal(nearest, depth[2::4, 2::4])
-
-    def test_without_points_it_is_the_unit(self) -> None:
-        for estimate in interpolate(np.zeros((8, 16)), np.zeros((8, 16)), 4):
-            self.assertTrue((estimate == 1).all())
 
 
 class EvaluationTest(unittest.TestCase):
@@ -131,7 +102,7 @@ print(json.dumps([dict(sparse=str(f), depth=here + "/street.png", confidence=her
         export(weights, network, provenance)
         methods = {results.OURS: weights, results.ALONE: weights}
         evaluation = evaluate_depth.Evaluation(
-            methods, self.program(1.2), (100, 1000), shown=1, out=self.folder
+            methods, self.program(1.2), ("100", "1000", "100000", "slam"), shown=1, out=self.folder
         )
         result = evaluation.drive("street", [drives.frame(0), drives.frame(1)])
         summary = result.summary()
@@ -155,10 +126,15 @@ print(json.dumps([dict(sparse=str(f), depth=here + "/street.png", confidence=her
         with contextlib.redirect_stdout(io.StringIO()) as printed:
             tables.print_tables({"street": result}, total)
         self.assertRegex(printed.getvalue(), r"street \| 0\.200 \| 1\.000")
+        # By world and number of points; the frames have none of SLAM.
+        heads = "|  | 100 points | 1000 points | 100000 points |"
+        self.assertIn(heads, printed.getvalue())
+        row = r"\| street( \| 0\.200 / 0\.\d\d\d, 1\.000){3} \|"
+        self.assertRegex(printed.getvalue(), row)
 
     def test_sparse_files_have_what_the_program_reads(self) -> None:
         frame = drives.frame()
-        points = evaluate_depth.simulate(frame, np.random.RandomState(0))
+        points = simulate(frame, np.random.RandomState(0))
         evaluate_depth.write_sparse(self.folder / "a.h5", frame, points)
         with h5py.File(self.folder / "a.h5") as file:
             np.testing.assert_array_equal(file["image"], frame.rgb)
@@ -172,16 +148,65 @@ print(json.dumps([dict(sparse=str(f), depth=here + "/street.png", confidence=her
         export(path, Network(description), {})
         alone = evaluate_depth.propagation_of(path, self.folder / "alone.h5")
         outputs = [port["tensor"] for port in network_file.read(alone).graph.outputs]
-        self.assertEqual(outputs, ["propagated", "propagated.c", "points.median"])
+        self.assertEqual(outputs, ["alone.log_depth", "alone.confidence", "points.median"])
 
     def test_evaluation_towns_are_rendered_with_all_mountings(self) -> None:
-        specs = evaluate_depth.town_specs("Town1", is_quick=True)
-        self.assertEqual(sum(spec.frames // evaluate_depth.QUICK_EVERY for spec in specs), 20)
+        specs = evaluated_drives.town_specs("Town1", is_quick=True)
+        self.assertEqual(sum(spec.frames // evaluated_drives.QUICK_EVERY for spec in specs), 20)
         self.assertEqual(len({spec.name for spec in specs}), 3)
         text = json.dumps([list(spec.options) for spec in specs])
         for part in ('"--camera-height", "1.0"', '"--camera-pitch", "5"', '"--depth-every", "5"'):
             self.assertIn(part, text)
         self.assertEqual(Settings().network, "depth_completion")
+
+    def test_risk_grows_with_coverage_as_the_confident_are_right(self) -> None:
+        expected = np.repeat([0.1, 0.2, 0.4], [50, 30, 20])
+        drawn = np.stack([expected, 2 * expected, np.ones(100)])
+        result = results.Result(calibration=[drawn[:, ::-1]])
+        curve = results.risk_coverage(result)
+        np.testing.assert_allclose(curve[:, 0], np.arange(1, 11) / 10)
+        np.testing.assert_allclose(curve[:5, 1], 0.2)
+        self.assertAlmostEqual(curve[7, 1], (50 * 0.2 + 30 * 0.4) / 80)
+        self.assertAlmostEqual(curve[9, 1], (50 * 0.2 + 30 * 0.4 + 20 * 0.8) / 100)
+
+    def folder_of_images(self) -> Path:
+        folder = self.folder / "room"
+        for name in ("rgb", "depth"):
+            (folder / name).mkdir(parents=True)
+        image = drives.frame().rgb
+        cv2.imwrite(str(folder / "rgb/000002.png"), image[:, :, ::-1])
+        cv2.imwrite(str(folder / "rgb/000003.png"), image)  # has no depth and is left out
+        depth = np.rint(256 * drives.street()).astype(np.uint16)
+        cv2.imwrite(str(folder / "depth/000002.png"), depth)
+        return folder
+
+    def test_a_folder_of_images_with_depth_is_read_with_the_points_of_its_run(self) -> None:
+        folder = self.folder_of_images()
+        (frame,) = evaluated_drives.folder_frames(folder)
+        np.testing.assert_array_equal(frame.rgb, drives.frame().rgb)
+        np.testing.assert_allclose(frame.range, drives.street(), atol=1 / 512)
+        self.assertEqual(len(frame.points), 0)
+        self.assertGreater(len(frame.features), 10)
+        drives.write_run(folder)
+        (frame,) = evaluated_drives.folder_frames(folder)
+        rows, columns = frame.points[:, :2].astype(int).T
+        np.testing.assert_allclose(frame.points[:, 2], frame.range[rows, columns], rtol=0.01)
+
+    def test_a_folder_that_is_none_is_refused_with_the_reason(self) -> None:
+        folder = self.folder_of_images()
+        for name, complaint in (("rgb/000002.png", "has no image of its name"),
+                                ("depth/000002.png", "metres = value / 256")):  # fmt: skip
+            content = (folder / name).read_bytes()
+            (folder / name).unlink()
+            with self.assertRaisesRegex(ValueError, complaint):
+                evaluated_drives.folder_frames(folder)
+            (folder / name).write_bytes(content)
+        cv2.imwrite(str(folder / "depth/000002.png"), np.zeros((64, 128), np.uint8))
+        with self.assertRaisesRegex(ValueError, "one channel of 16 bits"):
+            evaluated_drives.folder_frames(folder)
+        cv2.imwrite(str(folder / "depth/000002.png"), np.zeros((32, 64), np.uint16))
+        with self.assertRaisesRegex(ValueError, "another size"):
+            evaluated_drives.folder_frames(folder)
 
     def test_unknown_towns_and_missing_files_are_refused_before_anything_is_rendered(self) -> None:
         script = evaluate_depth.ROOT / "scripts/evaluate-depth"
@@ -191,6 +216,8 @@ print(json.dumps([dict(sparse=str(f), depth=here + "/street.png", confidence=her
             (["--circuits", "absent.acc"], "absent.acc: no such file"),
             (["--shards", "absent.npz"], "absent.npz: no such file"),
             (["--published", "absent.h5"], "absent.h5: no such file"),
+            (["--folder", "absent"], "absent: no such folder"),
+            (["--points", "many"], "'many' is neither a number of points nor 'slam'"),
         ):
             command = [sys.executable, script, "--skip-build", *arguments]
             done = subprocess.run(command, capture_output=True, text=True)

@@ -10,8 +10,9 @@ from pathlib import Path
 from unittest import mock
 
 from tests.weights_tools import drives
-from weights_tools.training import make_dataset, shards
-from weights_tools.training.make_dataset import Programs, circuit_spec, town_spec
+from weights_tools.training import make_dataset, shards, worlds
+from weights_tools.training.make_dataset import Programs
+from weights_tools.training.worlds import DriveSpec, town_spec
 
 SOURCE = Path(__file__).resolve().parent.parent.parent
 
@@ -38,7 +39,7 @@ class MakeDatasetTest(unittest.TestCase):
             self.assertTrue(low <= min(values) < low + 0.2 * (high - low), name)
             self.assertTrue(high - 0.2 * (high - low) < max(values) <= high, name)
         lights = {spec.options[spec.options.index("--light") + 1] for spec in specs}
-        self.assertEqual(lights, set(make_dataset.LIGHTS))
+        self.assertEqual(lights, set(worlds.LIGHTS))
         for effect in ("--noise", "--dual-lens", "--auto-exposure", "--jpeg-quality"):
             self.assertTrue(5 < sum(effect in spec.options for spec in specs) < 55, effect)
 
@@ -50,16 +51,85 @@ class MakeDatasetTest(unittest.TestCase):
             with (
                 mock.patch.object(make_dataset, "_call") as call,
                 mock.patch.object(make_dataset, "read_drive", return_value=[]),
+                contextlib.suppress(make_dataset.DriveError),
             ):
                 make_dataset.render(spec, self.programs("exit 9"), self.folder)
             run = [str(part) for part in call.call_args_list[-1].args[0]]
             self.assertIn("--save-sparse", run)
             self.assertEqual("none" in run[run.index("run") + 2 : run.index("--mask")], not has_stereo)
 
+    def run_main(self, *arguments: str) -> str:
+        """What make_dataset prints, with programs that are in the folder."""
+        words = ["make_dataset", str(self.folder / "out"), "--build", str(self.folder), *arguments]
+        with (
+            mock.patch.object(sys, "argv", words),
+            contextlib.redirect_stdout(io.StringIO()) as printed,
+        ):
+            try:
+                make_dataset.main()
+            except SystemExit as refusal:
+                return str(refusal)
+        return printed.getvalue()
+
     def test_what_is_kept_for_measurements_is_refused(self) -> None:
-        with self.assertRaisesRegex(ValueError, "kept for other measurements"):
-            circuit_spec(Path("tracks/road/street-1/street-1.acc"), 24, 512)
-        self.assertEqual(circuit_spec(Path("tracks/road/forza/forza.acc"), 24, 512).name, "forza")
+        self.programs("exit 1")
+        for option, path in (
+            ("--circuits", "tracks/road/street-1/street-1.acc"),
+            ("--karts", "tracks/scotland"),
+            ("--karts", "tracks/mines"),
+        ):
+            self.assertIn("kept for measurements", self.run_main("--seeds", "0", "0", option, path))
+        printed = self.run_main("--seeds", "0", "0", "--held-out", "--karts", "tracks/mines")
+        self.assertIn("1 of 1: kart-mines left out", printed)
+
+    def test_a_drive_without_depth_or_points_is_left_out(self) -> None:
+        spec = worlds.town_spec(7, 3, 128, has_stereo=True)
+        for read, message in (
+            ({"side_effect": ValueError("has no depth")}, "has no depth"),
+            ({"return_value": [drives.frame()]}, "SLAM found no points"),
+        ):
+            with (
+                mock.patch.object(make_dataset, "_call"),
+                mock.patch.object(make_dataset, "read_drive", **read),
+                self.assertRaisesRegex(make_dataset.DriveError, message),
+            ):
+                make_dataset.render(spec, self.programs("exit 9"), self.folder)
+
+    def test_each_world_has_its_own_path_and_options(self) -> None:
+        specs = {
+            spec.name: spec
+            for spec in (
+                worlds.circuit_spec(Path("road/forza/forza.acc"), 24, 512),
+                worlds.kart_spec(Path("tracks/zengarden"), 24, 512),
+                worlds.map_spec(Path("maps/hall.bsp"), 3, 24, 512),
+                worlds.interior_spec(9, 24, 512),
+            )
+        }
+        self.assertEqual(list(specs), ["forza", "kart-zengarden", "map-hall-3", "interior9"])
+        self.assertEqual(list(specs["forza"].path[:2]), ["--torcs", "road/forza/forza.acc"])
+        self.assertEqual(list(specs["kart-zengarden"].options[:2]), ["--scene", "tracks/zengarden/scene.xml"])
+        self.assertEqual(specs["map-hall-3"].options[:6], specs["map-hall-3"].path[:6])
+        self.assertFalse(specs["interior9"].path)
+        for spec in specs.values():
+            followed = worlds.tracked(spec, 200, 4.5)
+            if "--length" in followed.path:
+                self.assertEqual(followed.path[followed.path.index("--length") + 1], "46")
+            self.assertTrue(followed.is_tracked and followed.has_stereo)
+            self.assertEqual((followed.name, followed.frames), (f"stereo-{spec.name}", 200))
+            self.assertEqual(followed.options[followed.options.index("--fps") + 1], "20")
+            if spec.path:
+                self.assertEqual(followed.path[followed.path.index("--speed") + 1], "4.5")
+
+    def test_a_path_is_found_before_the_drive_is_rendered(self) -> None:
+        spec = DriveSpec("x", ["--scene", "x.obj"], 5, path=["--kart", "x"])
+        with (
+            mock.patch.object(make_dataset, "_call") as call,
+            mock.patch.object(make_dataset, "read_drive", return_value=[]),
+        ):
+            make_dataset.render(spec, self.programs("exit 9"), self.folder)
+        path, render = ([str(part) for part in c.args[0]] for c in call.call_args_list)
+        self.assertEqual(path[1:5], ["path", "--kart", "x", "--out"])
+        self.assertEqual(render[render.index("--path") + 1], path[5])
 
     def test_drives_become_shards_of_three_sizes_once(self) -> None:
         drives.write_drive(self.folder / "made")

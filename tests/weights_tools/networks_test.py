@@ -5,13 +5,15 @@ import unittest
 
 import numpy as np
 import torch
+import torch.nn.functional as F
 from torch import Tensor
 
 from weights_tools import networks
 from weights_tools.builder import Builder, Description
 from weights_tools.network import Network
 
-HEIGHT, WIDTH = 64, 128
+HEIGHT, WIDTH = 128, 256
+NARROW = (8, 12, 20, 24, 36)
 
 
 def panorama(seed: int = 0, dtype: torch.dtype = torch.float64) -> dict[str, Tensor]:
@@ -27,8 +29,12 @@ def panorama(seed: int = 0, dtype: torch.dtype = torch.float64) -> dict[str, Ten
 
 
 def small(padding: str = "wrap_replicate") -> Network:
-    description = networks.depth_completion((8, 12, 20, 24, 36), hidden=10, padding=padding)
+    description = networks.depth_completion(NARROW, 10, refined=12, padding=padding)
     return Network(description, seed=1)
+
+
+def coarse() -> Network:
+    return Network(networks.coarse_depth_completion(NARROW, hidden=10), seed=1)
 
 
 class SizeTest(unittest.TestCase):
@@ -49,15 +55,16 @@ class SizeTest(unittest.TestCase):
         self.check(networks.multi_stream(), 356_242, 186.54)
 
     def test_depth_completion(self) -> None:
-        self.check(networks.depth_completion(), 2_463_944, 12.39)
+        self.check(networks.depth_completion(), 2_483_253, 5.61)
+        self.check(networks.coarse_depth_completion(), 2_463_944, 12.39)
 
-    def test_layers_of_depth_completion_cost_what_was_planned(self) -> None:
+    def test_layers_of_coarse_depth_completion_cost_what_was_planned(self) -> None:
         planned = {  # millions of multiply-accumulates at 512 x 1024
             "encoder1": 340, "encoder2": 604 + 2416, "encoder3": 453 + 1359, "encoder4": 227 + 1208,
             "encoder5": 94 + 472, "4": 313, "3": 705, "2": 1258, "1": 1275, "head": 1376,
         }
         counted = dict.fromkeys(planned, 0)
-        for node, macs in networks.depth_completion().multiply_accumulates(512, 1024).items():
+        for node, macs in networks.coarse_depth_completion().multiply_accumulates(512, 1024).items():
             part = node.partition(".")[0].partition("_")[0]
             part = part.replace("lateral", "").replace("decoder", "")
             part = "head" if part.startswith("head") else part
@@ -112,7 +119,7 @@ class SeedTest(unittest.TestCase):
 
 class NormalizationTest(unittest.TestCase):
     def test_it_ends_up_in_the_weights(self) -> None:
-        description = networks.depth_completion((8, 12, 20, 24, 36), hidden=10)
+        description = networks.depth_completion(NARROW, 10, refined=12)
         network = Network(description, 1, normalizes=True).double()
         self.assertIn("head1", network.normalizations)
         for name in ("head2", "lateral1", "n1", "global1"):
@@ -160,7 +167,7 @@ class DepthCompletionTest(unittest.TestCase):
             self.assertEqual(outputs[name].shape, (1, 1, 1, 1))
 
     def test_the_encoder_sees_how_far_points_lie_off_what_they_propagate(self) -> None:
-        tensors = small().double().tensors(panorama())
+        tensors = coarse().double().tensors(panorama())
         off, confidence = tensors["features"][:, -2:-1], tensors["features"][:, -1:]
         point = tensors["depth"] > 0
         self.assertTrue(point.any() and not point.all())
@@ -169,14 +176,27 @@ class DepthCompletionTest(unittest.TestCase):
         expected = torch.where(point, (x - tensors["propagated"]) * tensors["confidence"], 0.0)
         self.assertLess((off - expected).abs().max().item(), 1e-12)
 
+    def test_of_the_points_in_a_square_the_most_confident_reaches_the_coarse_part(self) -> None:
+        inputs = panorama()
+        inputs["depth"][...] = torch.rand(inputs["depth"].shape, dtype=torch.float64) + 1
+        inputs["confidence"][...] = torch.rand(inputs["confidence"].shape, dtype=torch.float64)
+        tensors = small().double().tensors(inputs)
+        confidence, index = F.max_pool2d(inputs["confidence"], 2, return_indices=True)
+        depth = inputs["depth"].flatten(2).gather(2, index.flatten(2)).view_as(confidence)
+        expected = (depth / tensors["points.median"]).log()
+        self.assertLess((tensors["points.half"] - expected).abs().max().item(), 1e-12)
+        self.assertLess((tensors["points.half.c"] - confidence).abs().max().item(), 1e-12)
+        off = tensors["refined.difference"] + tensors["completed"] - expected
+        self.assertLess(off.abs().max().item(), 1e-12)
+
     def test_turning_the_camera_turns_the_result(self) -> None:
         network = small().double()
         inputs = panorama()
         outputs = network(inputs)
-        turned = network({name: value.roll(64, -1) for name, value in inputs.items()})
+        turned = network({name: value.roll(128, -1) for name, value in inputs.items()})
         for name in ("log_depth", "confidence", "ground"):
             # Not exact here: BLAS adds up in another order elsewhere in the image.
-            difference = (outputs[name].roll(64, -1) - turned[name]).abs().max().item()
+            difference = (outputs[name].roll(128, -1) - turned[name]).abs().max().item()
             self.assertLess(difference, 1e-12, name)
         self.assertEqual(outputs["scale"], turned["scale"])
         difference = (outputs["log_metric_scale"] - turned["log_metric_scale"]).abs().item()

@@ -73,7 +73,8 @@ class RefusalTest(unittest.TestCase):
         (self.folder / "run/sparse/000002.h5").write_bytes(b"none")
         self.assertIn("000002.h5: is no sparse depth", self.refused("training.make_shard", *options))
         poses = self.folder / "drive/groundtruth.txt"
-        first = poses.read_text().splitlines()[1]
+        known_poses = poses.read_text()
+        first = known_poses.splitlines()[1]
         for text, message in (
             (first, "000002.png: groundtruth.txt has no such frame"),
             ("", "groundtruth.txt: has no poses"),
@@ -82,9 +83,10 @@ class RefusalTest(unittest.TestCase):
         ):
             poses.write_text(f"# a comment\n{text}\n")
             self.assertIn(message, self.refused("training.make_shard", *options[:2]))
-        (self.folder / "drive/sequence.yaml").write_text("fps: 10\n")
+        poses.write_text(known_poses)
+        (self.folder / "drive/sequence.yaml").write_text("- fps\n")
         said = self.refused("training.make_shard", *options[:2])
-        self.assertIn("sequence.yaml: tells no camera_height", said)
+        self.assertIn("sequence.yaml: is no description of a drive", said)
 
     def test_images_of_another_size_are_named(self) -> None:
         drive, out = self.folder / "drive", self.folder / "out"

@@ -15,7 +15,7 @@ import torch
 from tests.weights_tools import drives
 from weights_tools import network_file
 from weights_tools.training import retrain, shards
-from weights_tools.training.make_dataset import RESERVED
+from weights_tools.training.worlds import RESERVED
 from weights_tools.training.shards import Frame
 
 
@@ -36,7 +36,9 @@ class RetrainTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as temporary:
             out = Path(temporary)
             for part in ("training", "validation"):
-                for size, frame in (("half", doubled(drives.frame())), ("quarter", drives.frame())):
+                small = drives.frame()
+                frames = {"quarter": small, "half": doubled(small), "full": doubled(doubled(small))}
+                for size, frame in frames.items():
                     path = out / "shards" / part / size / "street.npz"
                     path.parent.mkdir(parents=True)
                     shards.write(path, shards.pack([frame]))
@@ -44,13 +46,16 @@ class RetrainTest(unittest.TestCase):
                 for _ in range(2):  # the second time nothing is left to do
                     retrain.train_all(out, out / "shards", 1e-4, torch.device("cpu"))
                     times = {path: path.stat().st_mtime_ns for path in out.glob("*/log.csv")}
-                self.assertEqual(len(times), 6)
+                self.assertEqual(len(times), 7)
             retrain.release(out)
-            for name, network in (("depth_completion", "ours"), ("encoder_decoder", "published")):
+            for name, network, halvings, stages in (
+                ("depth_completion", "ours", 0, 3),
+                ("encoder_decoder", "published", 1, 2),
+            ):
                 graph, _ = network_file.read(out / f"{name}.h5")
-                self.assertEqual(graph.normalisation["width"], 2 * drives.WIDTH)
+                self.assertEqual(graph.normalisation["width"], 4 * drives.WIDTH >> halvings)
                 self.assertEqual(graph.provenance["network"], name)
-                self.assertEqual(len(graph.provenance["earlier"]), 2)
+                self.assertEqual(len(graph.provenance["earlier"]), stages)
                 self.assertIsNotNone(cv2.imread(str(out / f"learning_curve_{network}.png")))
 
     def test_without_shards_it_says_so(self) -> None:
@@ -69,7 +74,7 @@ class RetrainTest(unittest.TestCase):
         self.assertIn("forza", training)
         self.assertEqual(sum(spec.is_tracked for spec in made["training"]), 8)
         for name in RESERVED:
-            with self.assertRaisesRegex(ValueError, "kept for other measurements"):
+            with self.assertRaisesRegex(ValueError, "kept for measurements"):
                 retrain.render_all(Path("out"), None, [Path(f"{name}.acc")])
 
 

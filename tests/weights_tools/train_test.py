@@ -14,7 +14,8 @@ import numpy as np
 import torch
 
 from tests.weights_tools import drives
-from tests.weights_tools.networks_test import small
+from tests.weights_tools.networks_test import coarse
+from tests.weights_tools.retrain_test import doubled
 from weights_tools import network_file, networks
 from weights_tools.export import export, trained
 from weights_tools.network import Network
@@ -26,6 +27,8 @@ from weights_tools.training.validate import error_cut, validate
 
 SOURCE = Path(__file__).resolve().parent.parent.parent
 CPU = torch.device("cpu")
+# The part of the network that takes images as small as those of the drives.
+COARSE = "coarse_depth_completion"
 
 
 class Fixed(torch.nn.Module):
@@ -141,7 +144,7 @@ class TrainTest(unittest.TestCase):
         self.assertTrue((depth > 0).all())
 
     def test_training_makes_the_loss_smaller(self) -> None:
-        network = small()
+        network = coarse()
         optimizers = make_optimizers(network, 2e-3, 0, bfloat16=False)
         batch = self.batch()
         history = []
@@ -155,7 +158,7 @@ class TrainTest(unittest.TestCase):
         self.assertLess(history[-1], 0.6 * history[0])
 
     def run_training(self, folder: str, until: int | None = None) -> Network:
-        settings = train.Settings(steps=4, batch=1, warm_up=2, seed=3, checkpoint_every=2)
+        settings = train.Settings(COARSE, steps=4, batch=1, warm_up=2, seed=3, checkpoint_every=2)
         paths = [self.shard]
         with contextlib.redirect_stdout(io.StringIO()):
             return train.train(settings, self.folder / folder, paths, paths, CPU, until=until)
@@ -187,7 +190,7 @@ class TrainTest(unittest.TestCase):
             np.testing.assert_array_equal(weights[name], values.detach().numpy())
 
         # Other settings, or other shards, would make another network of it.
-        same = train.Settings(steps=4, batch=1, warm_up=2, seed=3, checkpoint_every=2)
+        same = train.Settings(COARSE, steps=4, batch=1, warm_up=2, seed=3, checkpoint_every=2)
         other = replace(same, seed=4)
         for settings, paths in ((other, [self.shard]), (same, [self.shard] * 2)):
             with self.assertRaisesRegex(ValueError, "checkpoint.pt: was made with other"):
@@ -199,7 +202,7 @@ class TrainTest(unittest.TestCase):
         with contextlib.redirect_stdout(io.StringIO()):
             first = train.train(settings, folder, paths, [], CPU)
             checkpoint = folder / "checkpoint.pt"
-            settings = train.Settings(steps=1, batch=1, bfloat16=True, fixed_propagation=True)
+            settings = train.Settings(COARSE, steps=1, batch=1, bfloat16=True, fixed_propagation=True)
             second = self.folder / "second"
             network = train.train(settings, second, paths, [], CPU, [checkpoint])
         weights = network.weights()
@@ -216,7 +219,7 @@ class TrainTest(unittest.TestCase):
         network, provenance, width = trained(self.folder / "first/checkpoint.pt")
         path = self.folder / "network.h5"
         export(path, network, provenance, width=width)
-        settings = train.Settings(batch=1)
+        settings = train.Settings(COARSE, batch=1)
         training = train.Training(settings, [self.shard], self.folder / "on", CPU, [path])
         expected = network.weights()
         for name, values in training.network.weights().items():
@@ -224,12 +227,54 @@ class TrainTest(unittest.TestCase):
         (stage,) = training.stages
         self.assertEqual((stage["steps_done"], stage["shards"]), (1, ["street.npz"]))
 
+    def test_only_the_layers_that_are_named_are_trained(self) -> None:
+        self.run_training("first", until=1)
+        start = self.folder / "first/checkpoint.pt"
+        before = trained(start)[0].weights()
+        settings = train.Settings(
+            COARSE, steps=2, batch=1, warm_up=1, only="head", batch_normalization=True
+        )
+        with contextlib.redirect_stdout(io.StringIO()):
+            network = train.train(settings, self.folder / "on", [self.shard], [], CPU, [start])
+        self.assertEqual(list(network.normalizations), ["head1"])
+        again = trained(self.folder / "on/checkpoint.pt")[0].weights()
+        for name, values in network.weights().items():
+            changed = not torch.allclose(values, before[name], rtol=1e-5, atol=1e-7)
+            self.assertEqual(changed, name.startswith("head"), name)
+            self.assertTrue(torch.equal(values, again[name]))
+
+    def test_a_refinement_is_trained_whole_and_goes_on_with_all_the_rest(self) -> None:
+        shard = self.folder / "large.npz"
+        shards.write(shard, shards.pack([doubled(drives.frame())]))
+        common = {"steps": 2, "batch": 1, "warm_up": 1, "fixed_propagation": True}
+        common["batch_normalization"] = True
+        start = Network(networks.depth_completion(), 0).weights()
+        settings = train.Settings(only="refined", **common)
+        with contextlib.redirect_stdout(io.StringIO()):
+            alone = train.train(settings, self.folder / "alone", [shard], [], CPU)
+        for name, values in alone.weights().items():
+            changed = not torch.allclose(values, start[name], rtol=1e-6, atol=1e-9)
+            self.assertEqual(changed, name.startswith("refined"), name)
+        checkpoint = self.folder / "alone/checkpoint.pt"
+        whole = train.Training(
+            train.Settings(**common), [shard], self.folder / "all", CPU, [checkpoint]
+        )
+        trainable = {n for n, v in whole.network.named_parameters() if v.requires_grad}
+        self.assertIn("layers.refined_shared.weight", trainable)
+        self.assertIn("layers.encoder1.weight", trainable)
+        self.assertNotIn("layers.n1.weight", trainable)
+        # The layers that had no normalization begin with one that changes nothing.
+        inputs = batches.draw(batches.Frames([shard]), 0, 2, 1, NoiseModel()).inputs
+        expected = trained(checkpoint)[0](inputs)["log_depth"]
+        found = whole.network.eval()(inputs)["log_depth"]
+        self.assertLess((found - expected).abs().max().item(), 1e-2)
+
     def test_batches_are_normalized_from_where_a_network_file_is(self) -> None:
         self.run_training("first", until=1)
         network, provenance, width = trained(self.folder / "first/checkpoint.pt")
         path = self.folder / "network.h5"
         export(path, network, provenance, width=width)
-        settings = train.Settings(batch=1, batch_normalization=True)
+        settings = train.Settings(COARSE, batch=1, batch_normalization=True)
         training = train.Training(settings, [self.shard], self.folder / "on", CPU, [path])
         inputs, at_first = self.batch().inputs, training.network.eval()
         self.assertTrue(at_first.normalizations)

@@ -15,6 +15,8 @@ from weights_tools.training.sparse_points import NoiseModel, from_slam, simulate
 from weights_tools.training.sphere import bearings, row_weights
 
 EXACT = NoiseModel(
+    from_stereo=0,
+    thinned=0,
     baseline=(1e6, 1e6),
     noise=(1, 1),
     estimate_error=0,
@@ -84,6 +86,19 @@ class ShardTest(unittest.TestCase):
         image = cv2.imread(str(self.folder / "rgb/000000.jpg"))
         np.testing.assert_array_equal(frames[0].rgb, image[:, :, ::-1])
 
+    def test_the_height_is_measured_where_the_drive_states_none(self) -> None:
+        drives.write_drive(self.folder)
+        (self.folder / "sequence.yaml").write_text("fps: 10\n")
+        for frame in make_shard.read_drive(self.folder):
+            self.assertAlmostEqual(frame.camera_height, drives.CAMERA_HEIGHT, delta=0.01)
+            self.assertGreater(frame.ground.mean(), 0.3)
+        for path in (self.folder / "depth").iterdir():  # nothing below the camera
+            metres = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+            metres[drives.HEIGHT // 2 :] = 0
+            cv2.imwrite(str(path), metres)
+        with self.assertRaisesRegex(ValueError, "has no depth"):
+            make_shard.read_drive(self.folder)
+
     def test_points_of_slam_are_kept_in_metres(self) -> None:
         drives.write_drive(self.folder)
         drives.write_run(self.folder / "run")
@@ -96,7 +111,7 @@ class ShardTest(unittest.TestCase):
             truth = drives.street()[at]
             np.testing.assert_allclose(metres, truth, rtol=2e-3)
             self.assertTrue((confidence == 0.75).all())
-            points = from_slam(second, np.random.RandomState(0))
+            points = from_slam(second, np.random.RandomState(0), EXACT)
             known = points.depth > 0
             self.assertEqual(known.sum(), len(rows))
             measured = points.depth[known] / points.scale
@@ -302,6 +317,25 @@ class BatchTest(unittest.TestCase):
         counts = (batch.inputs["depth"] > 0).sum(dim=(1, 2, 3))
         self.assertTrue(8 < (counts == 1).sum() < 32)
         self.assertTrue((counts[counts != 1] > 100).all())
+
+    def test_half_of_the_other_frames_have_points_of_stereo(self) -> None:
+        model = replace(EXACT, from_stereo=0.5, points=(50, 50))
+        batch = batches.draw(self.frames, 0, 0, 40, model)
+        counts = (batch.inputs["depth"] > 0).sum(dim=(1, 2, 3))
+        self.assertTrue(8 < (counts <= 50).sum() < 36)
+        self.assertTrue(4 < (counts > 200).sum() < 32)
+
+    def test_slam_s_points_are_thinned_to_every_density(self) -> None:
+        rows, columns = np.nonzero(drives.street())
+        points = [rows, columns, drives.street()[rows, columns], np.ones(len(rows))]
+        frame = replace(drives.frame(), points=np.stack(points, axis=1).astype(np.float32))
+        counts = np.array(
+            [(from_slam(frame, np.random.RandomState(i)).depth > 0).sum() for i in range(60)]
+        )
+        whole = counts == len(rows)
+        self.assertTrue(15 < whole.sum() < 45)
+        self.assertLess(counts.min(), 0.05 * len(rows))
+        self.assertTrue(5 < (counts[~whole] < 0.15 * len(rows)).sum())
 
     def test_images_turn_with_their_depth(self) -> None:
         frame = drives.frame()

@@ -9,7 +9,8 @@ from weights_tools.training.sphere import row_weights
 # Upper ends of the bins of true range, metres, as in slam/evaluation; farther pixels are ignored.
 RANGE_ENDS = (5.0, 10.0, 20.0, 40.0, 80.0)
 LATITUDE_BANDS = 6  # of equal height, the lowest first
-_KINDS = ("weight", "squared", "absolute", "relative", "within")
+_KINDS = ("weight", "squared", "absolute", "relative", "within", "inverse_squared", "inverse")
+_KILOMETRE = 1000.0  # metres; errors of inverse ranges are in 1/km, as KITTI has them
 
 
 @dataclass
@@ -33,7 +34,9 @@ class DepthErrors:
         cell = np.searchsorted(RANGE_ENDS, truth) * LATITUDE_BANDS + band[known]
         error = np.abs(estimate - truth)
         within = np.maximum(estimate / truth, truth / estimate) < 1.25
-        for i, values in enumerate((1.0, error**2, error, error / truth, within)):
+        inverse = _KILOMETRE * np.abs(1 / estimate - 1 / truth)
+        values_of = (1.0, error**2, error, error / truth, within, inverse**2, inverse)
+        for i, values in enumerate(values_of):
             counted = np.bincount(cell, weight * values, minlength=self.sums[..., 0].size)
             self.sums[..., i] += counted.reshape(self.sums.shape[:2])
 
@@ -45,11 +48,13 @@ class DepthErrors:
         """Errors of all pixels, a bin of range or a band of latitude; NaN without pixels."""
         sums = self.sums if range_bin is None else self.sums[range_bin : range_bin + 1]
         sums = sums if band is None else sums[:, band : band + 1]
-        weight, squared, absolute, relative, within = sums.sum(axis=(0, 1))
+        weight, squared, absolute, relative, within, inverse_squared, inverse = sums.sum(axis=(0, 1))
         with np.errstate(invalid="ignore"):
             return {
                 "absrel": float(relative / weight),
                 "delta1": float(within / weight),
                 "rmse": float(np.sqrt(squared / weight)),
                 "mae": float(absolute / weight),
+                "irmse": float(np.sqrt(inverse_squared / weight)),
+                "imae": float(inverse / weight),
             }

@@ -1,14 +1,16 @@
-"""Measures the released weights on towns they were not trained on.
+"""Measures the released weights on worlds they were not trained on.
 
 Renders each town with three mountings of the camera (its own height and level; 1 m high and 3 m
-high, tilted by 5 degrees), draws sparse points as SLAM gives them (simulated: 5 % wrong, noise as
-measured), completes them with `orb360 complete` and compares with the rendered ranges up to 80 m,
-weighted by solid angle. The headline figures are means over 500, 1,000 and 2,000 points. Drives are
-rendered once, into a cache outside the repository.
+high, tilted by 5 degrees), draws sparse points as SLAM gives them (simulated: up to 3,000 as
+landmarks, of which 5 % are wrong, more as ranges by stereo), completes them with `orb360 complete`
+and compares with the rendered ranges up to 80 m, weighted by solid angle. Other worlds come from
+packed drives (--shards) or from folders of images with depth (--folder DIR: rgb/NAME.jpg or .png,
+depth/NAME.png with metres x 256, and points of a run in sparse/, which --points slam takes). The
+headline figures are means over 500, 1,000 and 2,000 points. Drives are rendered once, into a cache
+outside the repository.
 """
 
 import argparse
-import hashlib
 import json
 import os
 import re
@@ -26,74 +28,36 @@ import numpy as np
 import torch
 
 from weights_tools import network_file
-from weights_tools.evaluation import visualization
-from weights_tools.evaluation.classical import interpolate
+from weights_tools.evaluation import classical, visualization
 from weights_tools.evaluation.depth_errors import RANGE_ENDS
+from weights_tools.evaluation.evaluated_drives import (
+    folder_frames,
+    packed_frames,
+    rendered_frames,
+    town_specs,
+)
+from weights_tools.evaluation.given_points import SLAM, points_of
 from weights_tools.evaluation.results import (
     ALONE,
     HEADLINE,
-    NEAREST,
     OURS,
     PUBLISHED,
-    WEIGHTED,
     Result,
     Scale,
     calibration_table,
 )
 from weights_tools.evaluation.tables import print_tables
+from weights_tools.graph import Node
 from weights_tools.training import shards
-from weights_tools.training.make_dataset import DriveSpec, Programs, circuit_spec, render
+from weights_tools.training.make_dataset import ROOT, Programs
 from weights_tools.training.shards import Frame
-from weights_tools.training.sparse_points import NoiseModel, SparsePoints, simulate
+from weights_tools.training.sparse_points import SparsePoints
 from weights_tools.training.sphere import row_weights
 from weights_tools.training.validate import error_cut
+from weights_tools.training.worlds import circuit_spec, kind_of
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-POINTS = (100, 500, 1000, 2000, 3000)
-CLASSICAL_STEP = 4  # pixels; classical interpolation is measured at every fourth row and column
-# Height (None: the town's own), pitch, roll; and how many of a town's frames have it.
-MOUNTINGS = ((None, 0, 0, 8), (1.0, 5, -3, 6), (3.0, -4, 5, 6))
-# One frame every five seconds of the drive, with --quick; otherwise each second.
-QUICK_EVERY = 5
-
-
-def town_specs(town: str, is_quick: bool) -> list[DriveSpec]:
-    specs = []
-    for i, (height, pitch, roll, frames) in enumerate(MOUNTINGS):
-        options = ["--town", town, "--fps", "1", "--width", "1024"]
-        options += ["--camera-pitch", str(pitch), "--camera-roll", str(roll)]
-        if height:
-            options += ["--camera-height", str(height)]
-        if is_quick:
-            options += ["--depth-every", str(QUICK_EVERY)]
-        specs.append(DriveSpec(f"{town}-{i}", options, frames * QUICK_EVERY))
-    return specs
-
-
-def frames_of(spec: DriveSpec, programs: Programs, cache: Path) -> list[Frame]:
-    key = repr((spec.options, spec.frames, spec.path, renderer_fingerprint())).encode()
-    path = cache / f"{spec.name}-{hashlib.sha256(key).hexdigest()[:8]}.npz"
-    if not path.exists():
-        print(f"rendering {spec.name}", file=sys.stderr)
-        cache.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=cache) as folder:
-            shards.write(path, shards.pack(render(spec, programs, Path(folder))))
-    return read_frames(path)
-
-
-def read_frames(path: Path) -> list[Frame]:
-    shard = shards.read(path)
-    return [shard.frame(i) for i in range(len(shard))]
-
-
-def renderer_fingerprint() -> str:
-    """A digest of the renderer's source, so that no stale drive is used."""
-    digest = hashlib.sha256()
-    for folder in ("apps/town", "include/orb360/slam/geometry", "slam/geometry"):
-        for path in sorted((ROOT / folder).rglob("*")):
-            if path.suffix in (".h", ".cc"):
-                digest.update(str(path.relative_to(ROOT)).encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()
+POINTS = ("300", "500", "1000", "2000", "10000", "100000")
+SHOWN_POINTS = "1000"  # of the completions that images are written of
 
 
 def write_sparse(path: Path, frame: Frame, points: SparsePoints) -> None:
@@ -108,11 +72,17 @@ def write_sparse(path: Path, frame: Frame, points: SparsePoints) -> None:
 
 def propagation_of(weights: Path, out: Path) -> Path:
     """Writes a network file whose outputs are the first estimate of another network."""
-    network = network_file.read(weights)
+    graph, own = network_file.read(weights)
     outputs = {"log_depth": "propagated", "confidence": "propagated.c", "scale": "points.median"}
+    nodes = list(graph.nodes)
+    if any("points.half" in node.outputs for node in nodes):  # it has half of the image's size
+        for port in ("log_depth", "confidence"):
+            name, given = f"alone.{port}", outputs[port]
+            nodes.append(Node(name, "upsample_nearest", [given], [name], {}, {}))
+            outputs[port] = name
     ports = [{"name": name, "tensor": tensor} for name, tensor in outputs.items()]
-    dtype = next(iter(network.weights.values())).dtype.type
-    network_file.write(out, replace(network.graph, outputs=ports), network.weights, dtype)
+    dtype = next(iter(own.values())).dtype.type
+    network_file.write(out, replace(graph, nodes=nodes, outputs=ports), own, dtype)
     return out
 
 
@@ -135,7 +105,7 @@ def read_depth(path: str) -> np.ndarray:
 class Evaluation:
     networks: dict[str, Path]  # methods and their weights
     orb360: Path
-    points: Sequence[int]
+    points: Sequence[str]  # numbers of points, or SLAM
     shown: int  # frames of each drive that images are written of
     out: Path
 
@@ -147,24 +117,24 @@ class Evaluation:
             (folder / "sparse").mkdir()
             given = {}
             for i, frame in enumerate(frames):
-                for count in self.points:
-                    model = NoiseModel(points=(count, count), scale=(1, 1))
-                    given[f"{count:04}-{i:03}"] = simulate(
-                        frame, np.random.RandomState([i, count]), model
-                    )
-            for key, points in given.items():
-                write_sparse(folder / f"sparse/{key}.h5", frames[int(key[5:])], points)
+                for kind in self.points:
+                    points = points_of(frame, kind, i)
+                    if points is not None:
+                        given[f"{kind}-{i:03}"] = kind, i, points
+            for key, (_, i, points) in given.items():
+                write_sparse(folder / f"sparse/{key}.h5", frames[i], points)
+            if not given:
+                return result
             told = {
                 method: complete(self.orb360, weights, folder / "sparse", folder / method)
                 for method, weights in self.networks.items()
             }
-            scales: dict[int, Scale] = {count: Scale() for count in HEADLINE}
-            for key, points in given.items():
-                count, i = int(key[:4]), int(key[5:])
-                self._frame(result, frames[i], points, count, {m: told[m][key] for m in told})
-                if count in HEADLINE:
-                    _add_scale(scales[count], told[OURS][key], frames[i])
-                if count == 1000 and i < self.shown:
+            scales = {kind: Scale() for kind in self.points if kind in HEADLINE}
+            for key, (kind, i, points) in given.items():
+                self._frame(result, frames[i], points, kind, {m: told[m][key] for m in told})
+                if kind in scales:
+                    _add_scale(scales[kind], told[OURS][key], frames[i])
+                if kind == SHOWN_POINTS and i < self.shown:
                     entry = told[OURS][key]
                     visualization.write_completion(
                         self.out / f"{name}-{i}.jpg",
@@ -173,7 +143,7 @@ class Evaluation:
                         read_depth(entry["depth"]),
                         read_fraction(entry["confidence"]),
                     )
-            result.scales += [scale for count, scale in scales.items() if count in self.points]
+            result.scales += scales.values()
         return result
 
     def _frame(
@@ -181,17 +151,15 @@ class Evaluation:
         result: Result,
         frame: Frame,
         points: SparsePoints,
-        count: int,
+        kind: str,
         told: dict[str, dict[str, Any]],
     ) -> None:
         for method, entry in told.items():
-            result.of(method, count).add(frame.range, read_depth(entry["depth"]))
-        half = CLASSICAL_STEP // 2
-        truth = frame.range[half::CLASSICAL_STEP, half::CLASSICAL_STEP]
-        classical = interpolate(points.depth, points.confidence, CLASSICAL_STEP)
-        for method, estimate in zip((NEAREST, WEIGHTED), classical):
-            result.of(method, count).add(truth, estimate)
-        if count in HEADLINE:
+            result.of(method, kind).add(frame.range, read_depth(entry["depth"]))
+        truth = classical.thinned(frame.range)
+        for method, interpolated in classical.METHODS.items():
+            result.of(method, kind).add(truth, interpolated(frame, points))
+        if kind in HEADLINE:
             depth, confidence = (
                 read_depth(told[OURS]["depth"]),
                 read_fraction(told[OURS]["confidence"]),
@@ -242,6 +210,18 @@ def existing(text: str) -> Path:
     return Path(text)
 
 
+def existing_folder(text: str) -> Path:
+    if not Path(text).is_dir():
+        raise argparse.ArgumentTypeError(f"{text}: no such folder")
+    return Path(text)
+
+
+def kind_of_points(text: str) -> str:
+    if text != SLAM and not re.fullmatch(r"[1-9][0-9]{0,5}", text):
+        raise argparse.ArgumentTypeError(f"{text!r} is neither a number of points nor {SLAM!r}")
+    return text
+
+
 def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -254,8 +234,11 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--circuits", type=existing, nargs="*", default=[], metavar="MESH",
                         help="circuits of torcs-data (.acc); not part of `all`")  # fmt: skip
     parser.add_argument("--shards", type=existing, nargs="*", default=[], metavar="FILE",
-                        help="drives that make_dataset has packed; part of `all` as one town")  # fmt: skip
-    parser.add_argument("--points", type=int, nargs="+", default=POINTS, help="[100 ... 3000]")
+                        help="drives that make_dataset has packed, by kind of world; part of `all`")  # fmt: skip
+    parser.add_argument("--folder", type=existing_folder, nargs="*", default=[], metavar="DIR",
+                        help="folders of images with depth; not part of `all`")  # fmt: skip
+    parser.add_argument("--points", type=kind_of_points, nargs="+", default=POINTS,
+                        help="numbers of points, or `slam` for those of a run [300 ... 100000]")  # fmt: skip
     weights = ROOT / "weights"
     parser.add_argument("--weights", type=existing, default=weights / "depth_completion.h5")
     parser.add_argument("--published", type=existing, default=weights / "encoder_decoder.h5")
@@ -286,20 +269,26 @@ def main() -> int:
     for mesh in arguments.circuits:
         groups[mesh.stem] = [circuit_spec(mesh, 20 if arguments.quick else 100, 1024)]
     drives = [
-        (group, spec.name, lambda spec=spec: frames_of(spec, programs, arguments.cache))
+        (group, spec.name, lambda spec=spec: rendered_frames(spec, programs, arguments.cache))
         for group, specs in groups.items()
         for spec in specs
     ]
     drives += [
-        ("shards", path.stem, lambda path=path: read_frames(path)) for path in arguments.shards
+        (kind_of(path.stem), path.stem, lambda path=path: packed_frames(path))
+        for path in arguments.shards
     ]
+    drives += [
+        (str(folder), folder.name, lambda folder=folder: folder_frames(folder))
+        for folder in arguments.folder
+    ]
+    packed = {kind_of(path.stem) for path in arguments.shards}
     results: dict[str, Result] = {}
     total = Result()
     for group, name, frames in drives:
         print(f"completing {name}", file=sys.stderr)
         result = evaluation.drive(name, frames())
         results.setdefault(group, Result()).__iadd__(result)
-        if group in (*towns, "shards"):
+        if group in (*towns, *packed):
             total += result
     visualization.write_calibration(arguments.out / "calibration.png", calibration_table(total))
     if arguments.json:

@@ -14,6 +14,7 @@ from torch import Tensor
 from weights_tools.training import shards
 from weights_tools.training.shards import Frame, Shard
 from weights_tools.training.sparse_points import NoiseModel, SparsePoints, from_slam, simulate
+from weights_tools.training.stereo_points import StereoNoise, simulate_stereo
 
 
 @dataclass(frozen=True)
@@ -70,10 +71,16 @@ def draw(frames: Frames, seed: int, step: int, size: int, model: NoiseModel) -> 
     samples = []
     for i in random.randint(0, len(frames), size):
         frame = frames[i]
-        is_real = len(frame.points) > 0 and random.uniform() < model.from_slam
-        points = (from_slam if is_real else simulate)(frame, random, model)
-        samples.append(augment(frame, points, random))
+        samples.append(augment(frame, _points(frame, random, model), random))
     return collate(samples)
+
+
+def _points(frame: Frame, random: np.random.RandomState, model: NoiseModel) -> SparsePoints:
+    if len(frame.points) > 0 and random.uniform() < model.from_slam:
+        return from_slam(frame, random, model)
+    if random.uniform() < model.from_stereo:
+        return simulate_stereo(frame, random, StereoNoise(scale=model.scale))
+    return simulate(frame, random, model)
 
 
 @dataclass(frozen=True)

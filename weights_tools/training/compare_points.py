@@ -12,11 +12,19 @@ import numpy as np
 from weights_tools.refusal import refusing
 from weights_tools.training.batches import Frames
 from weights_tools.training.shards import Frame
-from weights_tools.training.sparse_points import SparsePoints, from_slam, simulate
+from weights_tools.training.sparse_points import NoiseModel, SparsePoints, from_slam, simulate
+from weights_tools.training.stereo_points import simulate_stereo
 
 CONFIDENCES = (0.0, 0.25, 0.5, 0.75, 0.9, 1.0)
 RANGES = (0, 5, 10, 20, 40, 80)  # metres
 OUTLIER = 0.25  # of |ln(range / truth)|; noise is smaller than this at the confidences that matter
+
+# Where the points of a column come from.
+SOURCES: dict[str, Callable[[Frame, np.random.RandomState], SparsePoints]] = {
+    "SLAM": lambda frame, random: from_slam(frame, random, NoiseModel(thinned=0)),
+    "landmarks": simulate,
+    "stereo": simulate_stereo,
+}
 
 
 def errors(
@@ -59,13 +67,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Compares simulated points with those of SLAM.")
     parser.add_argument("shards", type=Path, nargs="+", help="made with --run")
     frames = Frames(parser.parse_args().shards)
-    real, simulated = (list(errors(frames, give)) for give in (from_slam, simulate))
-    if not real:
+    parts = {name: list(errors(frames, give)) for name, give in SOURCES.items()}
+    if not parts["SLAM"]:
         parser.error("no frame has points of SLAM; make the shards with --run")
-    real, simulated = summary(real), summary(simulated)
-    print(f"{'':48}{'SLAM':>10}{'simulated':>12}")
-    for name, value in real.items():
-        print(f"{name:48}{value:10.3f}{simulated[name]:12.3f}")
+    summaries = {name: summary(part) for name, part in parts.items()}
+    print(" " * 48 + "".join(f"{name:>12}" for name in summaries))
+    for name in summaries["SLAM"]:
+        print(f"{name:48}" + "".join(f"{values[name]:12.3f}" for values in summaries.values()))
 
 
 if __name__ == "__main__":

@@ -48,10 +48,18 @@ def losses(network: Network, batch: Batch, bfloat16: bool = False) -> dict[str, 
         **terms,
         # Laplace's likelihood: least where exp(-odds) is the expected relative error.
         "confidence": _mean(known * odds.exp() - odds, everywhere),
-        "propagated": _mean((tensors["propagated"] - target).abs(), weight),
+        "propagated": _propagated(tensors["propagated"], target, weight),
         "metric": (ports["log_metric_scale"] - metric).abs().mean(),
         "ground": _mean(unlikely, everywhere),
     }
+
+
+def _propagated(propagated: Tensor, target: Tensor, weight: Tensor) -> Tensor:
+    """The mean error of an image that may be a fraction of the target's size; each of its pixels
+    stands for a square of the target's."""
+    step = target.shape[-1] // propagated.shape[-1]
+    grown = propagated.repeat_interleave(step, -2).repeat_interleave(step, -1)
+    return _mean((grown - target).abs(), weight)
 
 
 def relative_error(difference: Tensor) -> Tensor:

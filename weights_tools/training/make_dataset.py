@@ -9,22 +9,28 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-
-import numpy as np
 
 from weights_tools.refusal import refusing
 from weights_tools.training import shards
 from weights_tools.training.make_shard import halved, read_drive
+from weights_tools.training.worlds import (
+    DriveSpec,
+    circuit_spec,
+    interior_spec,
+    kart_spec,
+    map_spec,
+    require_for_training,
+    town_spec,
+    tracked,
+)
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-LIGHTS = ("noon", "morning", "sunset", "overcast")
 SIZES = ("full", "half", "quarter")
 # Towns to train on, frames of a drive, of one that SLAM tracks, and width in pixels.
 SEEDS, FRAMES, TRACKED_FRAMES, WIDTH = range(1000, 1220), 24, 200, 1024
-# Circuits reserved for measurements.
-RESERVED = ("street-1", "aalborg")
+SPEED = 5.0  # metres a second, of worlds other than towns where SLAM tracks
 
 
 class DriveError(Exception):
@@ -35,57 +41,6 @@ class DriveError(Exception):
 class Programs:
     town: Path
     orb360: Path
-
-
-@dataclass(frozen=True)
-class DriveSpec:
-    """One drive: a town of a seed, or a circuit of torcs-data."""
-
-    name: str  # of the shard
-    options: Sequence[str]  # of `town render`, without the folder
-    frames: int
-    is_tracked: bool = False  # by SLAM; then only frames with points of its own are kept
-    has_stereo: bool = False  # ranges by stereo are among these points
-    circuit: Path | None = None
-    path: Sequence[str] = field(default=())  # options of `town path`
-
-
-def town_spec(
-    seed: int, frames: int, width: int, is_tracked: bool = False, has_stereo: bool = False
-) -> DriveSpec:
-    """Draws light, traffic, height and tilt of the camera and sensor effects from the seed."""
-    is_tracked = is_tracked or has_stereo
-    random = np.random.RandomState([seed, is_tracked])
-    options = ["--town", str(seed), "--light", LIGHTS[random.randint(len(LIGHTS))]]
-    options += ["--traffic", f"{random.uniform():.2f}"]
-    options += ["--camera-height", f"{random.uniform(0.8, 3):.3f}"]
-    options += ["--camera-pitch", f"{random.uniform(-5, 5):.2f}"]
-    options += ["--camera-roll", f"{random.uniform(-5, 5):.2f}"]
-    options += _sensor(random)
-    # A frame each second when there is no tracking: some ten metres from one to the next.
-    options += ["--fps", "20" if is_tracked else "1", "--width", str(width)]
-    kind = "stereo" if has_stereo else "tracked" if is_tracked else "town"
-    return DriveSpec(f"{kind}{seed}", options, frames, is_tracked, has_stereo)
-
-
-def circuit_spec(mesh: Path, frames: int, width: int) -> DriveSpec:
-    if mesh.stem in RESERVED:
-        raise ValueError(f"{mesh}: is kept for other measurements; leave it out")
-    random = np.random.RandomState([ord(letter) for letter in mesh.stem])
-    options = ["--light", LIGHTS[random.randint(len(LIGHTS))], *_sensor(random)]
-    options += ["--fps", "1", "--width", str(width)]
-    path = ["--height", f"{random.uniform(0.8, 3):.3f}", "--speed", f"{random.uniform(15, 30):.1f}"]
-    return DriveSpec(mesh.stem, options, frames, circuit=mesh, path=path)
-
-
-def _sensor(random: np.random.RandomState) -> list[str]:
-    options = []
-    for option, probability in (("--auto-exposure", 0.5), ("--noise", 0.3), ("--dual-lens", 0.2)):
-        if random.uniform() < probability:
-            options.append(option)
-    if random.uniform() < 0.3:
-        options += ["--jpeg-quality", str(random.randint(40, 95))]
-    return options
 
 
 def make(spec: DriveSpec, programs: Programs, out: Path) -> None:
@@ -120,18 +75,28 @@ def render(spec: DriveSpec, programs: Programs, folder: Path) -> list[shards.Fra
     """The frames that have a depth, and of a tracked drive points. Leaves files in the folder."""
     drive, run = folder / "drive", folder / "run"
     where = []
-    if spec.circuit:
+    if spec.path:
         line = folder / "path.txt"
-        _call([programs.town, "path", "--torcs", spec.circuit, "--out", line, *spec.path])
-        where = ["--scene", str(spec.circuit), "--path", str(line)]
+        _call([programs.town, "path", *spec.path, "--out", line])
+        where = ["--path", str(line)]
     frames = ["--frames", str(spec.frames)]
-    _call([programs.town, "render", *where, *spec.options, *frames, "--masks", "--out", drive])
+    _call([programs.town, "render", *spec.options, *where, *frames, "--masks", "--out", drive])
     if not spec.is_tracked:
-        return read_drive(drive)
+        return _packable(drive, None)
     weights = [] if spec.has_stereo else ["--weights", "none"]
     _call([programs.orb360, "run", drive, *weights, "--mask", "none",
            "--save-sparse", "--out", run])  # fmt: skip
-    return [frame for frame in read_drive(drive, run=run) if len(frame.points) > 0]
+    frames = [frame for frame in _packable(drive, run) if len(frame.points) > 0]
+    if not frames:
+        raise DriveError("SLAM found no points in its frames with depth")
+    return frames
+
+
+def _packable(drive: Path, run: Path | None) -> list[shards.Frame]:
+    try:
+        return read_drive(drive, run=run)
+    except ValueError as error:
+        raise DriveError(str(error)) from error
 
 
 def _call(command: Sequence[object]) -> None:
@@ -156,11 +121,28 @@ def main() -> int:
                         help="of these (default: %(default)s)")
     parser.add_argument("--circuits", type=Path, nargs="*", default=[],
                         help="meshes (.acc) of circuits of torcs-data")  # fmt: skip
+    parser.add_argument("--karts", type=Path, nargs="*", default=[],
+                        help="folders of tracks of supertuxkart-data")  # fmt: skip
+    parser.add_argument("--maps", type=Path, nargs="*", default=[],
+                        help="maps (.bsp) of Quake 3 in the game's folder")  # fmt: skip
+    parser.add_argument("--interiors", type=int, nargs=2, default=(0, 0), metavar=("FIRST", "END"))
+    parser.add_argument("--stereo-worlds", action="store_true",
+                        help="SLAM also tracks circuits, karts, maps and interiors")  # fmt: skip
+    parser.add_argument("--held-out", action="store_true",
+                        help="worlds that are kept for measurements are allowed")  # fmt: skip
     parser.add_argument("--build", type=Path, default=ROOT / "build", help="folder of the programs")
     arguments = parser.parse_args()
     programs = Programs(arguments.build / "town", arguments.build / "orb360")
     frames, width = arguments.frames, arguments.width
+    if not arguments.held_out:
+        for path in (*arguments.circuits, *arguments.karts, *arguments.maps):
+            require_for_training(path.stem)
     specs = [circuit_spec(mesh, frames, width) for mesh in arguments.circuits]
+    specs += [kart_spec(track, frames, width) for track in arguments.karts]
+    specs += [map_spec(file, 0, frames, width) for file in arguments.maps]
+    specs += [interior_spec(seed, frames, width) for seed in range(*arguments.interiors)]
+    if arguments.stereo_worlds:
+        specs += [tracked(spec, arguments.tracked_frames, SPEED) for spec in specs]
     specs += [town_spec(seed, frames, width) for seed in range(*arguments.seeds)]
     for seed in arguments.tracked_seeds:
         specs.append(town_spec(seed, arguments.tracked_frames, width, is_tracked=True))

@@ -19,6 +19,7 @@ import yaml
 from weights_tools.refusal import refusing
 from weights_tools.training import shards
 from weights_tools.training.ground import ground_pixels
+from weights_tools.training.sphere import bearings
 
 # The number of corners in an image with much texture; training uses a part of them.
 FEATURES = 6000
@@ -31,7 +32,7 @@ MARGIN = 128
 
 def read_drive(folder: Path, halvings: int = 0, run: Path | None = None) -> list[shards.Frame]:
     """Frames of a drive, each side halved so often, with the sparse depth of a run of SLAM."""
-    camera_height = read_camera_height(folder / "sequence.yaml")
+    constant_height = read_camera_height(folder / "sequence.yaml")
     poses = read_poses(folder / "groundtruth.txt")
     travels = travel_directions(poses[:, 1:4], poses[:, 4:8])
     ups = into_camera(np.tile([0.0, 0.0, 1.0], (len(poses), 1)), poses[:, 4:8])
@@ -47,11 +48,15 @@ def read_drive(folder: Path, halvings: int = 0, run: Path | None = None) -> list
         image = _read(folder / "rgb" / f"{path.stem}.jpg", cv2.IMREAD_COLOR, size)
         moving = _read(folder / "moving" / path.name, cv2.IMREAD_UNCHANGED, size)
         metres = units.astype(np.float32) / shards.RANGE_UNITS
+        up = ups[int(path.stem)]
+        camera_height = constant_height or height_below(metres, up)
+        if not camera_height:
+            continue
         frame = shards.Frame(
             image[:, :, ::-1],
             metres,
             moving > 0,
-            ground_pixels(metres, ups[int(path.stem)], camera_height),
+            ground_pixels(metres, up, camera_height),
             detect(image),
             travels[int(path.stem)],
             camera_height,
@@ -77,12 +82,23 @@ def read_poses(path: Path) -> np.ndarray:
     return poses
 
 
-def read_camera_height(path: Path) -> float:
-    """Height of the camera above the road, metres."""
+def read_camera_height(path: Path) -> float | None:
+    """Height of the camera above the road, metres; None where it is not the same all along."""
     try:
-        return float(yaml.safe_load(path.read_text())["camera_height"])
-    except (yaml.YAMLError, KeyError, TypeError) as error:
-        raise ValueError(f"{path}: tells no camera_height; render the drive again") from error
+        height = yaml.safe_load(path.read_text()).get("camera_height")
+        return None if height is None else float(height)
+    except (yaml.YAMLError, AttributeError, TypeError, ValueError) as error:
+        raise ValueError(f"{path}: is no description of a drive; render it again") from error
+
+
+def height_below(metres: np.ndarray, up: np.ndarray) -> float | None:
+    """Metres to what is straight below the camera, where there is anything. `up` is the world's, in
+    the frame of the camera."""
+    height, width = metres.shape
+    v, u = np.mgrid[0:height, 0:width] + 0.5
+    down = -(bearings(u, v, height, width) @ up)
+    below = (down > np.cos(np.radians(5))) & (metres > 0)
+    return float(np.median((metres * down)[below])) if below.any() else None
 
 
 def halved(frame: shards.Frame) -> shards.Frame:

@@ -24,10 +24,9 @@ from weights_tools.training.make_dataset import (
     TRACKED_FRAMES,
     WIDTH,
     Programs,
-    circuit_spec,
-    town_spec,
 )
 from weights_tools.training.train import Settings, train
+from weights_tools.training.worlds import circuit_spec, require_for_training, town_spec
 
 # Towns by seed. The validation towns are never used for training.
 VALIDATION_SEEDS, VALIDATION_FRAMES = range(2000, 2008), 6
@@ -59,11 +58,12 @@ def stages(factor: float) -> list[Stage]:
         every = min(settings.checkpoint_every, count)
         return replace(settings, network=network, steps=count, batch=batch, checkpoint_every=every)
 
-    ours, published = "depth_completion", "encoder_decoder"
+    ours, published = "coarse_depth_completion", "encoder_decoder"
     return [
         Stage("propagation", "half", steps(_ALONE, "propagation", 400, 4)),
         Stage("ours_quarter", "quarter", steps(_COMMON, ours, 20_000, 8), ["propagation"]),
         Stage("ours_half", "half", steps(_COMMON, ours, 20_000, 4), ["ours_quarter"]),
+        Stage("ours_full", "full", steps(_COMMON, "depth_completion", 10_000, 2), ["ours_half"]),
         Stage("unguided", "quarter", steps(_ALONE, "unguided", 400, 4)),
         Stage("published_quarter", "quarter", steps(_COMMON, published, 5_000, 8), ["unguided"]),
         Stage("published_half", "half", steps(_COMMON, published, 5_000, 4), ["published_quarter"]),
@@ -73,12 +73,14 @@ def stages(factor: float) -> list[Stage]:
 # The file of a stage, and the expected relative error of ranges where the network's confidence does
 # not state it. For the published network it is the mean error on unseen towns.
 RELEASED = {
-    "ours_half": ("depth_completion.h5", None),
+    "ours_full": ("depth_completion.h5", None),
     "published_half": ("encoder_decoder.h5", 0.13),
 }
 
 
 def render_all(out: Path, programs: Programs, circuits: Sequence[Path]) -> None:
+    for mesh in circuits:
+        require_for_training(mesh.stem)
     specs = [town_spec(seed, FRAMES, WIDTH) for seed in SEEDS]
     specs += [town_spec(seed, TRACKED_FRAMES, WIDTH, is_tracked=True) for seed in TRACKED_SEEDS]
     specs += [circuit_spec(mesh, FRAMES, WIDTH) for mesh in circuits]
@@ -102,7 +104,8 @@ def release(out: Path) -> None:
         network, provenance, width = trained(out / stage / "checkpoint.pt")
         export(out / name, network, provenance, np.float16, width, log_error)
     for name in ("ours", "published"):
-        folders = [out / f"{name}_quarter", out / f"{name}_half"]
+        folders = [out / f"{name}_{size}" for size in ("quarter", "half", "full")]
+        folders = [folder for folder in folders if folder.exists()]
         plot.draw(out / f"learning_curve_{name}.png", folders)
 
 

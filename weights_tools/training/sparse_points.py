@@ -13,6 +13,10 @@ from weights_tools.training.shards import Frame
 from weights_tools.training.sphere import bearings
 
 
+# The relative error that makes a confidence of 1/2, as SparseDepthOptions has it.
+HALF_CONFIDENCE_ERROR = 0.1
+
+
 @dataclass(frozen=True)
 class NoiseModel:
     """The distribution of errors. The defaults resemble those of SLAM (compare_points), with a
@@ -27,7 +31,6 @@ class NoiseModel:
     noise: tuple[float, float] = (0.7, 2.5)  # factor on the corners' noise, one for each frame
     largest_error: float = 0.2  # fraction of the range; SLAM makes no landmarks of less parallax
     near: float = 1.2  # points are chosen by 1 / range to this power; more keyframes saw near ones
-    half_confidence_error: float = 0.1  # as SparseDepthOptions has it
     min_confidence: float = 0.5  # as SparseDepthOptions has it
     estimate_bias: float = 0.4  # of the error that SLAM estimates; its estimates are too small
     estimate_error: float = 0.3  # standard deviation of ln of that
@@ -35,6 +38,9 @@ class NoiseModel:
     edge_outliers: float = 0.1  # fraction of those at an occlusion edge with the other side's range
     moving_kept: float = 0.4  # fraction of the points on moving objects that SLAM does not drop
     from_slam: float = 0.5  # of frames with points of SLAM itself, the fraction that uses them
+    from_stereo: float = 0.5  # of the other frames, the fraction with points of stereo
+    thinned: float = 0.5  # of the frames with points of SLAM, the fraction that keeps only a part
+    part: tuple[float, float] = (0.02, 1.0)  # of these frames' points
 
 
 @dataclass(frozen=True)
@@ -48,11 +54,14 @@ def from_slam(
     frame: Frame, random: np.random.RandomState, model: NoiseModel = NoiseModel()
 ) -> SparsePoints:
     """The points that SLAM gave for the frame, in a random scale."""
-    scale = float(_log_uniform(random, model.scale))
-    rows, columns = frame.points[:, :2].astype(int).T
-    metres, confidence = frame.points[:, 2:].T
+    scale = float(log_uniform(random, model.scale))
+    points = frame.points
+    if random.uniform() < model.thinned:
+        points = points[random.uniform(size=len(points)) < log_uniform(random, model.part)]
+    rows, columns = points[:, :2].astype(int).T
+    metres, confidence = points[:, 2:].T
     return SparsePoints(
-        *_rasterise(frame.range.shape, rows, columns, scale * metres, confidence), scale
+        *rasterise(frame.range.shape, rows, columns, scale * metres, confidence), scale
     )
 
 
@@ -66,11 +75,11 @@ def simulate(
     ranges = frame.range[rows, columns].astype(float)
     seen = bearings(u, v, height, width)
 
-    sigma = sigma * _log_uniform(random, model.noise)
+    sigma = sigma * log_uniform(random, model.noise)
     error = _range_errors(ranges, seen, sigma, frame.travel, random, model)
     estimated = error * model.estimate_bias
     estimated *= np.exp(model.estimate_error * random.standard_normal(len(u)))
-    confidence = 1 / (1 + (estimated / model.half_confidence_error) ** 2)
+    confidence = confidence_of(estimated)
 
     moving = frame.moving[rows, columns]
     usable = (ranges > 0) & (error < model.largest_error) & (confidence >= model.min_confidence)
@@ -88,13 +97,18 @@ def simulate(
     wrong = moving[chosen] | (random.uniform(size=len(chosen)) < model.outliers)
     measured *= np.where(wrong, np.exp(random.uniform(-1, 1, len(chosen))), 1)
 
-    scale = _log_uniform(random, model.scale)
+    scale = log_uniform(random, model.scale)
     return SparsePoints(
-        *_rasterise((height, width), rows, columns, scale * measured, confidence), float(scale)
+        *rasterise((height, width), rows, columns, scale * measured, confidence), float(scale)
     )
 
 
-def _log_uniform(
+def confidence_of(error: np.ndarray) -> np.ndarray:
+    """The confidence of points whose ranges have that relative standard deviation."""
+    return 1 / (1 + (error / HALF_CONFIDENCE_ERROR) ** 2)
+
+
+def log_uniform(
     random: np.random.RandomState, limits: tuple[float, float], size: int | None = None
 ) -> np.ndarray:
     return np.exp(random.uniform(np.log(limits[0]), np.log(limits[1]), size))
@@ -114,7 +128,7 @@ def _range_errors(
         travel /= np.linalg.norm(travel)
     across = np.linalg.norm(np.cross(seen, travel), axis=1)
     ranges = np.maximum(ranges, 1e-3)
-    baseline = _log_uniform(random, model.baseline, len(ranges)) * np.sqrt(ranges / 10)
+    baseline = log_uniform(random, model.baseline, len(ranges)) * np.sqrt(ranges / 10)
     parallax = np.arctan2(baseline * across, ranges)
     count = random.randint(model.observations[0], model.observations[1] + 1, len(ranges))
     return np.sqrt(2 / count) * sigma / np.maximum(np.sin(parallax), 1e-9)
@@ -128,7 +142,7 @@ def _choose(
     model: NoiseModel,
 ) -> np.ndarray:
     """Selects points in clusters, because the quality of texture and tracking varies locally."""
-    count = min(int(_log_uniform(random, model.points)), len(usable))
+    count = min(int(log_uniform(random, model.points)), len(usable))
     if count == 0:
         return usable[:0]
     centres = seen[random.choice(usable, random.randint(3, 13))]
@@ -149,7 +163,7 @@ def _beside(
     return np.where(there > 0, there, ranges[rows, columns]).astype(float)
 
 
-def _rasterise(
+def rasterise(
     size: tuple[int, int],
     rows: np.ndarray,
     columns: np.ndarray,

@@ -41,7 +41,8 @@ class Settings:
     seed: int = 0
     average: float = 0.999  # fraction that a step keeps of the weights' mean, which is exported
     bfloat16: bool = False  # convolutions in that type, for processors that are faster at it
-    fixed_propagation: bool = False  # normalized convolutions stay as they start
+    fixed_propagation: bool = False  # normalized convolutions of the first estimate stay as they start
+    only: str = ""  # layers whose names begin so are trained, the others stay as they start
     batch_normalization: bool = False  # while it is trained; it ends up in the weights
     checkpoint_every: int = 500  # steps
 
@@ -72,7 +73,7 @@ class Training:
         self.step = 0
         self.stages: list[dict[str, Any]] = []  # of training, before this one
         description, normalizes = NETWORKS[settings.network](), settings.batch_normalization
-        self.network = Network(description, settings.seed, normalizes).to(device)
+        self.network = Network(description, settings.seed, normalizes, settings.only).to(device)
         self._model = NoiseModel()
         if not self.network.knows_any_unit:
             self._model = replace(self._model, scale=(1.0, 1.0))
@@ -83,6 +84,7 @@ class Training:
         self.mean = copy.deepcopy(self.network).requires_grad_(False).eval()
         if settings.fixed_propagation:
             self.network.fix_propagation()
+        self.network.fix_others(settings.only)
         self.optimizers = make_optimizers(
             self.network, settings.rate, settings.decay, settings.bfloat16
         )
@@ -98,8 +100,10 @@ class Training:
             other = checkpoint_network(state)
             digest = hashlib.sha256(path.read_bytes()).hexdigest()
             stages = [*state["stages"], {**stage(state), "checkpoint": digest}]
-            if state["settings"]["batch_normalization"] and self.settings.batch_normalization:
-                self.network.load_state_dict(other.state_dict())
+            normalizes = state["settings"]["batch_normalization"], self.settings.batch_normalization
+            only = state["settings"].get("only", "") or self.settings.only
+            if all(normalizes) and not only:
+                self._load_state(other)
                 self.stages += stages
                 return
             weights = other.weights()
@@ -108,12 +112,23 @@ class Training:
         common = {n: _widened(values, own[n]) for n, values in weights.items() if n in own}
         self.network.load({name: values.detach() for name, values in {**own, **common}.items()})
         self.network.to(self.device)
-        names = list(self.network.normalizations)
-        if names and all(f"{name}.weight" in common for name in names):
+        known = [name for name in self.network.normalizations if f"{name}.weight" in common]
+        if known:
             # The step after the last, which training itself never draws.
             seed, step, size = self.settings.seed, self.settings.steps, self.settings.batch
             batch = draw(self.frames, seed, step, size, self._model)
-            self.network.calibrate(batch.to(self.device).inputs, self.settings.bfloat16)
+            inputs = batch.to(self.device).inputs
+            self.network.calibrate(inputs, known, self.settings.bfloat16)
+
+    def _load_state(self, other: Network) -> None:
+        """Loads another network's layers and their normalization; all of its own layers are new
+        where the other has none."""
+        state = other.state_dict()
+        new, _ = self.network.load_state_dict(state, strict=False)
+        known = {layer.name for layer in other.description.layers}
+        missing = [name for name in new if name.split(".")[1] in known]
+        if missing:
+            raise ValueError(f"the start lacks {missing[0]}")
 
     def _resume(self) -> None:
         state = read_checkpoint(self._path, self.device)
@@ -217,7 +232,8 @@ def checkpoint_network(state: dict[str, Any]) -> Network:
     """The mean network that a checkpoint holds."""
     settings = state["settings"]
     normalizes = settings["batch_normalization"]
-    network = Network(NETWORKS[settings["network"]](), normalizes=normalizes)
+    only = settings.get("only", "")
+    network = Network(NETWORKS[settings["network"]](), normalizes=normalizes, only=only)
     network.load_state_dict(state["mean"])
     return network.eval()
 

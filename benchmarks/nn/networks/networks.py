@@ -51,13 +51,14 @@ def cut(whole: Description, known: Sequence[str], outputs: Sequence[str], name: 
 
 
 def networks() -> dict[str, Description]:
-    completion = NETWORKS["depth_completion"]()
+    coarse = NETWORKS["coarse_depth_completion"]()
     propagated = ["propagated", "propagated.c"]
     return {
         "unguided": NETWORKS["unguided"](),
-        "propagation": cut(completion, [], propagated, "seven levels"),
-        "fusion": cut(completion, propagated, ["log_depth", "completed.c"], "fusion"),
-        "completion": completion,
+        "propagation": cut(coarse, [], propagated, "seven levels"),
+        "fusion": cut(coarse, propagated, ["completed", "completed.c"], "fusion"),
+        "coarse": coarse,
+        "completion": NETWORKS["depth_completion"](),
         "encoder-decoder": NETWORKS["encoder_decoder"](),
     }
 
