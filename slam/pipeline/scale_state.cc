@@ -51,6 +51,7 @@ struct MapScale {
   double sigma = 0;
   bool has_positions = false;
   bool is_conflict = false;          // of the ground and the positions
+  bool is_height_refuted = false;    // by positions, where the height was assumed
   double length = 0;                 // of the path, in the map's unit
   int num_steps = 0;                 // keyframes whose images show the ground
   double sum_per_lens_distance = 0;  // of these: change of ln(step) with the distance of the lenses
@@ -168,12 +169,18 @@ std::vector<std::optional<ScaleMeasurement>> MeasureByPositions(
 }
 
 // Joins the scale of a map with that of positions along its keyframes. The ground and the positions
-// have no error in common.
-void UsePositions(const ScaleMeasurement& measured, MapScale* scale) {
+// have no error in common. An assumed height is a guess, which positions that contradict it refute:
+// the camera flies, or stands on a mast.
+void UsePositions(const ScaleMeasurement& measured, bool is_height_assumed, MapScale* scale) {
   scale->has_positions = true;
   ScaleMeasurement fused = measured;
   if (scale->sigma > 0) {
     fused = FuseScales({scale->log_scale, scale->sigma}, measured, &scale->is_conflict);
+    scale->is_height_refuted = scale->is_conflict && is_height_assumed;
+  }
+  if (scale->is_height_refuted) {
+    fused = measured;
+    scale->is_conflict = false;
   }
   for (KeyframeScale& keyframe : scale->keyframes) {
     if (keyframe.sigma == 0) {
@@ -222,10 +229,12 @@ EstimatedScale EstimateScale(std::span<const Map> maps,
   bool is_completed = false;
   bool has_positions = !maps.empty();
   bool is_conflict = false;
+  bool is_height_used = true;
   for (size_t m = 0; m < maps.size(); ++m) {
     MapScale scale = ScaleOf(maps[m], static_cast<int>(m), grounds[m], height_sigma, lenses);
-    if (measured[m]) UsePositions(*measured[m], &scale);
+    if (measured[m]) UsePositions(*measured[m], whole.is_height_assumed, &scale);
     has_positions = has_positions && scale.has_positions;
+    is_height_used = is_height_used && !scale.is_height_refuted;
     is_conflict = is_conflict || scale.is_conflict;
     result.keyframes.insert(result.keyframes.end(), scale.keyframes.begin(), scale.keyframes.end());
     num_steps += scale.num_steps;
@@ -237,11 +246,13 @@ EstimatedScale EstimateScale(std::span<const Map> maps,
     is_known = is_known && scale.sigma > 0;
     is_completed = is_completed || (grounds[m] && grounds[m]->is_rough);
   }
-  whole.sources = Sources(num_steps, num_planes);
-  if (is_completed) whole.sources.emplace_back("completed depth");
+  if (is_height_used) {
+    whole.sources = Sources(num_steps, num_planes);
+    if (is_completed) whole.sources.emplace_back("completed depth");
+    if (!whole.sources.empty()) whole.camera_height = options.height();
+  }
   if (has_positions) whole.sources.emplace_back("positions");
-  if (num_steps > 0 || num_planes > 0 || is_completed) whole.camera_height = options.height();
-  if (lenses.is_certain) whole.lens_distance = lenses.distance.value * options.height();
+  if (lenses.is_certain && is_height_used) whole.lens_distance = lenses.distance.value * options.height();
   if (!is_known) {
     whole.sigma = 0;
     return result;

@@ -1,11 +1,13 @@
 // libFuzzer's target for what reads positions: samples of GoPro's telemetry (GPMF) and of camera
-// motion metadata (CAMM), the GPS directory of Exif, and GPX. The first three accept any bytes, the
-// last refuses with a UserError; what they give must lie on Earth. The first byte chooses.
+// motion metadata (CAMM), the GPS directory of Exif, GPX, and Insta360's trailer. GPX is refused
+// with a UserError, the others accept any bytes; what they give must lie on Earth. The first byte
+// chooses.
 
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <span>
+#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -13,6 +15,7 @@
 #include "slam/io/positions/exif_gps.h"
 #include "slam/io/positions/gpmf.h"
 #include "slam/io/positions/gpx_file.h"
+#include "slam/io/positions/insta360_trailer.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
@@ -60,13 +63,18 @@ void CheckGpx(std::string_view bytes) {
   }
 }
 
+void CheckInsta360(std::string_view bytes) {
+  std::istringstream file{std::string(bytes)};
+  RequireOnEarth(ReadInsta360Positions(file).fixes);
+}
+
 }  // namespace
 }  // namespace orb360
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
-  switch (data[0] % 4) {
+  switch (data[0] % 5) {
     case 0:
       orb360::CheckGpmf(bytes);
       break;
@@ -76,8 +84,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     case 2:
       orb360::CheckExif(bytes);
       break;
-    default:
+    case 3:
       orb360::CheckGpx(bytes);
+      break;
+    default:
+      orb360::CheckInsta360(bytes);
   }
   return 0;
 }

@@ -10,6 +10,7 @@
 #include "tests/slam/io/positions/camm_writer.h"
 #include "tests/slam/io/positions/exif_writer.h"
 #include "tests/slam/io/positions/gpmf_writer.h"
+#include "tests/slam/io/positions/insta360_writer.h"
 
 int main(int argc, char** argv) {
   using namespace orb360;
@@ -41,5 +42,9 @@ int main(int argc, char** argv) {
         "<time>2024-02-29T23:59:59.75Z</time><hdop>1.5</hdop><vdop>2</vdop></trkpt>"
         "<trkpt lat=\"47.5\" lon=\"8.26\"><time>2024-03-01T01:00:00+01:00</time></trkpt>"
         "</trkseg></trk></gpx>");
+  const std::vector<Insta360Record> records = {{7, Insta360Measurement(1.7e9, 47.5, 8.25, 400)},
+                                               {3, std::string(20, 'g')}};
+  write("insta360", 4, Insta360Trailer(records));
+  write("insta360_index", 4, IndexedInsta360Trailer(records));
   return 0;
 }

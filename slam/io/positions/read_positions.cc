@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "slam/io/positions/file_head.h"
 #include "slam/io/positions/gpmf.h"
 #include "slam/io/positions/gpx_file.h"
+#include "slam/io/positions/insta360_trailer.h"
 #include "slam/io/positions/metadata_track.h"
 #include <orb360/nn/base/check.h>
 
@@ -86,6 +88,18 @@ FoundTrack ReadCammTrack(const std::filesystem::path& path) {
   return found;
 }
 
+FoundTrack ReadInsta360Track(const std::filesystem::path& path) {
+  FoundTrack found;
+  found.track.source = "Insta360's GPS record of " + path.string();
+  found.track.clock = PositionClock::kUtc;
+  found.track.utc_at_zero = 0.0;
+  std::ifstream file(path, std::ios::binary);
+  Insta360Positions positions = ReadInsta360Positions(file);
+  found.track.fixes = std::move(positions.fixes);
+  found.num_without_lock = positions.num_without_lock;
+  return found;
+}
+
 /// The images' own positions. Images without one are left out.
 PositionTrack ReadExifTrack(const std::filesystem::path& folder,
                             const std::optional<double>& frame_rate) {
@@ -115,11 +129,14 @@ bool IsGpx(const std::filesystem::path& path) {
   return head == "<?xml" || head.starts_with("<gpx");
 }
 
-/// The positions of a video: none without a telemetry track. Throws UserError where there is one
-/// and the receiver never had a fix.
+/// The positions of a video: none without telemetry. Throws UserError where there is telemetry and
+/// the receiver never had a fix.
 std::optional<PositionTrack> FindInVideo(const std::filesystem::path& path) {
-  FoundTrack found = ReadGpmfTrack(path);
-  if (found.track.fixes.empty() && found.num_without_lock == 0) found = ReadCammTrack(path);
+  FoundTrack found;
+  for (const auto& read : {ReadGpmfTrack, ReadCammTrack, ReadInsta360Track}) {
+    found = read(path);
+    if (!found.track.fixes.empty() || found.num_without_lock > 0) break;
+  }
   Tidy(&found.track);
   if (!found.track.fixes.empty()) return std::move(found.track);
   if (found.num_without_lock == 0) return std::nullopt;
@@ -168,11 +185,12 @@ PositionTrack ReadPositions(const std::filesystem::path& path,
   }
   if (!std::filesystem::exists(path)) throw UserError(path.string() + ": no such file or folder");
   if (std::optional<PositionTrack> track = FindPositions(path, frame_rate)) return *track;
-  throw UserError(path.string() +
-                  (std::filesystem::is_directory(path)
-                       ? ": none of its images has a position in its Exif (JPEG)"
-                       : ": has no positions: neither a GPMF nor a CAMM track") +
-                  "; give a GPX file, or a video or images with positions");
+  throw UserError(
+      path.string() +
+      (std::filesystem::is_directory(path)
+           ? ": none of its images has a position in its Exif (JPEG)"
+           : ": has no positions: neither a GPMF nor a CAMM track nor Insta360's GPS record") +
+      "; give a GPX file, or a video or images with positions");
 }
 
 }  // namespace orb360

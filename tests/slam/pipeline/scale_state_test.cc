@@ -157,9 +157,9 @@ Positions FixesOf(const Map& map, double metres, double sigma) {
 }
 
 EstimatedScale EstimateBy(const Map& map, const std::optional<KnownGround>& ground, double metres,
-                          double sigma) {
+                          double sigma, bool is_height_given = true) {
   ScaleOptions options;
-  options.camera_height = ground ? kHeight : 0.0;
+  options.camera_height = ground && is_height_given ? kHeight : 0.0;
   const Grounds grounds = {ground};
   return EstimateScale(std::span(&map, 1), grounds, options, FixesOf(map, metres, sigma));
 }
@@ -195,6 +195,16 @@ TEST(ScaleState, IsRoughWherePositionsContradictTheGround) {
   EXPECT_GT(scale.whole.value, 1.0);
   EXPECT_LT(scale.whole.value, 1.2);
   EXPECT_GT(scale.whole.sigma, 0.05);
+}
+
+TEST(ScaleState, PositionsRefuteAnAssumedHeight) {
+  const Map map = WalkOver(std::vector<double>(12, 1.0));
+  const EstimatedScale scale = EstimateBy(map, kGround, 40, 0.01, /*is_height_given=*/false);
+  EXPECT_EQ(scale.whole.state, ScaleState::kMetric);
+  EXPECT_NEAR(scale.whole.value, 40, 0.1);
+  EXPECT_EQ(scale.whole.sources, std::vector<std::string>{"positions"});
+  EXPECT_EQ(scale.whole.camera_height, 0.0);
+  EXPECT_EQ(EstimateBy(map, kGround, 40, 0.01).whole.state, ScaleState::kUnknown) << "it was given";
 }
 
 }  // namespace

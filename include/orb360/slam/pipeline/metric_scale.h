@@ -23,7 +23,8 @@ struct MetricScale {
   /// Standard deviation of ln(value): of the measurements, their conflicts, and the height of the
   /// camera, which all of them share; 0 where nothing tells.
   double sigma = 0;
-  /// Height of the camera over the ground that was used, metres.
+  /// Height of the camera over the ground that was used, metres; 0 without one, and where positions
+  /// contradict an assumed one.
   double camera_height = 0;
   /// Whether nobody gave that height.
   bool is_height_assumed = false;

@@ -12,6 +12,7 @@
 #include "tests/slam/io/positions/camm_writer.h"
 #include "tests/slam/io/positions/exif_writer.h"
 #include "tests/slam/io/positions/gpmf_writer.h"
+#include "tests/slam/io/positions/insta360_writer.h"
 #include "tests/slam/io/positions/mp4_writer.h"
 #include "tests/slam/io/positions/shared_data.h"
 #include "tests/slam/io/temp_folder.h"
@@ -141,6 +142,23 @@ TEST(Exiftool, ReadsTheSamePositionsFromGeneratedCamm) {
   for (int i = 0; i < 20; ++i) samples.push_back(CammType5(48.1 + 1e-5 * i, 11.5, 519.125));
   WriteText(folder / "b.mp4", WithMetadataTrack(EmptyMp4(), "camm", samples, 500));
   ExpectSame(ReadPositions(folder / "b.mp4"), AskExiftool(folder / "b.mp4"), 1);
+}
+
+TEST(Exiftool, ReadsTheSamePositionsFromAGeneratedTrailerOfInsta360) {
+  SKIP_WITHOUT_EXIFTOOL();
+  const TempFolder folder;
+  std::string measurements;
+  for (int i = 0; i < 20; ++i) {
+    measurements +=
+        Insta360Measurement(1.7e9 + i, -48.1 - 1e-5 * i, -11.5, 519.25 + i, i % 5 == 4 ? 'V' : 'A');
+  }
+  const std::string trailer = Insta360Trailer({{7, measurements}, {4, std::string(16, '\0')}});
+  WriteText(folder / "a.insv", EmptyMp4() + trailer);
+  const PositionTrack track = ReadPositions(folder / "a.insv");
+  EXPECT_EQ(track.fixes.size(), 16U);
+  EXPECT_EQ(track.clock, PositionClock::kUtc);
+  EXPECT_EQ(track.fixes.back().timestamp, 1.7e9 + 18);
+  ExpectSame(track, AskExiftool(folder / "a.insv"), 1);
 }
 
 TEST(Exiftool, ReadsTheSamePositionsFromGeneratedExif) {

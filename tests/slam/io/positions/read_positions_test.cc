@@ -9,6 +9,7 @@
 #include "tests/slam/io/positions/camm_writer.h"
 #include "tests/slam/io/positions/exif_writer.h"
 #include "tests/slam/io/positions/gpmf_writer.h"
+#include "tests/slam/io/positions/insta360_writer.h"
 #include "tests/slam/io/positions/mp4_writer.h"
 #include "tests/slam/io/temp_folder.h"
 #include <orb360/nn/base/check.h>
@@ -45,6 +46,9 @@ TEST(ReadPositions, TellsInOneLineWhyThereAreNone) {
   EXPECT_THAT(Refusal(folder / "silent.mp4"), HasSubstr("has no positions: neither a GPMF"));
   WriteText(folder / "indoors.mp4", Telemetry(0));
   EXPECT_THAT(Refusal(folder / "indoors.mp4"), HasSubstr("no satellites in any of 4"));
+  WriteText(folder / "void.insv",
+            EmptyMp4() + Insta360Trailer({{7, Insta360Measurement(1.7e9, 1, 2, 3, 'V')}}));
+  EXPECT_THAT(Refusal(folder / "void.insv"), HasSubstr("no satellites in any of 1"));
   const std::string whole = Telemetry(3);
   WriteText(folder / "cut.mp4", whole.substr(0, whole.size() / 2));
   EXPECT_THAT(Refusal(folder / "cut.mp4"), HasSubstr("cut off"));
