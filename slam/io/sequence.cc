@@ -67,10 +67,13 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& input, const std::str
   }
   if (!lens.empty()) return OpenDualFisheyeVideo(input, FindLensCalibration(lens));
   if (HasExtension(input, ".360")) return OpenEacVideo(input);
-  if (HasExtension(input, ".insv") || HasExtension(input, ".osv")) {
+  const bool is_insta360 = HasExtension(input, ".insv");
+  if (is_insta360 || HasExtension(input, ".osv")) {
     throw UserError(input +
                     ": is a raw recording of two fisheye lenses; give their calibration with "
-                    "--lens, such as --lens insta360, or export it as equirectangular video");
+                    "--lens, such as --lens " +
+                    (is_insta360 ? "insta360" : "dji-osmo360") +
+                    ", or export it as equirectangular video");
   }
   return std::make_unique<VideoSource>(input);
 }

@@ -252,7 +252,8 @@ EstimatedScale EstimateScale(std::span<const Map> maps,
     if (!whole.sources.empty()) whole.camera_height = options.height();
   }
   if (has_positions) whole.sources.emplace_back("positions");
-  if (lenses.is_certain && is_height_used) whole.lens_distance = lenses.distance.value * options.height();
+  if (lenses.is_certain && is_height_used)
+    whole.lens_distance = lenses.distance.value * options.height();
   if (!is_known) {
     whole.sigma = 0;
     return result;

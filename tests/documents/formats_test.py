@@ -63,6 +63,10 @@ class Formats(unittest.TestCase):
 
     def test_summary_and_evaluation_list_every_key(self) -> None:
         with tempfile.TemporaryDirectory(dir=BUILD) as name:
+            gpx = Path(name) / "track.gpx"
+            gpx.write_text("<gpx><trk><trkseg>" + "".join(
+                f'<trkpt lat="47" lon="{8 + 1e-4 * i}"><time>2025-03-14T07:00:0{i}Z</time></trkpt>'
+                for i in range(5)) + "</trkseg></trk></gpx>")
             town, result = Path(name) / "town", Path(name) / "run"
             run(BUILD / "town", "render", "--town", 7, "--frames", 40, "--width", 512,
                 "--depth-every", 10, "--out", town)
@@ -70,12 +74,18 @@ class Formats(unittest.TestCase):
                 result)
             summary = json.loads((result / "summary.json").read_text())
             errors = json.loads(run(BUILD / "orb360", "evaluate", town, result, "--json"))
+            # That these positions do not fit the path is told by the exit status.
+            subprocess.run([BUILD / "orb360", "run", town, "--mask", "none", "--weights", "none",
+                            "--quiet", "--positions", gpx, "--out", Path(name) / "placed"],
+                           capture_output=True)
+            placed = json.loads((Path(name) / "placed" / "summary.json").read_text())
             # A path of 150 m, because the town's is too short for some figures.
             path = Path(name) / "path.txt"
             path.write_text("".join(f"{i} {i} 0 0 0 0 0 1\n" for i in range(151)))
             long = json.loads(run(BUILD / "orb360", "evaluate", path, path, "--json"))
         self.assertEqual(set(summary), names(rows("summary.md")))
         self.assertEqual(set(summary["scale"]) - names(rows("summary.md", "`scale`:")), set())
+        self.assertEqual(set(placed["positions"]), names(rows("summary.md", "## Positions")))
         documented = names(rows("evaluation.md"))
         self.assertEqual(set(errors) - documented, set())
         self.assertEqual(documented - set(errors) - {"depth"}, set())

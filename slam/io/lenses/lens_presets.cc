@@ -22,10 +22,12 @@ struct Preset {
 };
 
 /// Fusion: parameters of a hobbyist for the mode 3K (repository trek-view/fusion2sphere,
-/// parameter-examples/video-3k-mode.txt). The others are ideal: the circle fills the image in the
-/// middle of its half, with the field of view that the camera is said to have.
+/// parameter-examples/video-3k-mode.txt). Osmo 360: the layout and field of view that its users
+/// have found (repository xaionaro-go/djictl, issue 3). The others are ideal: the circle fills the
+/// image in the middle of its half, with the field of view that the camera is said to have.
 const std::vector<Preset>& Presets() {
   static const std::vector<Preset> presets = {
+      {"dji-osmo360", false, {3840, 3840}, {1920, 1920}, 1920, 190, Turn::kNone, Turn::kNone},
       {"gopro-fusion", false, {1568, 1504}, {779, 742}, 765, 190, Turn::kNone, Turn::kNone},
       {"insta360", false, {2880, 2880}, {1440, 1440}, 1440, 200, Turn::kRight, Turn::kLeft},
       {"insta360-side-by-side", true, {1920, 1920}, {960, 960}, 960, 200, Turn::kNone, Turn::kNone},

@@ -107,6 +107,36 @@ TEST_F(ExportTest, AnInputThatMovedIsAskedForAndFoundWithInput) {
       << "is no keyframe";
 }
 
+TEST_F(ExportTest, LensesAreStitchedByTheRunsCalibrationOrByAnother) {
+  const SparseModel model = MakeSyntheticModel({2, 4, 64});
+  WriteRun(model);
+  cv::Mat lenses(64, 128, CV_8UC1);  // side by side: black and white
+  lenses.colRange(0, 64) = 0;
+  lenses.colRange(64, 128) = 255;
+  const std::string video = folder_ / "lenses.avi";
+  WriteVideo(video, {lenses, lenses});
+  const auto columns = [&](const std::vector<std::string>& more) {
+    std::filesystem::remove_all(folder_ / "out");
+    std::vector<std::string> arguments = {"--images", "png", "--frames", "all", "--input", video};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = Export("images", arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const cv::Mat image = cv::imread(folder_ / "out" / "images" / "000001.png");
+    EXPECT_EQ(image.size(), cv::Size(64, 32));
+    return std::pair(cv::mean(image.col(32))[0], cv::mean(image.col(2))[0]);
+  };
+  // Without a calibration the video is taken for an equirectangular one, with a seam ahead.
+  EXPECT_LT(columns({}).second, 10);
+  // The first lens looks ahead and the second one back.
+  const auto [ahead, behind] = columns({"--lens", "samsung-gear360"});
+  EXPECT_LT(ahead, 40);
+  EXPECT_GT(behind, 200);
+  // The same calibration, as the run's summary has it.
+  WriteText(folder_ / "run" / "summary.json",
+            nlohmann::json{{"input", video}, {"lens", "samsung-gear360"}}.dump());
+  EXPECT_EQ(columns({}), std::pair(ahead, behind));
+}
+
 TEST_F(ExportTest, AnInputWithFewerFramesThanTheRunTrackedIsNamed) {
   const SparseModel model = MakeSyntheticModel({6, 4, 64});
   WriteRun(model);

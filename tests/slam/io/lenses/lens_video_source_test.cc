@@ -104,6 +104,9 @@ TEST(EacVideo, IsRefusedWithoutItsSecondTrackOrWithAnotherLayout) {
   EXPECT_THAT(
       MessageOf<UserError>([&] { OpenSequence((folder / "VID_1_00_001.insv").string(), {}); }),
       HasSubstr("--lens insta360"));
+  WriteText(folder / "CAM_1_D.OSV", "raw");
+  EXPECT_THAT(MessageOf<UserError>([&] { OpenSequence((folder / "CAM_1_D.OSV").string(), {}); }),
+              HasSubstr("--lens dji-osmo360"));
   WriteText(folder / "empty.360", "");
   EXPECT_THAT(MessageOf<UserError>([&] { OpenSequence((folder / "empty.360").string(), {}); }),
               HasSubstr("0 bytes"));
