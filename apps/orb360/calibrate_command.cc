@@ -36,7 +36,8 @@ void AddCalibrateCommand(CLI::App* app, Command* chosen) {
   CLI::App* command = app->add_subcommand(
       "calibrate", "Find the calibration of two fisheye lenses from what both show");
   const auto options = std::make_shared<CalibrateOptions>();
-  command->add_option("INPUT", options->input, "Video of two fisheye lenses")->required();
+  command->add_option("INPUT", options->input, "Video, or folder of images, of two fisheye lenses")
+      ->required();
   command
       ->add_option("--lens", options->lens,
                    "Calibration to begin with, as for `orb360 run`: a file or a preset")

@@ -66,7 +66,7 @@ void AddExportOptions(CLI::App* command, ExportOptions* options) {
       ->type_name("INPUT");
   command
       ->add_option("--lens", options->lens,
-                   "Calibration of a video of two fisheye lenses (default: that of the run)")
+                   "Calibration of two fisheye lenses (default: that of the run)")
       ->type_name("FILE|PRESET");
   command
       ->add_option("--frames", options->frames,

@@ -64,8 +64,8 @@ void AddRunOptions(CLI::App* command, RunOptions* options) {
       ->type_name("M");
   command
       ->add_option("--lens", sequence.lens,
-                   "Calibration of a video of two fisheye lenses, which is stitched: a file, or a "
-                   "preset (gopro-fusion, insta360, insta360-side-by-side, ricoh-theta, "
+                   "Calibration of two fisheye lenses, which are stitched: a file, or a preset "
+                   "(dji-osmo360, gopro-fusion, insta360, insta360-side-by-side, ricoh-theta, "
                    "samsung-gear360)")
       ->type_name("FILE|PRESET");
   command

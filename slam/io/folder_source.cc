@@ -1,11 +1,14 @@
 #include "slam/io/folder_source.h"
 
 #include <algorithm>
+#include <memory>
 #include <span>
 
+#include "slam/io/file_extension.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/image_file.h"
 #include "slam/io/jpeg_metadata.h"
+#include "slam/io/panorama_layout.h"
 #include "slam/io/panorama_xml.h"
 #include <orb360/nn/base/check.h>
 
@@ -67,6 +70,22 @@ PanoramaMetadata CommonPanorama(std::span<const FrameList::Image> images) {
   return *common;
 }
 
+/// The mapping of panoramas, which GPano may place in the sphere.
+SphereMapping MapPanoramas(std::span<const FrameList::Image> images, const std::string& name,
+                           cv::Size stored) {
+  for (const FrameList::Image& image : images) {
+    if (LowerCaseExtension(image.path) == ".insp") {
+      throw UserError(image.path.string() +
+                      ": is a raw image of two fisheye lenses; give their calibration with --lens, "
+                      "such as --lens insta360-side-by-side");
+    }
+  }
+  const PanoramaLayout layout = MakePanoramaLayout(name, stored, 1.0, CommonPanorama(images));
+  const auto placer = std::make_shared<PanoramaPlacer>(layout);
+  return {layout.shown, placer->coverage(),
+          [placer](const cv::Mat& image) { return placer->Place(image); }};
+}
+
 /// Gives the images their EXIF times if all have one, and sets whether their order changed. Returns
 /// whether the times can be timestamps.
 bool OrderByExifTime(FrameList* list) {
@@ -114,7 +133,8 @@ std::vector<std::filesystem::path> ListImages(const std::filesystem::path& folde
     }
   }
   if (files.empty()) {
-    throw UserError(name + ": contains no images (jpg, png, bmp, tif, webp, ppm, avif, heic)");
+    throw UserError(name +
+                    ": contains no images (jpg, png, bmp, tif, webp, ppm, avif, heic, insp)");
   }
   std::ranges::sort(files, [](const auto& a, const auto& b) {
     return NaturalLess(a.filename().native(), b.filename().native());
@@ -143,15 +163,15 @@ FrameList ListFrames(const std::filesystem::path& folder, const std::string& nam
 }
 
 FolderSource::FolderSource(const std::filesystem::path& folder, std::string name,
-                           std::optional<double> frame_rate, std::optional<double> camera_height)
+                           std::optional<double> frame_rate, std::optional<double> camera_height,
+                           const MakeSphereMapping& make_mapping)
     : list_(ListFrames(folder, name, frame_rate)) {
   info_.frame_rate = list_.frame_rate;
   stored_size_ = CommonSize(list_.images, name);
-  const PanoramaLayout layout =
-      MakePanoramaLayout(name, stored_size_, 1.0, CommonPanorama(list_.images));
-  placer_.emplace(layout);
-  info_.image_size = layout.shown;
-  info_.coverage = placer_->coverage();
+  mapping_ =
+      make_mapping ? make_mapping(stored_size_) : MapPanoramas(list_.images, name, stored_size_);
+  info_.image_size = mapping_.sphere;
+  info_.coverage = mapping_.coverage;
   if (list_.is_reordered) {
     warnings_.push_back(folder.string() +
                         ": the names of the images are not in the order of their EXIF times; "
@@ -174,7 +194,7 @@ std::optional<Frame> FolderSource::Read() {
   LoadedImage loaded = LoadImage(file);
   if (!loaded.image.empty()) {
     RequireSize(file, loaded.image.size(), stored_size_);
-    loaded.image = placer_->Place(loaded.image);
+    loaded.image = mapping_.to_sphere(loaded.image);
   } else {
     warnings_.push_back(file.string() + ": " + loaded.problem + "; frame " + std::to_string(next_) +
                         " is skipped");

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
-#include "slam/io/panorama_layout.h"
 #include <orb360/slam/io/frame_source.h>
 
 namespace orb360 {
@@ -42,6 +42,16 @@ struct FrameList {
 FrameList ListFrames(const std::filesystem::path& folder, const std::string& name,
                      const std::optional<double>& frame_rate);
 
+/// How the images of a folder become full spheres.
+struct SphereMapping {
+  cv::Size sphere;   ///< Of the sphere as it is shown, pixels.
+  cv::Mat coverage;  ///< As SourceInfo has it.
+  std::function<cv::Mat(const cv::Mat& stored)> to_sphere;
+};
+
+/// Returns the mapping for images of a size. Throws UserError where they do not fit.
+using MakeSphereMapping = std::function<SphereMapping(cv::Size stored)>;
+
 /// The frames of ListFrames; a warning tells where EXIF times contradict the names. Metadata of the
 /// namespace GPano that crop the panorama place the images in the full sphere. A file that cannot
 /// be decoded is skipped with a warning and counts as a frame. Images of different sizes are
@@ -50,9 +60,10 @@ class FolderSource : public FrameSource {
  public:
   /// Throws UserError for a folder without images, without an image that can be decoded, with
   /// images of different sizes or crops, or with images that are no full spheres. Messages call the
-  /// input `name`.
+  /// input `name`. Without `make_mapping` images are panoramas.
   FolderSource(const std::filesystem::path& folder, std::string name,
-               std::optional<double> frame_rate = {}, std::optional<double> camera_height = {});
+               std::optional<double> frame_rate = {}, std::optional<double> camera_height = {},
+               const MakeSphereMapping& make_mapping = {});
 
   const SourceInfo& info() const override { return info_; }
   /// Throws UserError at an image of another size.
@@ -63,7 +74,7 @@ class FolderSource : public FrameSource {
  private:
   const FrameList list_;
   cv::Size stored_size_;
-  std::optional<PanoramaPlacer> placer_;
+  SphereMapping mapping_;
   SourceInfo info_;
   std::vector<std::string> warnings_;
   size_t next_ = 0;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <fstream>
 #include <memory>
 #include <sstream>
@@ -14,6 +13,7 @@
 #include <turbojpeg.h>
 
 #include "slam/io/atomic_file.h"
+#include "slam/io/file_extension.h"
 #include "slam/io/video/frame_converter.h"
 #include "slam/io/video/video_track.h"
 #include <orb360/nn/base/check.h>
@@ -125,13 +125,10 @@ cv::Mat DecodeHeif(const std::filesystem::path& path) {
 }  // namespace
 
 bool IsImageFileName(const std::filesystem::path& path) {
-  static constexpr std::array kExtensions = {".jpg",  ".jpeg", ".png", ".bmp", ".tif",
-                                             ".tiff", ".webp", ".ppm", ".pgm", ".pnm",
-                                             ".avif", ".heic", ".heif"};
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::ranges::find(kExtensions, extension) != kExtensions.end();
+  static constexpr std::array kExtensions = {".jpg",  ".jpeg", ".png",  ".bmp", ".tif",
+                                             ".tiff", ".webp", ".ppm",  ".pgm", ".pnm",
+                                             ".avif", ".heic", ".heif", ".insp"};
+  return std::ranges::find(kExtensions, LowerCaseExtension(path)) != kExtensions.end();
 }
 
 std::optional<cv::Size> ProbeImageSize(const std::filesystem::path& path) {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -10,9 +9,11 @@
 
 #include "slam/io/bounded_queue.h"
 #include "slam/io/dataset.h"
+#include "slam/io/file_extension.h"
 #include "slam/io/folder_source.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/image_file.h"
+#include "slam/io/lenses/dual_fisheye_images.h"
 #include "slam/io/lenses/dual_fisheye_video.h"
 #include "slam/io/lenses/lens_video_source.h"
 #include "slam/io/video/video_source.h"
@@ -40,18 +41,10 @@ cv::Mat Resized(const cv::Mat& image, cv::Size size) {
   return resized;
 }
 
-/// Whether a path ends in an extension, which is in lower case, in any case.
-bool HasExtension(const std::filesystem::path& path, const std::string& extension) {
-  std::string own = path.extension().string();
-  std::ranges::transform(own, own.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return own == extension;
-}
-
 std::unique_ptr<FrameSource> OpenSource(const std::string& input, const std::string& lens) {
   if (!std::filesystem::exists(input)) throw UserError(input + ": no such file or folder");
   if (!lens.empty() && std::filesystem::is_directory(input)) {
-    throw UserError(input + ": is a folder; --lens is for a video of two fisheye lenses");
+    return OpenDualFisheyeImages(input, FindLensCalibration(lens));
   }
   if (IsDataset(input)) {
     const Dataset dataset = OpenDataset(input);
@@ -66,9 +59,9 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& input, const std::str
     throw UserError(input + ": is a single image; give a video or a folder of images");
   }
   if (!lens.empty()) return OpenDualFisheyeVideo(input, FindLensCalibration(lens));
-  if (HasExtension(input, ".360")) return OpenEacVideo(input);
-  const bool is_insta360 = HasExtension(input, ".insv");
-  if (is_insta360 || HasExtension(input, ".osv")) {
+  if (LowerCaseExtension(input) == ".360") return OpenEacVideo(input);
+  const bool is_insta360 = LowerCaseExtension(input) == ".insv";
+  if (is_insta360 || LowerCaseExtension(input) == ".osv") {
     throw UserError(input +
                     ": is a raw recording of two fisheye lenses; give their calibration with "
                     "--lens, such as --lens " +

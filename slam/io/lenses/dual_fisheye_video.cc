@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "slam/io/lenses/dual_fisheye_stitcher.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
@@ -53,10 +54,9 @@ std::unique_ptr<LensVideoSource> OpenDualFisheyeVideo(const std::string& path,
                                                       const LensCalibration& calibration) {
   LensVideoSource::Plan plan;
   plan.is_side_by_side = calibration.is_side_by_side;
-  plan.matches_exposure = true;
+  plan.matches_exposure = kMatchesExposure;
   plan.make_stitcher = [&](const std::vector<cv::Size>& sizes) {
-    const LensCalibration scaled = ScaledTo(calibration, sizes, path);
-    return std::make_unique<SphereStitcher>(SphereSize(scaled), sizes, DualFisheyeSampler(scaled));
+    return std::make_unique<SphereStitcher>(MakeDualFisheyeStitcher(calibration, sizes, path));
   };
   return std::make_unique<LensVideoSource>(path, FindLensTracks(path, calibration.is_side_by_side),
                                            plan);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "slam/io/full_sphere.h"
+#include "slam/io/lenses/dual_fisheye_stitcher.h"
 #include "slam/io/lenses/eac.h"
 #include <orb360/nn/base/check.h>
 
@@ -63,11 +64,7 @@ std::vector<cv::Mat> LensVideoSource::Images() {
     images.push_back(converters_[i].ToBgr(frame));
     if (images.back().empty()) return {};
   }
-  if (is_side_by_side_) {
-    const int width = images[0].cols / 2;
-    images = {images[0].colRange(0, width), images[0].colRange(width, 2 * width)};
-  }
-  return images;
+  return is_side_by_side_ ? Halves(images[0]) : images;
 }
 
 std::vector<cv::Mat> LensVideoSource::ReadImages() {

@@ -8,6 +8,7 @@
 
 #include "nn/base/statistics.h"
 #include "slam/io/dataset.h"
+#include "slam/io/file_extension.h"
 #include "slam/io/folder_source.h"
 #include "slam/io/jpeg_metadata.h"
 #include "slam/io/positions/camm.h"
@@ -120,10 +121,7 @@ PositionTrack ReadExifTrack(const std::filesystem::path& folder,
 }
 
 bool IsGpx(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
+  const std::string extension = LowerCaseExtension(path);
   if (extension == ".gpx" || extension == ".xml") return true;
   const std::string head = ReadFileHead(path, 5);
   return head == "<?xml" || head.starts_with("<gpx");

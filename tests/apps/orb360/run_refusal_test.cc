@@ -51,7 +51,8 @@ TEST_F(RunTest, PerspectiveVideoIsRefusedWithTheReason) {
 
 TEST_F(RunTest, RawFisheyeRecordingsNeedACalibration) {
   WriteBlanks();
-  EXPECT_THAT(Refusal({"--lens", "insta360"}), HasSubstr("is a folder"));
+  EXPECT_THAT(Refusal({"--lens", "insta360"}),
+              HasSubstr("is a folder of images, and --lens describes"));
   std::filesystem::remove_all(Input());
   WriteText(Input(), "no video");
   EXPECT_THAT(Refusal({"--lens", "nokia"}),

@@ -27,8 +27,8 @@ struct SequenceOptions {
   std::vector<int> only = {};
   /// Size to which every image is scaled; empty: not scaled. Must be near 2:1 (IsFullSphere).
   cv::Size resize;
-  /// Calibration file or name of a preset, for a video of two fisheye lenses that is stitched while
-  /// it is read. Empty: the input is equirectangular, or tells its projection.
+  /// Calibration file or name of a preset, for a video or folder of images of two fisheye lenses
+  /// that are stitched while they are read. Empty: the input is equirectangular, or tells its projection.
   std::string lens;
 };
 
@@ -81,7 +81,7 @@ class Sequence {
 };
 
 /// Opens a video file, a folder of images, or a sequence folder (Dataset). A `.360` file and, with
-/// options.lens, a video of two fisheye lenses are stitched. Throws UserError if the
+/// options.lens, videos and images of two fisheye lenses are stitched. Throws UserError if the
 /// input does not exist, cannot be read, or does not consist of full spheres.
 std::unique_ptr<Sequence> OpenSequence(const std::string& input, const SequenceOptions& options);
 

@@ -13,6 +13,7 @@
 #include "slam/io/lenses/lens_presets.h"
 #include "tests/slam/io/lenses/rendered_fisheye.h"
 #include "tests/slam/io/lenses/rendered_lens.h"
+#include "tests/slam/io/positions/insta360_writer.h"
 #include "tests/slam/io/temp_folder.h"
 #include "tests/slam/io/video/write_video.h"
 #include <orb360/nn/base/check.h>
@@ -147,6 +148,43 @@ TEST(LensCalibration, IsEstimatedFromAVideoAndUsedForTheNext) {
     }
     EXPECT_EQ(count, 3);
   }
+}
+
+TEST(LensCalibration, IsEstimatedFromAFolderOfImagesWithBothLensesSideBySide) {
+  LensCalibration start = Ideal();
+  start.is_side_by_side = true;
+  const LensCalibration built = Built();
+  const TempFolder folder;
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const TexturedSphere sphere(seed);
+    cv::Mat image;
+    cv::hconcat(RenderFisheye(built.lenses[0], sphere), RenderFisheye(built.lenses[1], sphere),
+                image);
+    std::vector<unsigned char> jpeg;
+    cv::imencode(".jpg", image, jpeg, {cv::IMWRITE_JPEG_QUALITY, 98});
+    // The camera appends its own records to the JPEG file.
+    WriteText(folder / ("IMG_" + std::to_string(seed) + "_00_001.insp"),
+              std::string(jpeg.begin(), jpeg.end()) + Insta360Trailer({{1, "serial"}}));
+  }
+  const std::string input = folder.path().string();
+  EXPECT_THAT(MessageOf<UserError>([&] { CalibrateLenses(input, Ideal()); }),
+              AllOf(HasSubstr(input), HasSubstr("side by side")));
+  const LensEstimate estimate = CalibrateLenses(input, start);
+  EXPECT_LT(estimate.median_after, 0.15 * kDegree);
+
+  EXPECT_THAT(MessageOf<UserError>([&] { OpenSequence(input, {}); }),
+              AllOf(HasSubstr("IMG_1_00_001.insp"), HasSubstr("--lens insta360-side-by-side")));
+  SequenceOptions options;
+  options.lens = (folder / "lens.yaml").string();
+  WriteText(options.lens, ToYaml(estimate.calibration));
+  const auto sequence = OpenSequence(input, options);
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const std::optional<Frame> frame = sequence->Next();
+    ASSERT_TRUE(frame);
+    const cv::Mat expected = RenderSphere(frame->image.size(), TexturedSphere(seed));
+    EXPECT_LT(MedianColorDifference(frame->image, expected), 10.0);
+  }
+  EXPECT_FALSE(sequence->Next());
 }
 
 TEST(LensCalibration, BlankImagesAreRefused) {

@@ -34,9 +34,16 @@ cv::Mat RenderLens(
   return image;
 }
 
-cv::Mat RenderSphere(cv::Size size) {
+cv::Mat RenderSphere(cv::Size size,
+                     const std::function<cv::Vec3b(const Eigen::Vector3d&)>& color_of) {
   const EquirectangularCamera camera(size.width, size.height);
-  return RenderLens(size, [&](double x, double y) { return camera.Bearing({x, y}); });
+  cv::Mat image(size, CV_8UC3);
+  for (int row = 0; row < size.height; ++row) {
+    for (int col = 0; col < size.width; ++col) {
+      image.at<cv::Vec3b>(row, col) = color_of(camera.Bearing({col + 0.5, row + 0.5}));
+    }
+  }
+  return image;
 }
 
 FeatureErrors CompareFeatures(const cv::Mat& a, const cv::Mat& b) {

@@ -18,8 +18,9 @@ cv::Mat RenderLens(
     cv::Size size,
     const std::function<std::optional<Eigen::Vector3d>(double x, double y)>& bearing_of);
 
-/// The full sphere of SphereColor.
-cv::Mat RenderSphere(cv::Size size);
+/// The full sphere that has `color_of` a direction.
+cv::Mat RenderSphere(
+    cv::Size size, const std::function<cv::Vec3b(const Eigen::Vector3d&)>& color_of = SphereColor);
 
 /// How far two images of the sphere are from each other in direction.
 struct FeatureErrors {

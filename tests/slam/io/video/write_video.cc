@@ -31,7 +31,8 @@ LibavPtr<AVCodecContext> OpenEncoder(const TrackSpec& spec, bool wants_global_he
   encoder->global_quality = 2 * FF_QP2LAMBDA;
   if (wants_global_header) encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   AVDictionary* options = nullptr;
-  av_dict_set(&options, "x265-params", "log-level=none:crf=4", 0);
+  // Of a video with fewer frames than its B-frames need, x265 leaves times undefined.
+  av_dict_set(&options, "x265-params", "log-level=none:crf=4:bframes=0", 0);
   av_dict_set(&options, "crf", "4", 0);
   av_dict_set(&options, "preset", "ultrafast", 0);
   const int result = avcodec_open2(encoder.get(), codec, &options);

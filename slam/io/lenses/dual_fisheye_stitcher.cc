@@ -1,0 +1,26 @@
+#include "slam/io/lenses/dual_fisheye_stitcher.h"
+
+#include <orb360/nn/base/check.h>
+
+namespace orb360 {
+
+SphereStitcher MakeDualFisheyeStitcher(const LensCalibration& calibration,
+                                       const std::vector<cv::Size>& sizes,
+                                       const std::string& name) {
+  const LensCalibration scaled = ScaledTo(calibration, sizes, name);
+  return {SphereSize(scaled), sizes, DualFisheyeSampler(scaled)};
+}
+
+std::vector<cv::Mat> Halves(const cv::Mat& image) {
+  const int width = image.cols / 2;
+  return {image.colRange(0, width), image.colRange(width, 2 * width)};
+}
+
+void RequireSideBySide(const LensCalibration& calibration, const std::string& name) {
+  if (calibration.is_side_by_side) return;
+  throw UserError(name +
+                  ": is a folder of images, and --lens describes lenses with a track or file each; "
+                  "give a calibration of two lenses side by side, such as insta360-side-by-side");
+}
+
+}  // namespace orb360
