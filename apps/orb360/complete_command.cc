@@ -17,6 +17,7 @@
 #include "slam/io/atomic_file.h"
 #include "slam/io/full_sphere.h"
 #include "slam/io/image_file.h"
+#include "slam/io/json_text.h"
 #include "slam/io/sparse_file.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/nn/models/default_weights.h>
@@ -180,7 +181,7 @@ int Complete(const CompleteOptions& options) {
     results.push_back(CompleteOne(options, options.sparse, options.out, &completer));
   }
   if (options.json) {
-    std::cout << results.dump(2) << '\n';
+    std::cout << ToJsonText(results, 2) << '\n';
     return EXIT_SUCCESS;
   }
   for (const nlohmann::json& result : results) {

@@ -23,6 +23,7 @@
 #include "slam/evaluation/trajectory_plot.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/dataset.h"
+#include "slam/io/json_text.h"
 #include "slam/io/ply.h"
 #include "slam/io/scale_file.h"
 #include <orb360/nn/base/check.h>
@@ -177,7 +178,7 @@ int Evaluate(const EvaluateOptions& options) {
     WriteFileAtomically(options.plot, PlotTrajectory(truth, pairs, *errors, local_scale));
   }
   if (options.prints_json) {
-    std::cout << report.dump(2) << '\n';
+    std::cout << ToJsonText(report, 2) << '\n';
   } else {
     PrintReport(report, std::cout);
   }

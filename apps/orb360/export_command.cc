@@ -103,6 +103,7 @@ SparseModel SelectFrames(const FinishedRun& run, const ExportOptions& options) {
   size_t f = 0;
   while (const std::optional<Frame> frame = sequence->Next()) {
     while (f < model.frames.size() && model.frames[f].index < frame->index) ++f;
+    if (f == model.frames.size()) break;
     sharpness[f] = MeasureSharpness(frame->image, run.mask);
     progress.Update("measuring sharpness", static_cast<int>(f + 1),
                     static_cast<int>(model.frames.size()), "frames");

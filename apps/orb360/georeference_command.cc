@@ -23,7 +23,8 @@ int RunGeoreference(const GeoreferenceOptions& options) {
   const FinishedRun run = OpenFinishedRun(options.run);
   const PositionTrack track = ReadPositions(options.positions.file, run.summary.fps);
   const Georeference georeference = PlaceLargestMap(
-      run.model, track, {WorldUp(run.summary.is_levelled), run.summary.scale, utc_start});
+      run.model, track,
+      {UpOfLargestMap(run.model, run.summary.is_levelled), run.summary.scale, utc_start});
   WriteGeoreference(run.folder / kGeoreferenceName, georeference);
   if (!options.is_quiet) {
     std::cout << StatePositions(DescribePositions(track, &georeference, "")) << "\nwrote "

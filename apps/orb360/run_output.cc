@@ -8,6 +8,7 @@
 #include "apps/orb360/saved_views.h"
 #include "slam/evaluation/map_plot.h"
 #include "slam/io/atomic_file.h"
+#include "slam/io/json_text.h"
 #include "slam/io/ply.h"
 #include "slam/io/scale_file.h"
 
@@ -123,7 +124,7 @@ void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::jso
     map_svg = DrawMap(reconstruction, file_world_from_map);
     WriteFileAtomically(folder_ / "map.svg", map_svg);
   }
-  WriteFileAtomically(folder_ / "summary.json", summary.dump(2) + "\n");
+  WriteFileAtomically(folder_ / "summary.json", ToJsonText(summary, 2) + "\n");
   WriteRunReport(folder_, reconstruction, summary, map_svg, dense ? dense->images : DenseImages());
   std::filesystem::remove(folder_ / kJournalName);
 }

@@ -4,7 +4,6 @@
 
 #include "apps/orb360/input.h"
 #include "nn/base/number_text.h"
-#include "slam/io/export/export_scene.h"
 #include "slam/io/positions/read_positions.h"
 #include "slam/io/positions/utc_time.h"
 #include <orb360/nn/base/check.h>
@@ -64,8 +63,8 @@ GeoreferenceResult PlaceRun(const SparseModel& model, const std::optional<RunPos
   if (!positions) return placed;
   try {
     if (model.frames.empty()) throw UserError("no frame of the run has a pose");
-    placed.georeference =
-        PlaceLargestMap(model, positions->track, {WorldUp(is_levelled), std::nullopt, utc_start});
+    placed.georeference = PlaceLargestMap(
+        model, positions->track, {UpOfLargestMap(model, is_levelled), std::nullopt, utc_start});
   } catch (const UserError& error) {
     placed.failure = error.what();
   }

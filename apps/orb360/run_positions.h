@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "slam/io/export/export_scene.h"
 #include "slam/io/positions/georeference.h"
 #include "slam/io/sparse_model.h"
 
@@ -39,10 +40,11 @@ std::optional<RunPositions> ReadRunPositions(const PositionOptions& options,
                                              const std::optional<double>& frame_rate,
                                              std::string* warning);
 
-/// The vertical of the world of files: the normal of the ground where the run is levelled, else the
-/// upper side of the first camera.
-inline UpDirection WorldUp(bool is_levelled) {
-  return {Eigen::Vector3d::UnitZ(), is_levelled ? kGroundUpSigma : kCameraUpSigma};
+/// The vertical of a model's largest map: the normal of the ground where the run is levelled, which
+/// holds for its first map, else the upper side of the first camera.
+inline UpDirection UpOfLargestMap(const SparseModel& model, bool is_levelled) {
+  const bool is_ground = is_levelled && LargestMap(model) == 0;
+  return {Eigen::Vector3d::UnitZ(), is_ground ? kGroundUpSigma : kCameraUpSigma};
 }
 
 /// Places the largest map of a run (LargestMap) on Earth by all its frames. Throws UserError where
@@ -57,7 +59,8 @@ struct GeoreferenceResult {
   nlohmann::json description;  ///< DescribePositions; null without positions.
 };
 
-/// Places a run whose scale has been estimated with the positions. `is_levelled`: as in WorldUp.
+/// Places a run whose scale has been estimated with the positions. `is_levelled`: as in
+/// UpOfLargestMap.
 GeoreferenceResult PlaceRun(const SparseModel& model, const std::optional<RunPositions>& positions,
                             bool is_levelled, const std::optional<double>& utc_start);
 

@@ -146,7 +146,8 @@ RunSummary ReadSummary(const std::filesystem::path& path) {
     if (json.contains("fps") && !json["fps"].is_null()) summary.fps = json["fps"].get<double>();
     const nlohmann::json scale = json.value("scale", nlohmann::json::object());
     summary.has_unknown_scale = scale.value("state", "") == ToString(ScaleState::kUnknown);
-    const bool has_positions = json.contains("positions") && !json["positions"].is_null();
+    const nlohmann::json sources = scale.value("sources", nlohmann::json::array());
+    const bool has_positions = std::ranges::find(sources, "positions") != sources.end();
     if (!has_positions && scale.contains("value") && !scale["value"].is_null()) {
       summary.scale = {std::log(scale["value"].get<double>()), scale.at("sigma").get<double>()};
     }

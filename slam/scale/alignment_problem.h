@@ -23,9 +23,6 @@ using AlignmentVector = Eigen::Matrix<double, kAlignmentUnknowns, 1>;
 using AlignmentMatrix = Eigen::Matrix<double, kAlignmentUnknowns, kAlignmentUnknowns>;
 using AlignmentRow = Eigen::Matrix<double, 1, kAlignmentUnknowns>;
 
-/// Fewest fixes on the path.
-inline constexpr int kMinAlignmentFixes = 6;
-
 /// An estimate: local = scale * rotation * (path - center) + translation.
 struct AlignmentState {
   double scale = 1;

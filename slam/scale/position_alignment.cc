@@ -65,7 +65,9 @@ std::optional<Candidate> Refine(AlignmentProblem problem, double clock) {
         std::sqrt(factor.solve(AlignmentVector::Unit(kClockUnknown))[kClockUnknown]);
   }
   if (!(std::isfinite(candidate.state.scale) && candidate.state.scale > 0)) return std::nullopt;
-  return candidate;
+  // The last step may have moved fixes off the ends of the path.
+  const size_t count = Linearize(candidate.problem, candidate.state).times.size();
+  return count < kMinAlignmentFixes ? std::nullopt : std::optional(candidate);
 }
 
 /// Root mean square distance of the fixes from their mean, horizontally; metres.
@@ -79,7 +81,7 @@ double Spread(const LinearizedFixes& fixes, const Vector3d& translation) {
 }
 
 /// Solves with the model of the noise, and fills in what is stated. `common_sigma`: the median of
-/// the stated standard deviations, metres.
+/// the stated standard deviations, metres. Contract: enough fixes lie on the path.
 PositionAlignment Estimate(Candidate* candidate, double common_sigma) {
   AlignmentState& state = candidate->state;
   AveragedSolution solution;

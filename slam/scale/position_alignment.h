@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 
@@ -11,6 +12,9 @@
 #include <orb360/slam/scale/position_fix.h>
 
 namespace orb360 {
+
+/// Fewest fixes on the path that AlignPositions uses.
+inline constexpr size_t kMinAlignmentFixes = 6;
 
 /// The vertical in the frame of a path, and how well it is known.
 struct UpDirection {

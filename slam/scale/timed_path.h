@@ -21,7 +21,7 @@ struct PathState {
 
 /// Interpolates a path, whose times ascend, on the straight line between the two points around
 /// `timestamp`. Returns nullopt before the first and after the last point, and where the two are
-/// more than `max_gap` seconds apart.
+/// more than `max_gap` seconds apart; there only the points themselves are known, and no velocity.
 std::optional<PathState> Interpolate(std::span<const PathPoint> path, double timestamp,
                                      double max_gap);
 

@@ -3,6 +3,7 @@
 #include "slam/io/atomic_file.h"
 #include "slam/io/export/geographic_formats.h"
 #include "slam/io/export/geographic_path.h"
+#include "slam/io/json_text.h"
 
 namespace orb360 {
 
@@ -27,7 +28,7 @@ void ExportGeojson(std::span<const PosedFrame> frames, const Georeference& geore
       {"properties", std::move(properties)},
       {"geometry", {{"type", "LineString"}, {"coordinates", std::move(coordinates)}}}};
   const nlohmann::json collection = {{"type", "FeatureCollection"}, {"features", {feature}}};
-  WriteFileAtomically(folder / "trajectory.geojson", collection.dump() + "\n");
+  WriteFileAtomically(folder / "trajectory.geojson", ToJsonText(collection) + "\n");
 }
 
 }  // namespace orb360

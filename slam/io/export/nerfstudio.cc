@@ -12,12 +12,15 @@
 #include "slam/io/export/make_folder.h"
 #include "slam/io/export/view_resampler.h"
 #include "slam/io/image_file.h"
+#include "slam/io/json_text.h"
 #include "slam/io/ply.h"
 
 namespace orb360 {
 namespace {
 
 constexpr const char* kPointsName = "sparse_pc.ply";
+// nerfstudio wants a depth map for every image or for none. This one knows nothing.
+constexpr const char* kNoDepthName = "none.png";
 
 /// Returns the matrix of a view's pose with OpenGL's camera axes.
 nlohmann::json TransformOf(const PosedFrame& frame, const View& view) {
@@ -97,15 +100,16 @@ void ExportNerfstudio(const ExportScene& scene, const std::filesystem::path& fol
       if (scene.has_masks) {
         image["mask_path"] = std::string(kMasksFolder) + "/" + MaskName(name);
       }
-      if (has_depth) {
-        image["depth_file_path"] = std::string(kDepthFolder) + "/" + DepthName(frame, view);
+      if (!scene.frames_with_depth.empty()) {
+        image["depth_file_path"] =
+            std::string(kDepthFolder) + "/" + (has_depth ? DepthName(frame, view) : kNoDepthName);
       }
       frames.push_back(std::move(image));
     }
   }
   json["frames"] = std::move(frames);
   WritePoints(scene, folder);
-  WriteFileAtomically(folder / "transforms.json", json.dump(1) + "\n");
+  WriteFileAtomically(folder / "transforms.json", ToJsonText(json, 1) + "\n");
 }
 
 void WriteViewDepth(const ExportScene& scene, const DepthMapStore& store,
@@ -113,6 +117,8 @@ void WriteViewDepth(const ExportScene& scene, const DepthMapStore& store,
   const std::filesystem::path depth = folder / kDepthFolder;
   const ViewResampler resampler({scene.model.width, scene.model.height}, scene.views);
   for (const View& view : scene.views) MakeFolder(depth / view.name);
+  const View& first = scene.views.front();
+  WriteImage(depth / kNoDepthName, cv::Mat::zeros(first.height, first.width, CV_16UC1));
   for (const PosedFrame& frame : scene.model.frames) {
     if (!std::ranges::binary_search(scene.frames_with_depth, frame.index)) continue;
     const cv::Mat range = store.Get(frame.index).range;

@@ -14,8 +14,9 @@ void ExportNerfstudio(const ExportScene& scene, const std::filesystem::path& fol
 
 /// Writes a depth map for each image of a frame in scene.frames_with_depth below `folder`/depth
 /// (DepthName): 16-bit PNG of millimetres, 0 where nothing is known or more than 65.535 m. That of
-/// a panorama has the distance along the ray, that of a pinhole view the z coordinate. Throws
-/// UserError for a damaged depth map and where the disk fails.
+/// a panorama has the distance along the ray, that of a pinhole view the z coordinate. All other
+/// frames share one that knows nothing. Throws UserError for a damaged depth map and where the disk
+/// fails.
 void WriteViewDepth(const ExportScene& scene, const DepthMapStore& store,
                     const std::filesystem::path& folder);
 

@@ -6,6 +6,7 @@
 
 #include "slam/io/atomic_file.h"
 #include "slam/io/chunked_file.h"
+#include "slam/io/json_text.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/slam/geometry/so3.h>
 
@@ -18,9 +19,9 @@ nlohmann::json ToJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; 
 void WriteEntry(const std::string& key, const nlohmann::json& value, const char* separator,
                 ChunkedFile* file) {
   file->Write(separator);
-  file->Write(nlohmann::json(key).dump());
+  file->Write(ToJsonText(key));
   file->Write(": ");
-  file->Write(value.dump());
+  file->Write(ToJsonText(value));
 }
 
 }  // namespace
@@ -41,7 +42,7 @@ void ExportOpensfm(const ExportScene& scene, const std::optional<Georeference>& 
     const nlohmann::json reference = {{"latitude", georeference->origin.latitude},
                                       {"longitude", georeference->origin.longitude},
                                       {"altitude", georeference->origin.height}};
-    WriteFileAtomically(folder / "reference_lla.json", reference.dump(2) + "\n");
+    WriteFileAtomically(folder / "reference_lla.json", ToJsonText(reference, 2) + "\n");
     WriteEntry("reference_lla", reference, "", &file);
     file.Write(",\n");
   }

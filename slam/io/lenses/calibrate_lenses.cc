@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "slam/io/folder_source.h"
+#include "slam/io/full_sphere.h"
 #include "slam/io/image_file.h"
 #include "slam/io/lenses/dual_fisheye_stitcher.h"
 #include "slam/io/lenses/dual_fisheye_video.h"
@@ -26,9 +27,9 @@ void SampleVideo(const std::string& video, const LensCalibration& calibration,
   const std::unique_ptr<LensVideoSource> source = OpenDualFisheyeVideo(video, calibration);
   const int stride = std::max(1, source->info().frame_count.value_or(0) / kFrames);
   for (int i = 0; i < kFrames; ++i) {
-    const std::vector<cv::Mat> images = source->ReadImages();
-    if (images.empty()) break;
-    take(images);
+    if (!source->Skip()) break;
+    const std::vector<cv::Mat> images = source->Images();
+    if (!images.empty()) take(images);
     for (int skipped = 1; skipped < stride; ++skipped) {
       if (!source->Skip()) break;
     }
@@ -40,9 +41,17 @@ void SampleFolder(const std::string& folder, const LensCalibration& calibration,
   RequireSideBySide(calibration, folder);
   const std::vector<std::filesystem::path> files = ListImages(folder, folder);
   const size_t stride = std::max<size_t>(1, files.size() / kFrames);
+  cv::Size size;
   for (size_t i = 0; i < files.size() && i / stride < kFrames; i += stride) {
     const LoadedImage loaded = LoadImage(files[i]);
-    if (!loaded.image.empty()) take(Halves(loaded.image));
+    if (loaded.image.empty()) continue;
+    if (size.empty()) size = loaded.image.size();
+    if (loaded.image.size() != size) {
+      throw UserError(files[i].string() + ": is " + ToString(loaded.image.size()) +
+                      ", the images before it are " + ToString(size) +
+                      "; all images of a folder must have the same size");
+    }
+    take(Halves(loaded.image));
   }
 }
 

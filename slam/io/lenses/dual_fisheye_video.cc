@@ -44,8 +44,10 @@ std::vector<TrackName> FindLensTracks(const std::string& path, bool is_side_by_s
     const std::string missing =
         files ? (std::filesystem::exists(files->first) ? files->second : files->first).string()
               : "the file of the other lens";
-    throw UserError(path + ": holds the video of one lens, and " + missing +
-                    " is not there; put both files into one folder under the camera's names");
+    throw UserError(
+        path + ": holds the video of one lens, and " + missing +
+        " is not there; put both files into one folder under the camera's names, or give a "
+        "calibration of two lenses side by side if this video shows both");
   }
   return {{path, 0}};  // VideoTrack says why it cannot be read
 }

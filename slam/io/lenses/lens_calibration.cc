@@ -198,6 +198,7 @@ cv::Size SphereSize(const LensCalibration& calibration) {
 
 StitchSampler DualFisheyeSampler(const LensCalibration& calibration) {
   return [calibration](const Eigen::Vector3d& bearing, std::vector<StitchSample>* samples) {
+    // The difference of both angles changes by two degrees for each degree between the lenses.
     constexpr double kBlend = 4.0 * kRadian;
     // The optical frame of the camera from the camera frame (-X forward, +Y right, +Z up).
     const Eigen::Vector3d ray(bearing.y(), -bearing.z(), -bearing.x());

@@ -43,8 +43,8 @@ LensCalibration ScaledTo(const LensCalibration& calibration, const std::vector<c
 /// Size of the full sphere with the resolution of the lenses.
 cv::Size SphereSize(const LensCalibration& calibration);
 
-/// Gives for a direction its samples in the images of both lenses. They are blended over 4 degrees
-/// around where both are equally far from their axes.
+/// Gives for a direction its samples in the images of both lenses. They are blended
+/// within a degree on either side of where both are equally far from their axes.
 StitchSampler DualFisheyeSampler(const LensCalibration& calibration);
 
 }  // namespace orb360

@@ -18,6 +18,10 @@ LensVideoSource::LensVideoSource(const std::string& name, const std::vector<Trac
     tracks_.push_back(std::make_unique<VideoTrack>(track.path, track.number));
     sizes.push_back(tracks_.back()->size());
   }
+  // Tracks of one file have one clock; files of their own begin together.
+  if (tracks.size() == 2 && tracks[0].path == tracks[1].path) {
+    second_start_ = tracks_[1]->start_time() - tracks_[0]->start_time();
+  }
   converters_.resize(tracks_.size());
   if (is_side_by_side_) sizes.assign(2, {sizes[0].width / 2, sizes[0].height});
   stitcher_ = plan.make_stitcher(sizes);
@@ -34,12 +38,15 @@ bool LensVideoSource::Skip() {
       std::ranges::all_of(tracks_, [](const auto& track) { return track->Advance(); });
   const double tolerance = 0.5 / info_.frame_rate;
   while (has_frames && tracks_.size() == 2) {
-    const double ahead = tracks_[0]->timestamp() - tracks_[1]->timestamp();
+    const double ahead = tracks_[0]->timestamp() - tracks_[1]->timestamp() - second_start_;
     if (std::abs(ahead) <= tolerance) break;
     ++unpaired_;
     has_frames = tracks_[ahead > 0.0 ? 1 : 0]->Advance();
   }
-  if (has_frames) return true;
+  if (has_frames) {
+    ++index_;
+    return true;
+  }
   has_ended_ = true;
   for (const auto& track : tracks_) {
     if (const std::optional<std::string> warning = track->EarlyEnd()) warnings_.push_back(*warning);
@@ -51,7 +58,6 @@ bool LensVideoSource::Skip() {
   return false;
 }
 
-/// The images of the lenses in the tracks' present frames.
 std::vector<cv::Mat> LensVideoSource::Images() {
   std::vector<cv::Mat> images;
   for (size_t i = 0; i < tracks_.size(); ++i) {
@@ -67,13 +73,9 @@ std::vector<cv::Mat> LensVideoSource::Images() {
   return is_side_by_side_ ? Halves(images[0]) : images;
 }
 
-std::vector<cv::Mat> LensVideoSource::ReadImages() {
-  return Skip() ? Images() : std::vector<cv::Mat>();
-}
-
 std::optional<Frame> LensVideoSource::Read() {
   if (!Skip()) return std::nullopt;
-  Frame frame{tracks_[0]->index(), tracks_[0]->timestamp(), {}};
+  Frame frame{index_, tracks_[0]->timestamp(), {}};
   const std::vector<cv::Mat> images = Images();
   if (images.empty()) {
     warnings_.push_back(info_.name + ": frame " + std::to_string(frame.index) +

@@ -42,12 +42,11 @@ class LensVideoSource : public FrameSource {
   bool Skip() override;
   std::vector<std::string> TakeWarnings() override { return std::exchange(warnings_, {}); }
 
-  /// Reads the images of the lenses of the next frame without stitching them; empty at the end.
-  std::vector<cv::Mat> ReadImages();
-
- private:
+  /// The images of the lenses in the frame that Skip has gone to, without stitching them; empty
+  /// where it cannot be decoded.
   std::vector<cv::Mat> Images();
 
+ private:
   SourceInfo info_;
   bool is_side_by_side_ = false;
   bool matches_exposure_ = false;
@@ -55,7 +54,9 @@ class LensVideoSource : public FrameSource {
   std::vector<FrameConverter> converters_;
   std::unique_ptr<SphereStitcher> stitcher_;
   std::vector<std::string> warnings_;
-  int unpaired_ = 0;  // frames of one track without one of the other
+  double second_start_ = 0.0;  // of the second track after that of the first one, seconds
+  int index_ = -1;             // of the present pair of frames
+  int unpaired_ = 0;           // frames of one track without one of the other
   bool has_ended_ = false;
 };
 

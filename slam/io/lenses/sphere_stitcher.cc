@@ -32,7 +32,8 @@ SphereStitcher::SphereStitcher(cv::Size sphere, std::vector<cv::Size> images,
     : sphere_(sphere), sizes_(std::move(images)), image_(sphere, CV_8U, cv::Scalar(kNoImage)) {
   std::vector<int> first_row = {0};
   for (const cv::Size& size : sizes_) first_row.push_back(first_row.back() + size.height);
-  ORB360_CHECK(first_row.back() <= 32000, first_row.back());
+  ORB360_CHECK(first_row.back() <= kMaxStitchedSide && sphere.width <= kMaxStitchedSide,
+               first_row.back(), sphere);
   const EquirectangularCamera camera(sphere.width, sphere.height);
   cv::Mat map(sphere, CV_32FC2, cv::Scalar(-1, -1));
   std::vector<cv::Vec2f> overlap_pixels;

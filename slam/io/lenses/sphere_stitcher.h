@@ -24,10 +24,14 @@ struct StitchSample {
 /// two; none where no image shows it. The vector is empty when it is called.
 using StitchSampler = std::function<void(const Eigen::Vector3d&, std::vector<StitchSample>*)>;
 
+/// Columns of a sphere, and rows of all images together, that are stitched: 16 bits address them.
+inline constexpr int kMaxStitchedSide = 32000;
+
 /// Makes full spheres from the images of lenses by maps that are computed once.
 class SphereStitcher {
  public:
-  /// `sphere`: size of the result; `images`: sizes of the images, at most 32000 rows together.
+  /// `sphere`: size of the result; `images`: sizes of the images. Both are at most
+  /// kMaxStitchedSide.
   SphereStitcher(cv::Size sphere, std::vector<cv::Size> images, const StitchSampler& sampler);
 
   /// Returns the full sphere, CV_8UC3, of images of the sizes given before, CV_8UC3: black where no

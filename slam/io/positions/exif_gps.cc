@@ -12,6 +12,7 @@ namespace {
 
 // Tags of the GPS directory; the pointer to it is a tag of the first directory.
 enum Tag : std::uint16_t {
+  kVersion = 0,
   kLatitudeRef = 1,
   kLatitude = 2,
   kLongitudeRef = 3,
@@ -45,10 +46,15 @@ void ReadAltitude(const Tiff& tiff, size_t directory, ExifPosition* position) {
   const std::optional<TiffEntry> entry = FindEntry(tiff, directory, kAltitudeRef);
   const int reference =
       entry && entry->type == TiffType::kByte ? tiff.At<std::uint8_t>(entry->value).value_or(0) : 0;
-  // 0 above and 1 below sea level; Exif 3.0 adds 2 and 3, the same of the ellipsoid.
+  // 0 above and 1 below sea level; in Exif 3.0, whose GPS directory has the version 2.4, these are
+  // above and below the ellipsoid, and 2 and 3 above and below sea level.
   position->fix.altitude = reference % 2 == 1 ? -*altitude : *altitude;
+  const std::optional<TiffEntry> version = FindEntry(tiff, directory, kVersion);
+  const bool is_exif3 = version && version->type == TiffType::kByte && version->count == 4 &&
+                        tiff.At<std::uint8_t>(version->value) == 2 &&
+                        tiff.At<std::uint8_t>(version->value + 1).value_or(0) >= 4;
   position->altitude_reference =
-      reference < 2 ? AltitudeReference::kMeanSeaLevel : AltitudeReference::kEllipsoid;
+      is_exif3 && reference < 2 ? AltitudeReference::kEllipsoid : AltitudeReference::kMeanSeaLevel;
 }
 
 std::optional<double> ReadUtc(const Tiff& tiff, size_t directory) {

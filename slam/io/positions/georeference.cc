@@ -74,7 +74,8 @@ std::string Range(double first, double last, const PositionTrack& track) {
   const double last = track.fixes.back().timestamp;
   switch (result.failure) {
     case AlignmentFailure::kTooFewFixes:
-      text << "its positions, from " << Range(first, last, track) << ", do not overlap the path of "
+      text << "fewer than " << kMinAlignmentFixes << " of its positions, from "
+           << Range(first, last, track) << ", lie on the path of "
            << std::lround(path.back().timestamp - path.front().timestamp)
            << " s; give the track of this recording, and check the time that was given";
       break;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "slam/io/atomic_file.h"
+#include "slam/io/json_text.h"
 #include "slam/io/positions/georeference.h"
 #include "slam/io/positions/utc_time.h"
 #include <orb360/nn/base/check.h>
@@ -118,7 +119,7 @@ bool IsSound(const Georeference& georeference) {
 }  // namespace
 
 void WriteGeoreference(const std::filesystem::path& path, const Georeference& georeference) {
-  WriteFileAtomically(path, ToJson(georeference).dump(2) + "\n");
+  WriteFileAtomically(path, ToJsonText(ToJson(georeference), 2) + "\n");
 }
 
 Georeference ReadGeoreference(const std::filesystem::path& path) {

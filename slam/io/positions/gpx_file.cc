@@ -74,7 +74,7 @@ std::optional<GeodeticFix> ParsePoint(const pugi::xml_node& point, const std::st
   fix.longitude = degrees("lon", 180);
   fix.altitude = NumberIn(point, "ele");
   fix.horizontal_sigma = SigmaOf(NumberIn(point, "hdop"), kMetresPerDop);
-  fix.vertical_sigma = SigmaOf(NumberIn(point, "vdop"), kMetresPerDop * kVerticalPerHorizontal);
+  fix.vertical_sigma = SigmaOf(NumberIn(point, "vdop"), kMetresPerDop);
   return fix;
 }
 

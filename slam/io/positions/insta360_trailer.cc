@@ -17,6 +17,7 @@ constexpr size_t kRecordHeaderSize = 6;  // behind the record
 constexpr size_t kIndexEntrySize = 10;
 constexpr size_t kMeasurementSize = 53;
 constexpr int kIndexKind = 0, kGpsKind = 7;
+constexpr int kMaxRecords = 4096;  // Cameras write a dozen.
 /// A day of ten measurements a second has 46 MB; a damaged size must not take more memory.
 constexpr std::uint64_t kMaxRecordBytes = 64 << 20;
 
@@ -70,7 +71,7 @@ std::optional<Extent> FindGpsRecord(std::istream& file) {
   const std::optional<Extent> records = FindRecords(file);
   if (!records) return std::nullopt;
   std::uint64_t end = records->end;
-  while (end >= records->begin + kRecordHeaderSize) {
+  for (int i = 0; i < kMaxRecords && end >= records->begin + kRecordHeaderSize; ++i) {
     end -= kRecordHeaderSize;
     const std::string header = ReadExtent(file, {end, end + kRecordHeaderSize});
     const auto size = NumberAt<std::uint32_t>(header, 2);

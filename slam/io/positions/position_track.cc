@@ -6,6 +6,12 @@
 namespace orb360 {
 namespace {
 
+// A receiver's clock counts from 1970 or from the start of a video: the years 1739 to 2201. So all
+// sums of plausible times can be written as dates.
+constexpr double kMaxTime = 7.3e9;  // seconds
+
+bool IsPlausibleTime(double time) { return std::abs(time) <= kMaxTime; }
+
 bool IsFiniteOrNone(const std::optional<double>& number) {
   return !number || std::isfinite(*number);
 }
@@ -17,13 +23,14 @@ bool IsPositiveOrNone(const std::optional<double>& number) {
 }  // namespace
 
 bool IsPlausible(const GeodeticFix& fix) {
-  return std::isfinite(fix.timestamp) && std::abs(fix.latitude) <= 90 &&
+  return IsPlausibleTime(fix.timestamp) && std::abs(fix.latitude) <= 90 &&
          std::abs(fix.longitude) <= 180 && (fix.latitude != 0 || fix.longitude != 0) &&
          IsFiniteOrNone(fix.altitude) && IsPositiveOrNone(fix.horizontal_sigma) &&
          IsPositiveOrNone(fix.vertical_sigma);
 }
 
 void Tidy(PositionTrack* track) {
+  if (track->utc_at_zero && !IsPlausibleTime(*track->utc_at_zero)) track->utc_at_zero.reset();
   std::vector<GeodeticFix>& fixes = track->fixes;
   std::erase_if(fixes, [](const GeodeticFix& fix) { return !IsPlausible(fix); });
   std::ranges::stable_sort(fixes, {}, &GeodeticFix::timestamp);

@@ -49,12 +49,13 @@ inline constexpr double kMetresPerDop = 3.0;
 /// Altitudes of receivers are about twice as uncertain as horizontal positions.
 inline constexpr double kVerticalPerHorizontal = 2.0;
 
-/// Whether latitude and longitude are on Earth, all numbers are finite, and the position is not
-/// exactly 0, 0, which receivers write before they know it.
+/// Whether latitude and longitude are on Earth, the time is within 231 years of the clock's zero,
+/// all numbers are finite, and the position is not exactly 0, 0, which receivers write before they
+/// know it.
 bool IsPlausible(const GeodeticFix& fix);
 
-/// Drops fixes that are not plausible, sorts the others by time and drops those whose time another
-/// one has already.
+/// Drops fixes and a UTC that are not plausible, sorts the fixes by time and drops those whose time
+/// another one has already.
 void Tidy(PositionTrack* track);
 
 }  // namespace orb360

@@ -18,12 +18,11 @@
 #include "slam/io/positions/gpx_file.h"
 #include "slam/io/positions/insta360_trailer.h"
 #include "slam/io/positions/metadata_track.h"
+#include "slam/scale/position_alignment.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {
-
-constexpr size_t kMinFixes = 3;  // A path through fewer has no shape.
 
 /// A track, and how many measurements were left out because the receiver had no fix.
 struct FoundTrack {
@@ -101,18 +100,22 @@ FoundTrack ReadInsta360Track(const std::filesystem::path& path) {
   return found;
 }
 
-/// The images' own positions. Images without one are left out.
+/// The images' own positions. Images without one are left out. The order of the images is that of
+/// the source of frames, which knows the rate of a data set (`own_rate`) only; with --fps
+/// (`frame_rate`) their times are replaced.
 PositionTrack ReadExifTrack(const std::filesystem::path& folder,
+                            const std::optional<double>& own_rate,
                             const std::optional<double>& frame_rate) {
   PositionTrack track;
   track.source = "Exif of the images in " + folder.string();
   track.clock = PositionClock::kFrames;
-  const FrameList list = ListFrames(folder, folder.string(), frame_rate);
-  for (const auto& [path, timestamp] : list.images) {
+  const FrameList list = ListFrames(folder, folder.string(), own_rate);
+  for (size_t i = 0; i < list.images.size(); ++i) {
+    const auto& [path, timestamp] = list.images[i];
     const std::optional<ExifPosition> position = ParseExifGps(ReadJpegMetadata(path).exif);
     if (!position) continue;
     GeodeticFix fix = position->fix;
-    fix.timestamp = timestamp;
+    fix.timestamp = frame_rate ? static_cast<double>(i) / *frame_rate : timestamp;
     track.fixes.push_back(fix);
     if (position->fix.altitude) track.altitude_reference = position->altitude_reference;
     if (!track.utc_at_zero && position->utc) track.utc_at_zero = *position->utc - fix.timestamp;
@@ -144,9 +147,9 @@ std::optional<PositionTrack> FindInVideo(const std::filesystem::path& path) {
 }
 
 void RequireEnough(const PositionTrack& track) {
-  if (track.fixes.size() >= kMinFixes) return;
+  if (track.fixes.size() >= kMinAlignmentFixes) return;
   throw UserError(track.source + ": has " + std::to_string(track.fixes.size()) +
-                  " positions, and at least " + std::to_string(kMinFixes) +
+                  " positions, and at least " + std::to_string(kMinAlignmentFixes) +
                   " are needed; give a longer track");
 }
 
@@ -157,9 +160,9 @@ std::optional<PositionTrack> FindPositions(const std::filesystem::path& input,
   std::optional<PositionTrack> track;
   if (IsDataset(input)) {
     const Dataset dataset = OpenDataset(input);
-    track = ReadExifTrack(dataset.images(), frame_rate ? frame_rate : dataset.frame_rate);
+    track = ReadExifTrack(dataset.images(), dataset.frame_rate, frame_rate);
   } else if (std::filesystem::is_directory(input)) {
-    track = ReadExifTrack(input, frame_rate);
+    track = ReadExifTrack(input, std::nullopt, frame_rate);
   } else {
     track = FindInVideo(input);
   }

@@ -156,6 +156,11 @@ bool VideoTrack::DecodeAhead() {
   }
 }
 
+double VideoTrack::start_time() const {
+  const std::int64_t start = stream_->start_time == AV_NOPTS_VALUE ? 0 : stream_->start_time;
+  return static_cast<double>(start) * av_q2d(stream_->time_base);
+}
+
 bool VideoTrack::Advance() {
   if (!DecodeAhead()) return false;
   frame_ = std::move(ahead_.front());

@@ -34,6 +34,8 @@ class VideoTrack {
   /// Its time after the start of the track, seconds: the file's where it increases, otherwise the
   /// previous frame's plus one frame time.
   double timestamp() const { return timestamp_; }
+  /// When the track starts by the clock that all tracks of the file have, seconds.
+  double start_time() const;
 
   const std::string& path() const { return path_; }
   const AVStream& stream() const { return *stream_; }

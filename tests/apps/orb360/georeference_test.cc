@@ -131,7 +131,11 @@ TEST_F(GeoreferenceTest, AScaleThatIsKnownOtherwiseCountsUnlessItCameFromPositio
     return ReadGeoreference(Georeferenced()).alignment.local_from_path.scale;
   };
   EXPECT_NEAR(scale(), 1.05, 1e-3);
-  summary["positions"] = {{"source", "GPX drive.gpx"}};
+  // Positions that the run could not use told nothing of its scale.
+  summary["positions"] = {{"source", "GPX other.gpx"}, {"failure", "another path"}};
+  summary["scale"]["sources"] = {"images of the ground"};
+  EXPECT_NEAR(scale(), 1.05, 1e-3);
+  summary["scale"]["sources"] = {"images of the ground", "positions"};
   EXPECT_NEAR(scale(), kScale, 0.01);
 }
 
@@ -143,7 +147,7 @@ TEST_F(GeoreferenceTest, WhatCannotPlaceTheRunIsRefusedInOneLine) {
   EXPECT_THAT(Refusal(gpx, {"--utc-start", "noon"}), HasSubstr("--utc-start: `noon` is no time"));
   // Another day.
   EXPECT_THAT(Refusal(gpx, {"--utc-start", "2026-03-13T07:00:00Z"}),
-              AllOf(HasSubstr("2026-03-14T06:59:40"), HasSubstr("do not overlap the path")));
+              AllOf(HasSubstr("2026-03-14T06:59:40"), HasSubstr("fewer than 6 of its positions")));
   // A receiver that stands still.
   EXPECT_THAT(Refusal(WriteGpx("still.gpx", kStart, 0)), HasSubstr("do not move far enough"));
 }

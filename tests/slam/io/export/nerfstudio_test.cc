@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -65,7 +66,8 @@ TEST(Nerfstudio, TheDepthOfAPinholeViewIsTheZCoordinate) {
   EXPECT_EQ(image.at<uint16_t>(front.height / 2, 3), 0);
 }
 
-TEST(Nerfstudio, OnlyFramesWithDepthNameAFileWhichIsThere) {
+// nerfstudio refuses a file in which only some frames have a depth map.
+TEST(Nerfstudio, AllFramesNameADepthMapWhichIsThereOrNoneDoes) {
   const DepthScene depth(true);
   ExportNerfstudio(depth.scene, depth.folder / "out");
   const nlohmann::json json =
@@ -74,13 +76,24 @@ TEST(Nerfstudio, OnlyFramesWithDepthNameAFileWhichIsThere) {
   for (const nlohmann::json& frame : json["frames"]) {
     EXPECT_FALSE(frame.contains("mask_path"));
     const bool is_frame_3 = frame["file_path"].get<std::string>().ends_with("000003.jpg");
-    ASSERT_EQ(frame.contains("depth_file_path"), is_frame_3);
-    if (!is_frame_3) continue;
-    ++named;
-    EXPECT_TRUE(std::filesystem::exists(depth.folder / "out" /
-                                        frame["depth_file_path"].get<std::string>()));
+    ASSERT_TRUE(frame.contains("depth_file_path"));
+    const std::string name = frame["depth_file_path"];
+    const cv::Mat map = cv::imread(depth.folder / "out" / name, cv::IMREAD_UNCHANGED);
+    ASSERT_EQ(map.type(), CV_16UC1) << name;
+    EXPECT_EQ(map.size(), cv::Size(json["w"], json["h"]));
+    EXPECT_EQ(name == "depth/none.png", !is_frame_3);
+    if (!is_frame_3) {
+      EXPECT_EQ(cv::countNonZero(map), 0);
+    }
+    named += is_frame_3 ? 1 : 0;
   }
   EXPECT_EQ(named, 6);
+
+  DepthScene without(false);
+  without.scene.frames_with_depth.clear();
+  ExportNerfstudio(without.scene, without.folder / "out");
+  EXPECT_THAT(ReadText(without.folder / "out" / "transforms.json"),
+              testing::Not(testing::HasSubstr("depth_file_path")));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "slam/io/lenses/dual_fisheye_stitcher.h"
 #include "slam/io/lenses/lens_presets.h"
 #include "tests/slam/io/lenses/rendered_fisheye.h"
 #include "tests/slam/io/lenses/rendered_lens.h"
@@ -56,6 +57,28 @@ TEST(DualFisheye, StitchesWhatBothLensesWereRenderedWith) {
   EXPECT_TRUE(stitcher.coverage().empty());
   const cv::Mat sphere = stitcher.Stitch(images, false);
   EXPECT_LE(cv::norm(sphere, RenderSphere({640, 320}), cv::NORM_INF), 6.0);
+}
+
+TEST(DualFisheye, BothLensesAreBlendedWithinADegreeOfWhereTheyMeet) {
+  const StitchSampler sampler = DualFisheyeSampler(LensPreset("samsung-gear360").value());
+  for (const auto& [degrees, weight] :
+       {std::pair(88.5, 1.0), {89.5, 0.75}, {90.0, 0.5}, {90.5, 0.25}, {91.5, 0.0}}) {
+    const double angle = degrees * kRadian;  // from the axis of the first lens, which looks ahead
+    std::vector<StitchSample> samples;
+    sampler({-std::cos(angle), std::sin(angle), 0}, &samples);
+    ASSERT_EQ(samples.size(), 2U);
+    EXPECT_EQ(samples[0].image, 0);
+    EXPECT_NEAR(samples[0].weight, weight, 1e-9) << degrees;
+    EXPECT_NEAR(samples[1].weight, 1 - weight, 1e-9) << degrees;
+  }
+}
+
+TEST(DualFisheye, ACalibrationOfAGiganticSphereIsRefusedBeforeItTakesMemory) {
+  LensCalibration calibration = Uneven();
+  calibration.lenses[0].focal = 16000;
+  const std::vector<cv::Size> sizes = {calibration.lenses[0].size, calibration.lenses[1].size};
+  EXPECT_THAT(MessageOf<UserError>([&] { MakeDualFisheyeStitcher(calibration, sizes, "a.insv"); }),
+              AllOf(HasSubstr("a.insv"), HasSubstr("limited to 32000"), HasSubstr("focal")));
 }
 
 TEST(DualFisheye, LensesOfOtherExposureAreMadeEqual) {

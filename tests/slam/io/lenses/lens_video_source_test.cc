@@ -81,11 +81,38 @@ TEST(EacVideo, FramesOfBothTracksArePairedByTheirTimes) {
     indices.push_back(frame->index);
     const int front = frame->image.at<cv::Vec3b>(736, 1472)[0];
     const int back = frame->image.at<cv::Vec3b>(736, 4)[0];
-    EXPECT_NEAR(front, 50 + 40 * frame->index, 4);
+    EXPECT_NEAR(front, 50 + 1000 * frame->timestamp, 4);
     EXPECT_NEAR(back, front, 4);
   }
-  EXPECT_THAT(indices, ElementsAre(0, 2, 3));
+  EXPECT_THAT(indices, ElementsAre(0, 1, 2)) << "pairs are counted";
   EXPECT_THAT(sequence->TakeWarnings(), ElementsAre(HasSubstr("1 frames of one lens")));
+}
+
+TEST(EacVideo, FramesThatWereAskedForByTheirIndexAreThoseOfARunWithThatIndex) {
+  const TempFolder folder;
+  const std::string path = Write360(
+      folder, {Gray({50, 90, 130, 170}, {0, 40, 80, 120}), Gray({50, 130, 170}, {0, 80, 120})});
+  SequenceOptions options;
+  options.only = {1, 2};
+  const auto sequence = OpenSequence(path, options);
+  for (const int value : {130, 170}) {
+    const std::optional<Frame> frame = sequence->Next();
+    ASSERT_TRUE(frame);
+    EXPECT_NEAR(frame->image.at<cv::Vec3b>(736, 1472)[0], value, 4);
+  }
+}
+
+TEST(EacVideo, ATrackThatStartsLaterIsPairedByTheClockOfTheFile) {
+  const TempFolder folder;
+  const std::string path = Write360(
+      folder, {Gray({50, 90, 130, 170}, {0, 40, 80, 120}), Gray({90, 130, 170}, {40, 80, 120})});
+  const auto sequence = OpenSequence(path, {});
+  int count = 0;
+  while (const std::optional<Frame> frame = sequence->Next()) {
+    EXPECT_NEAR(frame->image.at<cv::Vec3b>(736, 4)[0], frame->image.at<cv::Vec3b>(736, 1472)[0], 4);
+    ++count;
+  }
+  EXPECT_EQ(count, 3);
 }
 
 TEST(EacVideo, IsRefusedWithoutItsSecondTrackOrWithAnotherLayout) {

@@ -33,6 +33,25 @@ TEST(ExifGps, ReadsBothOrdersOfBytesAndAllFourQuadrants) {
   }
 }
 
+// Exif 3.0 measures heights from the ellipsoid unless they say otherwise.
+TEST(ExifGps, HeightsAreAboveTheSurfaceThatTheVersionAndTheReferenceName) {
+  const auto parse = [](int version, int reference) {
+    ExifFields fields{1, 2, 30, reference};
+    fields.version = version;
+    return *Parse(WithExif(kStart, fields));
+  };
+  for (const int reference : {0, 1, 2, 3}) {
+    for (const int version : {2, 3, 4}) {
+      const ExifPosition position = parse(version, reference);
+      EXPECT_EQ(*position.fix.altitude, reference % 2 == 0 ? 30 : -30);
+      EXPECT_EQ(position.altitude_reference, version == 4 && reference < 2
+                                                 ? AltitudeReference::kEllipsoid
+                                                 : AltitudeReference::kMeanSeaLevel)
+          << version << " " << reference;
+    }
+  }
+}
+
 TEST(ExifGps, SkipsSegmentsBeforeTheExifOne) {
   std::string jfif = "\xff\xe0";
   Append(&jfif, std::uint16_t{16});

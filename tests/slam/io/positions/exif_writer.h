@@ -17,6 +17,8 @@ struct ExifFields {
   std::string date = {};  // YYYY:MM:DD; empty: no time either
   double time_of_day = 0;
   double horizontal_error = 0;  // metres; 0: not stated
+  int version = 3;              // of the GPS directory: 2.VERSION
+  std::string taken = {};       // DateTimeOriginal, YYYY:MM:DD HH:MM:SS; empty: none
 };
 
 /// The segment APP1 with a GPS directory, to be inserted behind the first two bytes of a JPEG.
@@ -46,6 +48,7 @@ inline std::string WriteExifSegment(const ExifFields& fields,
     const double minutes = std::floor((std::abs(degrees) - whole) * 60);
     rationals(tag, {whole, minutes, (std::abs(degrees) - whole - minutes / 60) * 3600}, 100000);
   };
+  entries.push_back({0, 1, 4, {2, static_cast<char>(fields.version), 0, 0}});
   ascii(1, fields.latitude < 0 ? "S" : "N");
   angle(2, fields.latitude);
   ascii(3, fields.longitude < 0 ? "W" : "E");
@@ -60,17 +63,33 @@ inline std::string WriteExifSegment(const ExifFields& fields,
   }
   if (fields.horizontal_error > 0) rationals(31, {fields.horizontal_error}, 1000);
 
+  // The first directory points to that of GPS and, with a time, to Exif's own, which lies before
+  // it.
+  constexpr std::uint32_t kTakenSize = 2 + 12 + 4 + 20;
+  const bool has_time = !fields.taken.empty();
+  const std::uint32_t second = 8 + 2 + (has_time ? 24 : 12) + 4;
+  const std::uint32_t gps = second + (has_time ? kTakenSize : 0);
   std::string tiff = order == std::endian::little ? "II" : "MM";
+  const auto append_entry = [&](std::uint16_t tag, std::uint16_t type, std::uint32_t count,
+                                std::uint32_t value) {
+    Append(&tiff, tag, order);
+    Append(&tiff, type, order);
+    Append(&tiff, count, order);
+    Append(&tiff, value, order);
+  };
   Append(&tiff, std::uint16_t{42}, order);
   Append(&tiff, std::uint32_t{8}, order);
-  // The first directory, whose only entry points to that of GPS behind it.
-  Append(&tiff, std::uint16_t{1}, order);
-  Append(&tiff, std::uint16_t{0x8825}, order);
-  Append(&tiff, std::uint16_t{4}, order);
-  Append(&tiff, std::uint32_t{1}, order);
-  Append(&tiff, std::uint32_t{26}, order);
+  Append(&tiff, static_cast<std::uint16_t>(has_time ? 2 : 1), order);
+  if (has_time) append_entry(0x8769, 4, 1, second);
+  append_entry(0x8825, 4, 1, gps);
   Append(&tiff, std::uint32_t{0}, order);
-  size_t data_at = 26 + 2 + 12 * entries.size() + 4;
+  if (has_time) {
+    Append(&tiff, std::uint16_t{1}, order);
+    append_entry(0x9003, 2, 20, second + 18);
+    Append(&tiff, std::uint32_t{0}, order);
+    tiff += fields.taken + '\0';
+  }
+  size_t data_at = gps + 2 + 12 * entries.size() + 4;
   std::string data;
   Append(&tiff, static_cast<std::uint16_t>(entries.size()), order);
   for (const Entry& entry : entries) {

@@ -169,7 +169,7 @@ TEST(Exiftool, ReadsTheSamePositionsFromGeneratedExif) {
   cv::imencode(".jpg", image, jpeg);
   const std::string bytes(jpeg.begin(), jpeg.end());
   std::vector<Printed> printed;
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 6; ++i) {
     const ExifFields fields{-12.3456789 + 1e-4 * i, 98.7654321,  105.25, i % 2,
                             "2024:02:29",           3661.25 + i, 3.5};
     const std::filesystem::path path = folder / (std::to_string(i) + ".jpg");

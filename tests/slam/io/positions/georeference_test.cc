@@ -81,8 +81,35 @@ TEST_F(GeoreferenceTest, TakesTheTimeOfTheFirstFrameFromTheUser) {
   const PathKnowledge wrong{{}, {}, start + 3600};
   EXPECT_THAT(
       MessageOf<UserError>([&] { PlaceOnEarth(Path(), Track(1.0, start), wrong); }),
-      testing::AllOf(testing::HasSubstr("GPX drive.gpx: its positions, from 2025-03-14T06:58"),
-                     testing::HasSubstr("do not overlap the path of 120 s")));
+      testing::AllOf(testing::HasSubstr("fewer than 6 of its positions, from 2025-03-14T06:58"),
+                     testing::HasSubstr("lie on the path of 120 s")));
+}
+
+// A receiver that has no time yet writes 1970, others a date of the future.
+TEST_F(GeoreferenceTest, StrayTimesNeitherRefuseTheTrackNorTakeMemory) {
+  const double start = *ParseIsoTime("2025-03-14T07:00:00Z");
+  PositionTrack track = Track(1.0, start);
+  GeodeticFix stray = track.fixes.front();
+  stray.timestamp = 0;
+  track.fixes.insert(track.fixes.begin(), stray);
+  stray.timestamp = 7e9;
+  track.fixes.push_back(stray);
+  EXPECT_NEAR(*PlaceOnEarth(Path(), track, {}).utc_at_zero, start, 0.3);
+  EXPECT_NEAR(*PlaceOnEarth(Path(), track, {{}, {}, start + 0.4}).utc_at_zero, start, 0.3);
+}
+
+TEST_F(GeoreferenceTest, ImagesManySecondsApartArePlacedByTheirOwnPositions) {
+  std::vector<PathPoint> path = Path();
+  PositionTrack track = Track(0.1, 0.0);
+  track.clock = PositionClock::kFrames;
+  track.utc_at_zero.reset();
+  const auto is_between = [](double time) { return time != 10 * std::round(time / 10); };
+  std::erase_if(path, [&](const PathPoint& point) { return is_between(point.timestamp); });
+  std::erase_if(track.fixes, [&](const GeodeticFix& fix) { return is_between(fix.timestamp); });
+  ASSERT_EQ(path[1].timestamp - path[0].timestamp, 10);
+  const Georeference georeference = PlaceOnEarth(path, track, {});
+  EXPECT_NEAR(georeference.alignment.local_from_path.scale / kScale, 1, 0.01);
+  EXPECT_EQ(georeference.alignment.num_fixes, static_cast<int>(path.size()));
 }
 
 TEST_F(GeoreferenceTest, IsWhatItWasAfterItHasBeenWritten) {

@@ -31,7 +31,7 @@ TEST(Gpx, ReadsPlacesTimesAndPrecisionInTheOrderOfTime) {
   EXPECT_EQ(track.fixes[0].latitude, 1);
   EXPECT_EQ(*track.fixes[0].altitude, 12.5);
   EXPECT_EQ(*track.fixes[0].horizontal_sigma, 1.5 * kMetresPerDop);
-  EXPECT_EQ(*track.fixes[0].vertical_sigma, 2 * kMetresPerDop * kVerticalPerHorizontal);
+  EXPECT_EQ(*track.fixes[0].vertical_sigma, 2 * kMetresPerDop);
   EXPECT_EQ(track.fixes[0].timestamp, 1741935600);
   EXPECT_EQ(track.fixes[1].timestamp, 1741935601.25);
   EXPECT_FALSE(track.fixes[1].altitude);
