@@ -24,6 +24,8 @@
 #include "apps/orb360/run_summary.h"
 #include "apps/orb360/sparse_output.h"
 #include "slam/io/atomic_file.h"
+#include "slam/io/octree/octree_format.h"
+#include "slam/io/octree/octree_writer.h"
 #include "slam/io/sparse_model_file.h"
 #include "slam/pipeline/make_sparse_model.h"
 #include <orb360/nn/base/check.h>
@@ -127,6 +129,7 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
         {.depth = options.saves_depth, .views = options.saves_views, .mesh = options.has_mesh},
         fusion);
     if (!record->failure) record->failure = dense->mesh_failure;
+    WriteOctree(output.folder() / kOctreeName, output.folder() / "cloud.ply");
   } catch (const std::exception&) {  // The trajectory is written nevertheless.
     if (!record->failure) record->failure = std::current_exception();
   }
