@@ -1,0 +1,399 @@
+import * as THREE from "three";
+import { scaleChart, stageChart } from "./charts";
+import { ClipBox } from "./clip_box";
+import { h } from "./dom";
+import { grouped, length, short } from "./format";
+import { Labels } from "./labels";
+import { centerMessage, section, togglePanel, type Layout } from "./layout";
+import { Measure, type MeasureMode } from "./measure";
+import { Panorama } from "./panorama";
+import { pickMark, pickPoint, type PickedPoint } from "./pick";
+import { PointCloud } from "./point_cloud";
+import { PointControls } from "./point_controls";
+import { positionOf, type Run } from "./run";
+import { factTiles, notes, scaleState } from "./run_facts";
+import type { Source } from "./source";
+import { followTheme } from "./theme";
+import { makeToolbar, type Toolbar } from "./toolbar";
+import { TrajectoryLayer } from "./trajectory_layer";
+import { Viewport } from "./viewport";
+
+/** Clicks that moved further, in CSS pixels, are drags. */
+const CLICK_PIXELS = 5;
+const PICK_PIXELS = 8;
+const MARK_PIXELS = 12;
+/** What is around the path and belongs to it, units of the world. */
+const SURROUNDINGS = 8;
+
+export interface ViewerEvents {
+  /** Points could not be loaded. */
+  onFailure: (error: Error) => void;
+  onHelp: () => void;
+}
+
+/** Shows a run: everything between the data and the page. */
+export class Viewer {
+  readonly viewport: Viewport;
+  private readonly layer: TrajectoryLayer;
+  private readonly labels: Labels;
+  private readonly measure: Measure;
+  private readonly panorama: Panorama;
+  private readonly toolbar: Toolbar;
+  private cloud: PointCloud | null = null;
+  private clipBox: ClipBox | null = null;
+  private selected: number | null = null;
+  private readonly marks: THREE.Vector3[];
+
+  constructor(
+    private readonly run: Run, private readonly source: Source, private readonly page: Layout,
+    private readonly events: ViewerEvents,
+  ) {
+    this.viewport = new Viewport(page.canvas);
+    this.labels = new Labels(page.labels, this.viewport);
+    this.layer = new TrajectoryLayer(run);
+    this.marks = run.keyframes.map((_, i) => this.layer.positionOf(i));
+    this.measure = new Measure(run, this.labels, () => this.viewport.invalidate());
+    this.panorama = new Panorama(run, source, {
+      onStep: (by) => this.step(by),
+      onClose: () => this.select(null),
+      onTurn: (forward) => this.turned(forward),
+      onGo: () => this.standAtSelected(),
+    });
+    page.stage.append(this.panorama.element);
+    this.viewport.overlay.add(this.layer.group, this.measure.group);
+    this.toolbar = makeToolbar(page.toolbar, {
+      onHome: () => this.viewport.flyTo(this.homePose()),
+      onTop: () => this.viewport.flyTo(this.topPose()),
+      onMode: (mode) => this.setMode(mode),
+      onClear: () => this.measure.clear(),
+      onClip: (isOn) => this.setClip(isOn),
+      onHelp: events.onHelp,
+    });
+    page.toolbar.hidden = false;
+    this.viewport.onDrawn = () => this.drawn();
+    this.viewport.onResize = (width, height) => this.resized(width, height);
+    const box = this.pathBox();
+    this.viewport.setExtent(box.getSize(new THREE.Vector3()).length());
+    this.viewport.setPose(this.homePose());
+    this.resized(page.stage.clientWidth, page.stage.clientHeight);
+    followTheme((colors) => {
+      this.viewport.background.set(colors.background);
+      this.layer.setColors(colors);
+      this.measure.setColor(colors.measure);
+      this.clipBox?.setColor(colors.box);
+      this.viewport.invalidate();
+    });
+    this.listenToPointer();
+    this.fillPanel();
+  }
+
+  /** Loads the cloud, as far as the run has one. */
+  async loadCloud(): Promise<void> {
+    if (!this.run.hasCloud) {
+      this.showEmpty();
+      return;
+    }
+    const cloud = await PointCloud.open(
+      this.source, () => this.viewport.invalidate(), this.events.onFailure);
+    this.cloud = cloud;
+    const { min, side } = cloud.header;
+    const box = this.tightBox(cloud);
+    const whole = new THREE.Box3(
+      new THREE.Vector3(...min), new THREE.Vector3(min[0] + side, min[1] + side, min[2] + side));
+    this.viewport.setExtent(
+      whole.union(this.pathBox()).getSize(new THREE.Vector3()).length() / Math.sqrt(3));
+    this.viewport.setCloud(cloud);
+    this.clipBox = new ClipBox(box, cloud, this.run.unit, () => this.clipChanged());
+    this.viewport.overlay.add(this.clipBox.lines.object);
+    this.addCloudSections();
+    this.resized(this.page.stage.clientWidth, this.page.stage.clientHeight);
+  }
+
+  /** The server answers again. */
+  reconnected(): void {
+    this.cloud?.retry();
+  }
+
+  /** Handles a key; true if it had a meaning. */
+  key(event: KeyboardEvent): boolean {
+    const turn = 0.12;
+    const actions: Record<string, () => void> = {
+      ArrowLeft: () => this.viewport.orbit(-turn, 0), ArrowRight: () => this.viewport.orbit(turn, 0),
+      ArrowUp: () => this.viewport.orbit(0, -turn), ArrowDown: () => this.viewport.orbit(0, turn),
+      w: () => this.viewport.pan(0, 0.1), s: () => this.viewport.pan(0, -0.1),
+      a: () => this.viewport.pan(-0.1, 0), d: () => this.viewport.pan(0.1, 0),
+      "+": () => this.viewport.zoom(0.8), "=": () => this.viewport.zoom(0.8),
+      "-": () => this.viewport.zoom(1.25),
+      h: () => this.viewport.flyTo(this.homePose()), t: () => this.viewport.flyTo(this.topPose()),
+      m: () => this.toolbar.toggleMode("distance"), g: () => this.toolbar.toggleMode("height"),
+      c: () => this.toolbar.toggleClip(), p: () => togglePanel(),
+      "[": () => this.step(-1), "]": () => this.step(1), Escape: () => this.escape(),
+    };
+    const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    action?.();
+    return action !== undefined;
+  }
+
+  /** Opens a keyframe, by its place among the keyframes; null closes the panorama. */
+  select(keyframe: number | null): void {
+    this.selected = keyframe;
+    this.layer.select(keyframe, this.headingLength());
+    document.body.classList.toggle("with-panorama", keyframe !== null);
+    if (keyframe === null) this.panorama.hide();
+    else void this.panorama.show(keyframe);
+    this.viewport.invalidate();
+  }
+
+  private step(by: number): void {
+    const count = this.run.keyframes.length;
+    if (count === 0) return;
+    const next = this.selected === null ? (by > 0 ? 0 : count - 1) : this.selected + by;
+    this.select((next + count) % count);
+  }
+
+  private escape(): void {
+    if (this.measure.mode) {
+      this.measure.endLine();
+      this.toolbar.toggleMode(this.measure.mode);
+    } else if (this.panorama.isOpen) this.select(null);
+  }
+
+  private setMode(mode: MeasureMode | null): void {
+    this.measure.setMode(mode);
+    this.page.canvas.classList.toggle("measuring", mode !== null);
+  }
+
+  private setClip(isOn: boolean): void {
+    this.clipBox?.setOn(isOn);
+    const part = this.page.panelBody.querySelector<HTMLDetailsElement>("#clip-section");
+    if (part && isOn) {
+      part.open = true;
+      togglePanel(true);
+      part.scrollIntoView({ block: "nearest" });
+    }
+  }
+
+  private clipChanged(): void {
+    this.viewport.clip = this.clipBox?.isOn ? this.clipBox.box : null;
+    this.viewport.invalidate();
+  }
+
+  private headingLength(): number {
+    return Math.max(0.03 * this.pathBox().getSize(new THREE.Vector3()).length(), 0.5);
+  }
+
+  private turned(forward: THREE.Vector3): void {
+    if (this.selected === null) return;
+    const q = this.run.frames.orientation.slice(4 * this.run.keyframes[this.selected]).slice(0, 4);
+    const direction = forward.clone().applyQuaternion(new THREE.Quaternion(q[0], q[1], q[2], q[3]));
+    this.layer.showHeading(direction, this.headingLength());
+    this.viewport.invalidate();
+  }
+
+  private standAtSelected(): void {
+    if (this.selected === null) return;
+    const eye = this.marks[this.selected].clone();
+    const forward = this.layer.forwardOf(this.selected);
+    this.viewport.flyTo({
+      eye: eye.clone().addScaledVector(forward, -0.02), target: eye.addScaledVector(forward, 2),
+    });
+  }
+
+  private pathBox(): THREE.Box3 {
+    const box = new THREE.Box3();
+    for (let i = 0; i < this.run.frames.index.length; ++i) {
+      box.expandByPoint(new THREE.Vector3(...positionOf(this.run, i)));
+    }
+    if (box.isEmpty()) box.set(new THREE.Vector3(-5, -5, -2), new THREE.Vector3(5, 5, 2));
+    return box.expandByScalar(SURROUNDINGS);
+  }
+
+  /** Box around the points of the root, which are spread over the whole cloud. */
+  private tightBox(cloud: PointCloud): THREE.Box3 {
+    const root = cloud.loaded.get(0)!;
+    const scale = root.node.side / 65536;
+    const box = new THREE.Box3();
+    const p = new THREE.Vector3();
+    for (let i = 0; i < root.node.pointCount; ++i) {
+      p.set(root.points.positions[4 * i], root.points.positions[4 * i + 1],
+        root.points.positions[4 * i + 2]).multiplyScalar(scale);
+      box.expandByPoint(p.add(new THREE.Vector3(...root.node.min)));
+    }
+    return box.expandByScalar(cloud.header.side / cloud.header.cellsPerSide);
+  }
+
+  private homePose(): { eye: THREE.Vector3; target: THREE.Vector3 } {
+    const target = this.pathBox().getCenter(new THREE.Vector3());
+    const direction = new THREE.Vector3(-0.62, -0.55, 0.56).normalize();
+    return { eye: target.clone().addScaledVector(direction, this.fittingDistance()), target };
+  }
+
+  private topPose(): { eye: THREE.Vector3; target: THREE.Vector3 } {
+    const target = this.pathBox().getCenter(new THREE.Vector3());
+    const eye = target.clone().add(new THREE.Vector3(-1e-3, 0, 1).multiplyScalar(this.fittingDistance()));
+    return { eye, target };
+  }
+
+  private fittingDistance(): number {
+    const size = this.pathBox().getSize(new THREE.Vector3());
+    const radius = 0.5 * Math.hypot(size.x, size.y);
+    const { camera } = this.viewport;
+    const vertical = Math.tan((camera.fov * Math.PI) / 360);
+    return (1.05 * radius) / Math.min(vertical, vertical * camera.aspect);
+  }
+
+  private pick(x: number, y: number): PickedPoint | null {
+    return this.cloud ? pickPoint(this.viewport, this.cloud, x, y, PICK_PIXELS) : null;
+  }
+
+  private listenToPointer(): void {
+    const { canvas } = this.page;
+    let down: { x: number; y: number } | null = null;
+    const placeOf = (event: MouseEvent): { x: number; y: number } => {
+      const box = canvas.getBoundingClientRect();
+      return { x: event.clientX - box.left, y: event.clientY - box.top };
+    };
+    canvas.addEventListener("pointerdown", (event) => {
+      down = event.isPrimary && event.button === 0 ? placeOf(event) : null;
+    });
+    canvas.addEventListener("pointerup", (event) => {
+      const at = placeOf(event);
+      if (down && Math.hypot(at.x - down.x, at.y - down.y) < CLICK_PIXELS) this.clicked(at.x, at.y);
+      down = null;
+    });
+    canvas.addEventListener("dblclick", (event) => {
+      if (this.measure.mode) {
+        this.measure.endLine();
+        return;
+      }
+      const at = placeOf(event);
+      const picked = this.pick(at.x, at.y);
+      if (picked) this.lookAt(picked.position);
+    });
+    let isQueued = false;
+    canvas.addEventListener("pointermove", (event) => {
+      if (event.pointerType !== "mouse" || event.buttons !== 0 || isQueued) return;
+      isQueued = true;
+      requestAnimationFrame(() => {
+        isQueued = false;
+        const at = placeOf(event);
+        if (this.measure.mode) this.measure.hover(this.pick(at.x, at.y)?.position ?? null);
+        else {
+          const isMark = this.layer.keyframes.visible &&
+            pickMark(this.viewport, this.marks, at.x, at.y, MARK_PIXELS) !== null;
+          canvas.classList.toggle("pointing", isMark);
+        }
+      });
+    });
+  }
+
+  private clicked(x: number, y: number): void {
+    if (this.measure.mode) {
+      const picked = this.pick(x, y);
+      if (picked) this.measure.add(picked.position);
+      return;
+    }
+    if (!this.layer.keyframes.visible) return;
+    const mark = pickMark(this.viewport, this.marks, x, y, MARK_PIXELS);
+    if (mark !== null) this.select(mark);
+  }
+
+  private lookAt(target: THREE.Vector3): void {
+    const offset = this.viewport.camera.position.clone().sub(target).multiplyScalar(0.5);
+    this.viewport.flyTo({ eye: target.clone().add(offset), target });
+  }
+
+  private resized(width: number, height: number): void {
+    this.layer.resize(width, height);
+    this.measure.resize(width, height);
+    this.clipBox?.lines.resize(width, height);
+  }
+
+  private drawn(): void {
+    this.labels.update();
+    const { canvas, counter, progress } = this.page;
+    const shown = this.cloud?.shownPoints ?? 0;
+    canvas.dataset.points = String(shown);
+    canvas.dataset.loading = String(this.cloud?.isLoading ?? false);
+    if (!this.cloud) return;
+    progress.hidden = !this.cloud.isLoading;
+    const total = this.cloud.header.pointCount;
+    counter.textContent = `${short(shown)} of ${short(total)} points`;
+  }
+
+  private showEmpty(): void {
+    this.page.center.replaceChildren(
+      this.run.frames.index.length > 0
+        ? centerMessage("No points", "This run has a path but no cloud.")
+        : centerMessage("Nothing to show", "No frame of this run has a pose. The camera has to move and to see some texture."),
+    );
+    this.page.progress.hidden = true;
+    this.viewport.invalidate();
+  }
+
+  private fillPanel(): void {
+    const { run, page } = this;
+    const name = run.summary.input || run.folder;
+    const shortName = name.replace(/\/+$/, "").split("/").pop() || name;
+    document.title = `${shortName} · orb360`;
+    page.title.textContent = shortName;
+    page.title.title = `${name}, in ${run.folder}`;
+    const scale = scaleState(run);
+    page.chip.textContent = scale.chip;
+    page.chip.className = `chip ${scale.state}`;
+    page.chip.hidden = false;
+    page.chip.title = scale.sentence;
+    page.chip.addEventListener("click", () => {
+      togglePanel(true);
+      const part = page.panelBody.querySelector<HTMLDetailsElement>("#scale-section")!;
+      part.open = true;
+      part.scrollIntoView({ block: "nearest" });
+    });
+    const scaleSection = section("Scale", true, h("p", {}, scale.sentence), scaleChart(run));
+    scaleSection.id = "scale-section";
+    const times = stageChart(run);
+    const notices = notes(run);
+    page.panelBody.append(
+      ...[
+        section("Layers", true, this.makeLayers()),
+        section("Run", true, factTiles(run)),
+        scaleSection,
+        times && section("Time of a frame", false, times),
+        notices && section("Notes", true, notices),
+        h("p", { class: "caption version" }, `orb360 ${run.summary.version ?? ""}`),
+      ].filter((part) => part !== null),
+    );
+  }
+
+  private makeLayers(): HTMLElement {
+    const toggle = (name: string, key: string, object: THREE.Object3D, count: number): HTMLElement =>
+      h("label", { class: "check" },
+        h("input", {
+          type: "checkbox", checked: object.visible && count > 0, disabled: count === 0,
+          onchange: (event: Event) => {
+            object.visible = (event.target as HTMLInputElement).checked;
+            this.viewport.invalidate();
+          },
+        }),
+        h("i", { class: `swatch ${key}` }), h("span", {}, name), h("small", {}, grouped(count)));
+    const { layer, run } = this;
+    return h(
+      "div", { class: "checks" },
+      toggle("Path", "path", layer.path.object, run.frames.index.length),
+      toggle("Keyframes", "keyframe", layer.keyframes, run.keyframes.length),
+      toggle("Keyframe graph", "link", layer.links, run.links.length / 3),
+      toggle("Loops", "loop", layer.loops.object, run.loops.length),
+    );
+  }
+
+  private addCloudSections(): void {
+    const controls = new PointControls(this.run, this.cloud!, this.viewport);
+    const clip = section("Clip box", false, this.clipBox!.element);
+    clip.id = "clip-section";
+    const size = length(this.cloud!.header.side, this.run.unit);
+    const points = section("Points", true, controls.element);
+    points.title = `Octree of ${grouped(this.cloud!.nodes.length)} nodes, ${size} wide`;
+    this.page.panelBody.prepend(points);
+    points.after(clip);
+  }
+}
