@@ -27,7 +27,7 @@ export function uncertainLength(value: number, unit: "m" | "units", sigma: numbe
 }
 
 export function percent(fraction: number): string {
-  return `${(100 * fraction).toFixed(1)} %`;
+  return `${(100 * fraction).toFixed(1)}\u00a0%`;
 }
 
 export function duration(seconds: number): string {

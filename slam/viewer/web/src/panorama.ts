@@ -42,7 +42,7 @@ export class Panorama {
     const segmented = h("div", { class: "segmented", role: "group", "aria-label": "Overlay" });
     for (const overlay of ["image", "range", "confidence"] as const) {
       const button = h(
-        "button", { type: "button", "aria-pressed": overlay === "image", onclick: () => this.setOverlay(overlay) },
+        "button", { type: "button", "aria-pressed": String(overlay === "image"), onclick: () => this.setOverlay(overlay) },
         overlay[0].toUpperCase() + overlay.slice(1),
       );
       this.overlays.set(overlay, button);

@@ -104,7 +104,7 @@ export function makePointMaterial(): PointMaterial {
       pixelsPerRadian: { value: 1 },
       pointScale: { value: 1.35 },
       minSize: { value: 1.5 },
-      maxSize: { value: 40 },
+      maxSize: { value: 16 * Math.min(devicePixelRatio, 2) },
       leafSpacing: { value: 1e9 },
       leastConfidence: { value: 0 },
       ground: { value: 0 },

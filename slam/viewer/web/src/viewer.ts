@@ -22,6 +22,8 @@ import { Viewport } from "./viewport";
 const CLICK_PIXELS = 5;
 const PICK_PIXELS = 8;
 const MARK_PIXELS = 12;
+/** From where a keyframe is looked at while the user goes from one to the next, units of the world. */
+const FOLLOW_DISTANCE = 25;
 /** What is around the path and belongs to it, units of the world. */
 const SURROUNDINGS = 8;
 
@@ -141,6 +143,7 @@ export class Viewer {
     document.body.classList.toggle("with-panorama", keyframe !== null);
     if (keyframe === null) this.panorama.hide();
     else void this.panorama.show(keyframe);
+    this.makeRoom();
     this.viewport.invalidate();
   }
 
@@ -149,6 +152,23 @@ export class Viewer {
     if (count === 0) return;
     const next = this.selected === null ? (by > 0 ? 0 : count - 1) : this.selected + by;
     this.select((next + count) % count);
+    this.follow(this.marks[this.selected!]);
+  }
+
+  /** Moves along with a keyframe, and nearer where the whole run is in view. */
+  private follow(target: THREE.Vector3): void {
+    const offset = this.viewport.camera.position.clone().sub(this.viewport.controls.target);
+    offset.clampLength(0, FOLLOW_DISTANCE);
+    this.viewport.flyTo({ eye: target.clone().add(offset), target: target.clone() });
+  }
+
+  /** Moves the middle of the view out of the panorama's way. */
+  private makeRoom(): void {
+    const { offsetWidth, offsetHeight } = this.panorama.element;
+    const isBeside = this.page.stage.clientWidth > 2 * offsetWidth;
+    const isOpen = this.panorama.isOpen;
+    this.viewport.setShift(
+      isOpen && isBeside ? offsetWidth / 2 : 0, isOpen && !isBeside ? offsetHeight / 2 : 0);
   }
 
   private escape(): void {
@@ -270,21 +290,27 @@ export class Viewer {
       const picked = this.pick(at.x, at.y);
       if (picked) this.lookAt(picked.position);
     });
-    let isQueued = false;
+    let latest: { x: number; y: number } | null = null;  // not yet looked at
     canvas.addEventListener("pointermove", (event) => {
-      if (event.pointerType !== "mouse" || event.buttons !== 0 || isQueued) return;
-      isQueued = true;
-      requestAnimationFrame(() => {
-        isQueued = false;
-        const at = placeOf(event);
-        if (this.measure.mode) this.measure.hover(this.pick(at.x, at.y)?.position ?? null);
-        else {
-          const isMark = this.layer.keyframes.visible &&
-            pickMark(this.viewport, this.marks, at.x, at.y, MARK_PIXELS) !== null;
-          canvas.classList.toggle("pointing", isMark);
-        }
-      });
+      if (event.pointerType !== "mouse" || event.buttons !== 0) return;
+      if (latest === null) {
+        requestAnimationFrame(() => {
+          this.hovered(latest!.x, latest!.y);
+          latest = null;
+        });
+      }
+      latest = placeOf(event);
     });
+  }
+
+  private hovered(x: number, y: number): void {
+    if (this.measure.mode) {
+      this.measure.hover(this.pick(x, y)?.position ?? null);
+      return;
+    }
+    const isMark = this.layer.keyframes.visible &&
+      pickMark(this.viewport, this.marks, x, y, MARK_PIXELS) !== null;
+    this.page.canvas.classList.toggle("pointing", isMark);
   }
 
   private clicked(x: number, y: number): void {
@@ -307,6 +333,7 @@ export class Viewer {
     this.layer.resize(width, height);
     this.measure.resize(width, height);
     this.clipBox?.lines.resize(width, height);
+    this.makeRoom();
   }
 
   private drawn(): void {

@@ -142,6 +142,14 @@ export class Viewport {
     return { ray: new THREE.Ray(this.camera.position.clone(), at), radiansPerPixel };
   }
 
+  /** Moves the middle of the view left and up, CSS pixels. */
+  setShift(left: number, up: number): void {
+    const { clientWidth, clientHeight } = this.canvas;
+    if (left === 0 && up === 0) this.camera.clearViewOffset();
+    else this.camera.setViewOffset(clientWidth, clientHeight, left, up, clientWidth, clientHeight);
+    this.invalidate();
+  }
+
   private resize(): void {
     const { clientWidth, clientHeight } = this.canvas.parentElement!;
     const ratio = Math.min(devicePixelRatio, 2);
