@@ -196,11 +196,16 @@ onPage("turns and moves by the keyboard", {}, async (page) => {
 });
 
 test("serves two viewers at once", async () => {
-  const pages = await Promise.all([open(browser, server.url), open(browser, server.url)]);
-  for (const page of pages) {
-    assert.ok((await shownPoints(page)) > 10000);
-    assert.deepEqual(page.problems, []);
-    await page.close();
+  const other = await launch();  // A page in the background would not draw.
+  try {
+    const pages = await Promise.all([open(browser, server.url), open(other, server.url)]);
+    for (const page of pages) {
+      assert.ok((await shownPoints(page)) > 10000);
+      assert.deepEqual(page.problems, []);
+      await page.close();
+    }
+  } finally {
+    await other.close();
   }
 });
 
