@@ -105,6 +105,7 @@ export class Viewer {
     this.viewport.setExtent(
       whole.union(this.pathBox()).getSize(new THREE.Vector3()).length() / Math.sqrt(3));
     this.viewport.setCloud(cloud);
+    if (this.run.frames.index.length === 0) this.viewport.setPose(this.homePose());
     this.clipBox = new ClipBox(box, cloud, this.run.unit, () => this.clipChanged());
     this.viewport.overlay.add(this.clipBox.lines.object);
     this.addCloudSections();
@@ -219,13 +220,15 @@ export class Viewer {
     });
   }
 
+  /** The path and what is around it; the cloud where there is no path. */
   private pathBox(): THREE.Box3 {
     const box = new THREE.Box3();
     for (let i = 0; i < this.run.frames.index.length; ++i) {
       box.expandByPoint(new THREE.Vector3(...positionOf(this.run, i)));
     }
-    if (box.isEmpty()) box.set(new THREE.Vector3(-5, -5, -2), new THREE.Vector3(5, 5, 2));
-    return box.expandByScalar(SURROUNDINGS);
+    if (!box.isEmpty()) return box.expandByScalar(SURROUNDINGS);
+    if (this.cloud) return this.tightBox(this.cloud);
+    return box.set(new THREE.Vector3(-5, -5, -2), new THREE.Vector3(5, 5, 2));
   }
 
   /** Box around the points of the root, which are spread over the whole cloud. */
