@@ -57,7 +57,8 @@ class PieceReader {
 PointSorter::PointSorter(std::filesystem::path folder, size_t max_in_memory)
     : path_(std::move(folder)), max_in_memory_(max_in_memory) {
   ORB360_CHECK(max_in_memory > 0);
-  points_.reserve(max_in_memory);  // Growing would need twice the memory; what is unused costs none.
+  points_.reserve(
+      max_in_memory);  // Growing would need twice the memory; what is unused costs none.
 }
 
 std::filesystem::path PointSorter::PathOf(size_t piece) const {

@@ -1,31 +1,26 @@
 import * as THREE from "three";
-import { scaleChart, stageChart } from "./charts";
 import { ClipBox } from "./clip_box";
-import { h } from "./dom";
-import { grouped, length, short } from "./format";
+import { short } from "./format";
+import { boxOfCloud, boxToShow, obliquePose, topPose } from "./framing";
 import { Labels } from "./labels";
-import { centerMessage, section, togglePanel, type Layout } from "./layout";
+import { centerMessage, togglePanel, type Layout } from "./layout";
 import { Measure, type MeasureMode } from "./measure";
+import { addCloudSections, fillPanel, showSection } from "./panel";
 import { Panorama } from "./panorama";
 import { pickMark, pickPoint, type PickedPoint } from "./pick";
 import { PointCloud } from "./point_cloud";
-import { PointControls } from "./point_controls";
-import { positionOf, type Run } from "./run";
-import { factTiles, notes, scaleState } from "./run_facts";
+import { listenToPointer } from "./pointer";
+import type { Run } from "./run";
 import type { Source } from "./source";
 import { followTheme } from "./theme";
 import { makeToolbar, type Toolbar } from "./toolbar";
 import { TrajectoryLayer } from "./trajectory_layer";
 import { Viewport } from "./viewport";
 
-/** Clicks that moved further, in CSS pixels, are drags. */
-const CLICK_PIXELS = 5;
 const PICK_PIXELS = 8;
 const MARK_PIXELS = 12;
 /** From where a keyframe is looked at while the user goes from one to the next, units of the world. */
 const FOLLOW_DISTANCE = 25;
-/** What is around the path and belongs to it, units of the world. */
-const SURROUNDINGS = 8;
 
 export interface ViewerEvents {
   /** Points could not be loaded. */
@@ -64,8 +59,8 @@ export class Viewer {
     page.stage.append(this.panorama.element);
     this.viewport.overlay.add(this.layer.group, this.measure.group);
     this.toolbar = makeToolbar(page.toolbar, {
-      onHome: () => this.viewport.flyTo(this.homePose()),
-      onTop: () => this.viewport.flyTo(this.topPose()),
+      onHome: () => this.viewport.flyTo(obliquePose(this.box(), this.viewport.camera)),
+      onTop: () => this.viewport.flyTo(topPose(this.box(), this.viewport.camera)),
       onMode: (mode) => this.setMode(mode),
       onClear: () => this.measure.clear(),
       onClip: (isOn) => this.setClip(isOn),
@@ -74,9 +69,9 @@ export class Viewer {
     page.toolbar.hidden = false;
     this.viewport.onDrawn = () => this.drawn();
     this.viewport.onResize = (width, height) => this.resized(width, height);
-    const box = this.pathBox();
+    const box = this.box();
     this.viewport.setExtent(box.getSize(new THREE.Vector3()).length());
-    this.viewport.setPose(this.homePose());
+    this.viewport.setPose(obliquePose(this.box(), this.viewport.camera));
     this.resized(page.stage.clientWidth, page.stage.clientHeight);
     followTheme((colors) => {
       this.viewport.background.set(colors.background);
@@ -85,8 +80,12 @@ export class Viewer {
       this.clipBox?.setColor(colors.box);
       this.viewport.invalidate();
     });
-    this.listenToPointer();
-    this.fillPanel();
+    listenToPointer(page.canvas, {
+      onClick: (x, y) => this.clicked(x, y),
+      onDoubleClick: (x, y) => this.doubleClicked(x, y),
+      onHover: (x, y) => this.hovered(x, y),
+    });
+    fillPanel(run, page, this.layer, () => this.viewport.invalidate());
   }
 
   /** Loads the cloud, as far as the run has one. */
@@ -99,16 +98,16 @@ export class Viewer {
       this.source, () => this.viewport.invalidate(), this.events.onFailure);
     this.cloud = cloud;
     const { min, side } = cloud.header;
-    const box = this.tightBox(cloud);
+    const box = boxOfCloud(cloud);
     const whole = new THREE.Box3(
       new THREE.Vector3(...min), new THREE.Vector3(min[0] + side, min[1] + side, min[2] + side));
     this.viewport.setExtent(
-      whole.union(this.pathBox()).getSize(new THREE.Vector3()).length() / Math.sqrt(3));
+      whole.union(this.box()).getSize(new THREE.Vector3()).length() / Math.sqrt(3));
     this.viewport.setCloud(cloud);
-    if (this.run.frames.index.length === 0) this.viewport.setPose(this.homePose());
+    if (this.run.frames.index.length === 0) this.viewport.setPose(obliquePose(this.box(), this.viewport.camera));
     this.clipBox = new ClipBox(box, cloud, this.run.unit, () => this.clipChanged());
     this.viewport.overlay.add(this.clipBox.lines.object);
-    this.addCloudSections();
+    addCloudSections(this.run, this.page, cloud, this.clipBox, this.viewport);
     this.resized(this.page.stage.clientWidth, this.page.stage.clientHeight);
   }
 
@@ -127,7 +126,7 @@ export class Viewer {
       a: () => this.viewport.pan(-0.1, 0), d: () => this.viewport.pan(0.1, 0),
       "+": () => this.viewport.zoom(0.8), "=": () => this.viewport.zoom(0.8),
       "-": () => this.viewport.zoom(1.25),
-      h: () => this.viewport.flyTo(this.homePose()), t: () => this.viewport.flyTo(this.topPose()),
+      h: () => this.viewport.flyTo(obliquePose(this.box(), this.viewport.camera)), t: () => this.viewport.flyTo(topPose(this.box(), this.viewport.camera)),
       m: () => this.toolbar.toggleMode("distance"), g: () => this.toolbar.toggleMode("height"),
       c: () => this.toolbar.toggleClip(), p: () => togglePanel(),
       "[": () => this.step(-1), "]": () => this.step(1), Escape: () => this.escape(),
@@ -186,12 +185,7 @@ export class Viewer {
 
   private setClip(isOn: boolean): void {
     this.clipBox?.setOn(isOn);
-    const part = this.page.panelBody.querySelector<HTMLDetailsElement>("#clip-section");
-    if (part && isOn) {
-      part.open = true;
-      togglePanel(true);
-      part.scrollIntoView({ block: "nearest" });
-    }
+    if (isOn) showSection(this.page, "clip-section");
   }
 
   private clipChanged(): void {
@@ -200,7 +194,7 @@ export class Viewer {
   }
 
   private headingLength(): number {
-    return Math.max(0.03 * this.pathBox().getSize(new THREE.Vector3()).length(), 0.5);
+    return Math.max(0.03 * this.box().getSize(new THREE.Vector3()).length(), 0.5);
   }
 
   private turned(forward: THREE.Vector3): void {
@@ -220,90 +214,21 @@ export class Viewer {
     });
   }
 
-  /** The path and what is around it; the cloud where there is no path. */
-  private pathBox(): THREE.Box3 {
-    const box = new THREE.Box3();
-    for (let i = 0; i < this.run.frames.index.length; ++i) {
-      box.expandByPoint(new THREE.Vector3(...positionOf(this.run, i)));
-    }
-    if (!box.isEmpty()) return box.expandByScalar(SURROUNDINGS);
-    if (this.cloud) return this.tightBox(this.cloud);
-    return box.set(new THREE.Vector3(-5, -5, -2), new THREE.Vector3(5, 5, 2));
-  }
-
-  /** Box around the points of the root, which are spread over the whole cloud. */
-  private tightBox(cloud: PointCloud): THREE.Box3 {
-    const root = cloud.loaded.get(0)!;
-    const scale = root.node.side / 65536;
-    const box = new THREE.Box3();
-    const p = new THREE.Vector3();
-    for (let i = 0; i < root.node.pointCount; ++i) {
-      p.set(root.points.positions[4 * i], root.points.positions[4 * i + 1],
-        root.points.positions[4 * i + 2]).multiplyScalar(scale);
-      box.expandByPoint(p.add(new THREE.Vector3(...root.node.min)));
-    }
-    return box.expandByScalar(cloud.header.side / cloud.header.cellsPerSide);
-  }
-
-  private homePose(): { eye: THREE.Vector3; target: THREE.Vector3 } {
-    const target = this.pathBox().getCenter(new THREE.Vector3());
-    const direction = new THREE.Vector3(-0.62, -0.55, 0.56).normalize();
-    return { eye: target.clone().addScaledVector(direction, this.fittingDistance()), target };
-  }
-
-  private topPose(): { eye: THREE.Vector3; target: THREE.Vector3 } {
-    const target = this.pathBox().getCenter(new THREE.Vector3());
-    const eye = target.clone().add(new THREE.Vector3(-1e-3, 0, 1).multiplyScalar(this.fittingDistance()));
-    return { eye, target };
-  }
-
-  private fittingDistance(): number {
-    const size = this.pathBox().getSize(new THREE.Vector3());
-    const radius = 0.5 * Math.hypot(size.x, size.y);
-    const { camera } = this.viewport;
-    const vertical = Math.tan((camera.fov * Math.PI) / 360);
-    return (1.05 * radius) / Math.min(vertical, vertical * camera.aspect);
+  private box(): THREE.Box3 {
+    return boxToShow(this.run, this.cloud);
   }
 
   private pick(x: number, y: number): PickedPoint | null {
     return this.cloud ? pickPoint(this.viewport, this.cloud, x, y, PICK_PIXELS) : null;
   }
 
-  private listenToPointer(): void {
-    const { canvas } = this.page;
-    let down: { x: number; y: number } | null = null;
-    const placeOf = (event: MouseEvent): { x: number; y: number } => {
-      const box = canvas.getBoundingClientRect();
-      return { x: event.clientX - box.left, y: event.clientY - box.top };
-    };
-    canvas.addEventListener("pointerdown", (event) => {
-      down = event.isPrimary && event.button === 0 ? placeOf(event) : null;
-    });
-    canvas.addEventListener("pointerup", (event) => {
-      const at = placeOf(event);
-      if (down && Math.hypot(at.x - down.x, at.y - down.y) < CLICK_PIXELS) this.clicked(at.x, at.y);
-      down = null;
-    });
-    canvas.addEventListener("dblclick", (event) => {
-      if (this.measure.mode) {
-        this.measure.endLine();
-        return;
-      }
-      const at = placeOf(event);
-      const picked = this.pick(at.x, at.y);
-      if (picked) this.lookAt(picked.position);
-    });
-    let latest: { x: number; y: number } | null = null;  // not yet looked at
-    canvas.addEventListener("pointermove", (event) => {
-      if (event.pointerType !== "mouse" || event.buttons !== 0) return;
-      if (latest === null) {
-        requestAnimationFrame(() => {
-          this.hovered(latest!.x, latest!.y);
-          latest = null;
-        });
-      }
-      latest = placeOf(event);
-    });
+  private doubleClicked(x: number, y: number): void {
+    if (this.measure.mode) {
+      this.measure.endLine();
+      return;
+    }
+    const picked = this.pick(x, y);
+    if (picked) this.lookAt(picked.position);
   }
 
   private hovered(x: number, y: number): void {
@@ -359,71 +284,5 @@ export class Viewer {
     );
     this.page.progress.hidden = true;
     this.viewport.invalidate();
-  }
-
-  private fillPanel(): void {
-    const { run, page } = this;
-    const name = run.summary.input || run.folder;
-    const shortName = name.replace(/\/+$/, "").split("/").pop() || name;
-    document.title = `${shortName} · orb360`;
-    page.title.textContent = shortName;
-    page.title.title = `${name}, in ${run.folder}`;
-    const scale = scaleState(run);
-    page.chip.textContent = scale.chip;
-    page.chip.className = `chip ${scale.state}`;
-    page.chip.hidden = false;
-    page.chip.title = scale.sentence;
-    page.chip.addEventListener("click", () => {
-      togglePanel(true);
-      const part = page.panelBody.querySelector<HTMLDetailsElement>("#scale-section")!;
-      part.open = true;
-      part.scrollIntoView({ block: "nearest" });
-    });
-    const scaleSection = section("Scale", true, h("p", {}, scale.sentence), scaleChart(run));
-    scaleSection.id = "scale-section";
-    const times = stageChart(run);
-    const notices = notes(run);
-    page.panelBody.append(
-      ...[
-        section("Layers", true, this.makeLayers()),
-        section("Run", true, factTiles(run)),
-        scaleSection,
-        times && section("Time of a frame", false, times),
-        notices && section("Notes", true, notices),
-        h("p", { class: "caption version" }, `orb360 ${run.summary.version ?? ""}`),
-      ].filter((part) => part !== null),
-    );
-  }
-
-  private makeLayers(): HTMLElement {
-    const toggle = (name: string, key: string, object: THREE.Object3D, count: number): HTMLElement =>
-      h("label", { class: "check" },
-        h("input", {
-          type: "checkbox", checked: object.visible && count > 0, disabled: count === 0,
-          onchange: (event: Event) => {
-            object.visible = (event.target as HTMLInputElement).checked;
-            this.viewport.invalidate();
-          },
-        }),
-        h("i", { class: `swatch ${key}` }), h("span", {}, name), h("small", {}, grouped(count)));
-    const { layer, run } = this;
-    return h(
-      "div", { class: "checks" },
-      toggle("Path", "path", layer.path.object, run.frames.index.length),
-      toggle("Keyframes", "keyframe", layer.keyframes, run.keyframes.length),
-      toggle("Keyframe graph", "link", layer.links, run.links.length / 3),
-      toggle("Loops", "loop", layer.loops.object, run.loops.length),
-    );
-  }
-
-  private addCloudSections(): void {
-    const controls = new PointControls(this.run, this.cloud!, this.viewport);
-    const clip = section("Clip box", false, this.clipBox!.element);
-    clip.id = "clip-section";
-    const size = length(this.cloud!.header.side, this.run.unit);
-    const points = section("Points", true, controls.element);
-    points.title = `Octree of ${grouped(this.cloud!.nodes.length)} nodes, ${size} wide`;
-    this.page.panelBody.prepend(points);
-    points.after(clip);
   }
 }
