@@ -203,6 +203,7 @@ class HttpServer::Impl {
     const int method = lws_http_get_uri_and_method(connection, &uri, &uri_length);
     const bool is_head = method == LWSHUMETH_HEAD;
     head.is_get = method == LWSHUMETH_GET || is_head;
+    head.is_post = method == LWSHUMETH_POST;
     head.path = path;
     head.host = HeaderOf(connection, WSI_TOKEN_HOST);
     head.origin = HeaderOf(connection, WSI_TOKEN_ORIGIN);
@@ -213,7 +214,7 @@ class HttpServer::Impl {
     const Admission admission = CheckRequest(head, rules_);
     Response response = admission.status == 200
                             ? MakeResponse(resources_, admission.resource,
-                                           HeaderOf(connection, WSI_TOKEN_HTTP_RANGE))
+                                           HeaderOf(connection, WSI_TOKEN_HTTP_RANGE), head.is_post)
                             : TextResponse(admission.status, "refused");
     if (!WriteHead(connection, response)) return -1;
     // What follows a refused request may be its body.

@@ -107,12 +107,14 @@ AccessRules MakeAccessRules(const std::string& address, int port) {
 }
 
 Admission CheckRequest(const RequestHead& head, const AccessRules& rules) {
-  if (!head.is_get) return {405, ""};
+  if (!head.is_get && !head.is_post) return {405, ""};
   if (!head.content_length.empty() && head.content_length != "0") return {413, ""};
   const std::string host = LowerCase(head.host);
   const bool is_numeric = !rules.token.empty() && IsNumericHost(host, rules.port);
   if (!is_numeric && std::ranges::find(rules.hosts, host) == rules.hosts.end()) return {421, ""};
   if (!head.origin.empty() && LowerCase(head.origin) != "http://" + host) return {403, ""};
+  // Browsers state the origin of every POST.
+  if (head.is_post && head.origin.empty()) return {403, ""};
   std::string_view path = head.path;
   if (!path.starts_with('/')) return {400, ""};
   path.remove_prefix(1);

@@ -8,6 +8,7 @@ namespace orb360 {
 /// What decides about a request. Headers are empty where they are missing.
 struct RequestHead {
   bool is_get = false;         ///< GET or HEAD.
+  bool is_post = false;        ///< POST.
   std::string path;            ///< Decoded, with a leading slash, without a query.
   std::string host;            ///< Header Host.
   std::string origin;          ///< Header Origin.
@@ -41,9 +42,10 @@ struct Admission {
   std::string resource;  ///< Path without the token and the leading slash.
 };
 
-/// Refuses what is not GET or HEAD (405), has a body (413), a Host that is none of the rules (421),
-/// an Origin other than that host (403), lacks the token (403), or comes from another site (403).
-/// The page itself has no data, so links of other sites may lead to it.
+/// Refuses what is not GET, HEAD or POST (405), has a body (413), a Host that is none of the rules
+/// (421), an Origin other than that host (403), a POST without one (403), lacks the token (403), or
+/// comes from another site (403). The page itself has no data, so links of other sites may lead to
+/// it.
 Admission CheckRequest(const RequestHead& head, const AccessRules& rules);
 
 }  // namespace orb360

@@ -11,8 +11,9 @@ namespace orb360 {
 struct Resource {
   std::string type;            ///< Media type.
   std::filesystem::path file;  ///< Empty: `make` gives the bytes.
-  std::function<std::string()>
-      make{};  ///< Called on the thread of the server. May throw UserError.
+  /// Called on the thread of the server. May throw UserError.
+  std::function<std::string()> make = {};
+  bool is_action = false;  ///< It changes something: only POST is answered.
 };
 
 /// All that a server has, by path without a leading slash; "" is the page itself. Nothing else is

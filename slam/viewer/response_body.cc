@@ -35,10 +35,11 @@ Response TextResponse(int status, std::string_view text) {
 }
 
 Response MakeResponse(const ResourceTable& resources, std::string_view path,
-                      std::string_view range_header) {
+                      std::string_view range_header, bool is_post) {
   const auto found = resources.find(path);
   if (found == resources.end()) return TextResponse(404, "there is nothing at this address");
   const Resource& resource = found->second;
+  if (resource.is_action != is_post) return TextResponse(405, "not with this method");
   Response response;
   response.status = 200;
   response.type = resource.type;

@@ -40,10 +40,11 @@ struct Response {
   std::optional<ResponseBody> body;
 };
 
-/// Answers to a path of the table. `range_header` is empty where there is none. What fails gives
+/// Answers to a path of the table; 405 where the method does not fit Resource::is_action.
+/// `range_header` is empty where there is none. What fails gives
 /// the status 500 with the reason as its text.
 Response MakeResponse(const ResourceTable& resources, std::string_view path,
-                      std::string_view range_header);
+                      std::string_view range_header, bool is_post = false);
 
 /// A response that is one line of text.
 Response TextResponse(int status, std::string_view text);

@@ -19,13 +19,23 @@ Resource OfText(std::string type, std::string_view text) {
 
 }  // namespace
 
-ResourceTable RunResources(std::string scene_json, const std::filesystem::path& octree,
-                           const std::filesystem::path& views, const std::vector<int>& frames) {
+ResourceTable PageResources(bool is_live) {
   ResourceTable table;
-  table[""] = OfText("text/html; charset=utf-8", WebPage());
+  std::string page(WebPage());
+  if (is_live) {
+    const std::string mode = "data-mode=\"run\"";
+    page.replace(page.find(mode), mode.size(), "data-mode=\"live\"");
+  }
+  table[""] = {"text/html; charset=utf-8", {}, [page] { return page; }};
   table["viewer.js"] = OfText("text/javascript; charset=utf-8", WebScript());
   table["viewer.css"] = OfText("text/css; charset=utf-8", WebStyle());
   table["alive"] = OfText("text/plain; charset=utf-8", "yes\n");
+  return table;
+}
+
+ResourceTable RunResources(std::string scene_json, const std::filesystem::path& octree,
+                           const std::filesystem::path& views, const std::vector<int>& frames) {
+  ResourceTable table = PageResources(false);
   table["run.json"] = {"application/json", {}, [scene = std::move(scene_json)] { return scene; }};
   if (!octree.empty()) table["cloud.octree"] = {"application/octet-stream", octree, {}};
   const auto load = [views](int frame) { return DepthMapStore::Open(views).Get(frame); };

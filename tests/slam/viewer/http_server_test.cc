@@ -1,5 +1,6 @@
 #include "slam/viewer/http_server.h"
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <random>
@@ -30,6 +31,7 @@ class HttpServerTest : public testing::Test {
     table[""] = {"text/html", {}, [] { return std::string("the page"); }};
     table["large"] = {"application/octet-stream", folder_ / "large", {}};
     table["views/7.jpg"] = {"image/jpeg", {}, [] { return std::string("image"); }};
+    table["act"] = {"text/plain", {}, [this] { return std::to_string(++num_actions_); }, true};
     server_.emplace(table, HttpAddress{});
     port_ = server_->port();
   }
@@ -43,6 +45,7 @@ class HttpServerTest : public testing::Test {
 
   const TempFolder folder_;
   std::string large_;
+  std::atomic<int> num_actions_ = 0;
   std::optional<HttpServer> server_;
   int port_ = 0;
 };
@@ -92,6 +95,27 @@ TEST_F(HttpServerTest, AnswersManyConnectionsAtOnce) {
   }
   for (std::thread& reader : readers) reader.join();
   EXPECT_THAT(good, testing::Each(10));
+}
+
+TEST_F(HttpServerTest, ActsOnPostsOfItsOwnPageOnly) {
+  const auto post = [this](const std::string& path, const std::string& more) {
+    std::string request = GetRequest(port_, path, more);
+    request.replace(0, 3, "POST");
+    return StatusOf(Exchange(port_, request));
+  };
+  std::string origin("Origin: http://localhost:");
+  origin += std::to_string(port_);
+  origin += "\r\n";
+  const std::string empty = "Content-Length: 0\r\n";
+  EXPECT_EQ(StatusOf(Get("/act")), 405);
+  EXPECT_EQ(post("/act", empty), 403);
+  EXPECT_EQ(post("/act", empty + "Origin: http://evil.example\r\n"), 403);
+  EXPECT_EQ(post("/act", origin + "Content-Length: 4\r\n"), 413);
+  EXPECT_EQ(post("/large", empty + origin), 405);
+  EXPECT_EQ(num_actions_, 0);
+  EXPECT_EQ(post("/act", empty + origin), 200);
+  EXPECT_EQ(num_actions_, 1);
+  ExpectAlive();
 }
 
 TEST_F(HttpServerTest, GivesNothingToMaliciousRequests) {

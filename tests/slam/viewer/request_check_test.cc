@@ -80,6 +80,18 @@ TEST(RequestCheck, RefusesMethodsAndBodies) {
   EXPECT_EQ(StatusOf(head, rules), 405);
 }
 
+TEST(RequestCheck, AdmitsPostsThatStateThisOrigin) {
+  const AccessRules rules = MakeAccessRules("127.0.0.1", 8360);
+  RequestHead head = Request("/pause", "localhost:8360");
+  head.is_get = false;
+  head.is_post = true;
+  EXPECT_EQ(StatusOf(head, rules), 403);
+  head.origin = std::string("http://localhost:8360");
+  EXPECT_EQ(StatusOf(head, rules), 200);
+  head.origin = std::string("http://localhost:8361");
+  EXPECT_EQ(StatusOf(head, rules), 403);
+}
+
 TEST(RequestCheck, WantsTheTokenBeyondThisMachine) {
   const AccessRules rules = MakeAccessRules("0.0.0.0", 8360);
   ASSERT_EQ(rules.token.size(), 32U);

@@ -16,8 +16,9 @@ export function short(value: number): string {
 /** A length with its unit: centimetres where it is short. */
 export function length(value: number, unit: "m" | "units"): string {
   const size = Math.abs(value);
-  if (unit === "m" && size < 1) return `${(100 * value).toFixed(size < 0.1 ? 1 : 0)} cm`;
-  return `${value.toFixed(size < 100 ? 2 : 1)} ${unit}`;
+  const sign = value < 0 ? "−" : "";
+  if (unit === "m" && size < 1) return `${sign}${(100 * size).toFixed(size < 0.1 ? 1 : 0)} cm`;
+  return `${sign}${size.toFixed(size < 100 ? 2 : 1)} ${unit}`;
 }
 
 /** A length with the standard deviation that the scale gives it. */

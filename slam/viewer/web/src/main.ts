@@ -2,6 +2,7 @@ import { Connection } from "./connection";
 import { h } from "./dom";
 import { makeHelp } from "./help";
 import { centerMessage, makeLayout } from "./layout";
+import { LiveViewer } from "./live";
 import type { Run } from "./run";
 import { openSource, SourceError } from "./source";
 import { Viewer } from "./viewer";
@@ -15,6 +16,10 @@ function setState(state: State): void {
 
 async function start(): Promise<void> {
   const page = makeLayout();
+  if (document.body.dataset.mode === "live") {
+    new LiveViewer(page);
+    return;
+  }
   const help = makeHelp();
   const source = openSource();
   page.center.replaceChildren(centerMessage("Loading the run", "Poses, graph and the coarsest points come first."));

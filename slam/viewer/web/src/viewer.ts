@@ -12,7 +12,7 @@ import { PointCloud } from "./point_cloud";
 import { listenToPointer } from "./pointer";
 import type { Run } from "./run";
 import type { Source } from "./source";
-import { followTheme } from "./theme";
+import { canvasColors, followTheme } from "./theme";
 import { makeToolbar, type Toolbar } from "./toolbar";
 import { TrajectoryLayer } from "./trajectory_layer";
 import { Viewport } from "./viewport";
@@ -106,6 +106,7 @@ export class Viewer {
     this.viewport.setCloud(cloud);
     if (this.run.frames.index.length === 0) this.viewport.setPose(obliquePose(this.box(), this.viewport.camera));
     this.clipBox = new ClipBox(box, cloud, this.run.unit, () => this.clipChanged());
+    this.clipBox.setColor(canvasColors().box);
     this.viewport.overlay.add(this.clipBox.lines.object);
     addCloudSections(this.run, this.page, cloud, this.clipBox, this.viewport);
     this.resized(this.page.stage.clientWidth, this.page.stage.clientHeight);
