@@ -33,5 +33,7 @@ void AddCalibrateCommand(CLI::App* app, Command* chosen);
 void AddConfigCommand(CLI::App* app, Command* chosen);
 void AddCompleteCommand(CLI::App* app, Command* chosen);
 void AddWeightsCommand(CLI::App* app, Command* chosen);
+void AddViewCommand(CLI::App* app, Command* chosen);
+void AddReportCommand(CLI::App* app, Command* chosen);
 
 }  // namespace orb360

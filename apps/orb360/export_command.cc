@@ -167,23 +167,6 @@ void WriteModel(const ExportScene& scene, const std::optional<Georeference>& geo
   if (format == "kml") ExportKml(frames, *georeference, out);
 }
 
-/// Returns the frames of a model whose depth was saved, ascending. An earlier run in the same
-/// folder may have left depth for other poses, which is not that of this run.
-std::vector<int> FramesWithDepth(const FinishedRun& run, const SparseModel& model) {
-  constexpr double kSamePlace = 1e-6;  // of the distance from the origin: what rounding does
-  std::vector<int> frames;
-  for (const DenseView& view : LoadViews(run.folder / kViewsName).views) {
-    const auto frame =
-        std::ranges::lower_bound(model.frames, view.frame_index, {}, &PosedFrame::index);
-    if (frame == model.frames.end() || frame->index != view.frame_index) continue;
-    const Eigen::Vector3d& place = frame->world_from_optical.translation;
-    if ((place - view.world_from_camera.translation).norm() < kSamePlace * (1 + place.norm())) {
-      frames.push_back(view.frame_index);
-    }
-  }
-  return frames;
-}
-
 /// Fills a scene with everything but the depth maps, whose names the format may want.
 ExportScene MakeScene(const FinishedRun& run, const ExportOptions& options) {
   ExportScene scene;
@@ -194,7 +177,7 @@ ExportScene MakeScene(const FinishedRun& run, const ExportOptions& options) {
   scene.has_masks = !run.mask.empty();
   SelectPoints(run, options, &scene);
   if (options.format == "nerfstudio" && std::filesystem::exists(run.folder / kViewsName)) {
-    scene.frames_with_depth = FramesWithDepth(run, scene.model);
+    scene.frames_with_depth = FramesWithDepth(run.folder / kViewsName, scene.model);
   }
   return scene;
 }

@@ -40,6 +40,8 @@ int Main(int argc, char** argv) {
   app.failure_message(UsageMessage);
   orb360::Command command;
   orb360::AddRunCommand(&app, &command);
+  orb360::AddViewCommand(&app, &command);
+  orb360::AddReportCommand(&app, &command);
   orb360::AddEvaluateCommand(&app, &command);
   orb360::AddFuseCommand(&app, &command);
   orb360::AddGeoreferenceCommand(&app, &command);

@@ -17,6 +17,7 @@
 #include "apps/orb360/commands.h"
 #include "apps/orb360/input.h"
 #include "apps/orb360/interrupt.h"
+#include "apps/orb360/live_view.h"
 #include "apps/orb360/mask.h"
 #include "apps/orb360/progress.h"
 #include "apps/orb360/run_options.h"
@@ -24,6 +25,8 @@
 #include "apps/orb360/run_summary.h"
 #include "apps/orb360/sparse_output.h"
 #include "slam/io/atomic_file.h"
+#include "slam/io/octree/octree_format.h"
+#include "slam/io/octree/octree_writer.h"
 #include "slam/io/sparse_model_file.h"
 #include "slam/pipeline/make_sparse_model.h"
 #include <orb360/nn/base/check.h>
@@ -58,8 +61,9 @@ void Warn(const std::string& warning, RunRecord* record) {
 }
 
 /// Tracks frame by frame until the end of the input, an interrupt, or a failure of input or disk.
-void ProcessFrames(Sequence* sequence, System* system, RunOutput* output, bool is_quiet,
-                   RunRecord* record) {
+/// `live`: null where the run is not shown.
+void ProcessFrames(Sequence* sequence, System* system, RunOutput* output, LiveView* live,
+                   bool is_quiet, RunRecord* record) {
   Progress progress(sequence->frame_count(), is_quiet);
   const auto pass_on_warnings = [&] {
     for (std::string& warning : sequence->TakeWarnings()) {
@@ -69,6 +73,11 @@ void ProcessFrames(Sequence* sequence, System* system, RunOutput* output, bool i
   };
   try {
     while (CaughtInterrupt() == 0) {
+      if (live != nullptr && !live->WaitForTurn()) {
+        progress.Warn("ended early from the viewer");
+        record->warnings.emplace_back("ended early from the viewer");
+        break;
+      }
       const std::optional<Frame> frame = sequence->Next();
       pass_on_warnings();
       if (!frame) break;
@@ -127,6 +136,7 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
         {.depth = options.saves_depth, .views = options.saves_views, .mesh = options.has_mesh},
         fusion);
     if (!record->failure) record->failure = dense->mesh_failure;
+    WriteOctree(output.folder() / kOctreeName, output.folder() / "cloud.ply");
   } catch (const std::exception&) {  // The trajectory is written nevertheless.
     if (!record->failure) record->failure = std::current_exception();
   }
@@ -197,6 +207,8 @@ int Run(const RunOptions& options) {
   const std::optional<RunPositions> positions =
       ReadRunPositions(options.positions, options.input, fps, &unusable);
   if (!unusable.empty()) Warn(unusable, &record);
+  std::optional<LiveView> live;
+  if (options.view_port >= 0) live.emplace(options.view_address, options.view_port);
   RunOutput output(options.out);
   if (stored) output.SetWorld(stored->file_world_from_map);
   // This throws now if the map could not be written at the end. It may be in the output folder.
@@ -217,8 +229,10 @@ int Run(const RunOptions& options) {
   }
   if (stored) options.localizes ? system.Localize(*stored) : system.LoadMap(*stored);
   stored.reset();
+  if (live) live->Watch(&system);
   const auto start = Clock::now();
-  ProcessFrames(sequence.get(), &system, &output, options.is_quiet, &record);
+  ProcessFrames(sequence.get(), &system, &output, live ? &*live : nullptr, options.is_quiet,
+                &record);
   const auto last_frame = Clock::now();
   const Reconstruction reconstruction = system.Finish(positions ? positions->local : Positions());
   record.finishing_seconds = SecondsSince(last_frame);

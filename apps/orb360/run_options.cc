@@ -114,6 +114,17 @@ void AddRunOptions(CLI::App* command, RunOptions* options) {
       ->check(CLI::IsMember({"draft", "normal", "high"}))
       ->type_name("draft|normal|high")
       ->default_str("normal");
+  command
+      ->add_flag("--view{8360}", options->view_port,
+                 "Show the run in a browser while it goes on: --view, or --view=PORT (0: any that "
+                 "is free)")
+      ->check(CLI::Range(0, 65535))
+      ->type_name("PORT");
+  command
+      ->add_option("--view-address", options->view_address,
+                   "Address at which --view listens; see orb360 view")
+      ->type_name("ADDR")
+      ->capture_default_str();
   command->add_flag("--quiet", options->is_quiet, "Show no progress");
 }
 

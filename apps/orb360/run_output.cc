@@ -9,6 +9,7 @@
 #include "slam/evaluation/map_plot.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/json_text.h"
+#include "slam/io/octree/octree_format.h"
 #include "slam/io/ply.h"
 #include "slam/io/scale_file.h"
 
@@ -119,6 +120,7 @@ void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::jso
   WritePly(folder_ / (dense ? "landmarks.ply" : "cloud.ply"), cloud, file_world_from_map);
   // One of an earlier run in the same folder would belong to another cloud.
   if (!dense || !dense->mesh) std::filesystem::remove(folder_ / kMeshName);
+  if (!dense) std::filesystem::remove(folder_ / kOctreeName);
   std::string map_svg;
   if (!reconstruction.keyframes.empty()) {
     map_svg = DrawMap(reconstruction, file_world_from_map);

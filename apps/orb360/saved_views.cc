@@ -1,5 +1,6 @@
 #include "apps/orb360/saved_views.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <string>
@@ -94,6 +95,21 @@ SavedViews LoadViews(const std::filesystem::path& folder) {
     throw UserError(path.string() + ": is damaged; run `orb360 run --save-views` again");
   }
   return saved;
+}
+
+std::vector<int> FramesWithDepth(const std::filesystem::path& folder, const SparseModel& model) {
+  constexpr double kSamePlace = 1e-6;  // of the distance from the origin: what rounding does
+  std::vector<int> frames;
+  for (const DenseView& view : LoadViews(folder).views) {
+    const auto frame =
+        std::ranges::lower_bound(model.frames, view.frame_index, {}, &PosedFrame::index);
+    if (frame == model.frames.end() || frame->index != view.frame_index) continue;
+    const Eigen::Vector3d& place = frame->world_from_optical.translation;
+    if ((place - view.world_from_camera.translation).norm() < kSamePlace * (1 + place.norm())) {
+      frames.push_back(view.frame_index);
+    }
+  }
+  return frames;
 }
 
 }  // namespace orb360

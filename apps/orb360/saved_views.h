@@ -5,6 +5,7 @@
 
 #include "slam/depth/dense_cloud.h"
 #include "slam/io/depth_map_store.h"
+#include "slam/io/sparse_model.h"
 
 namespace orb360 {
 
@@ -25,5 +26,9 @@ void SaveViews(const std::filesystem::path& folder, const DepthMapStore& store,
 /// Reads the views of a folder, whose depth maps DepthMapStore::Open reads. Throws UserError if
 /// they are missing or damaged.
 SavedViews LoadViews(const std::filesystem::path& folder);
+
+/// Returns the frames of a model whose views are in a folder, ascending. An earlier run in the same
+/// place may have left views for other poses, which are not those of this run. Throws as LoadViews.
+std::vector<int> FramesWithDepth(const std::filesystem::path& folder, const SparseModel& model);
 
 }  // namespace orb360

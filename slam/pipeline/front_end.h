@@ -14,6 +14,7 @@
 #include "slam/pipeline/pending_frames.h"
 #include "slam/pipeline/relocalization.h"
 #include "slam/pipeline/tracker.h"
+#include <orb360/slam/pipeline/frame_report.h>
 #include <orb360/slam/pipeline/options.h>
 
 namespace orb360 {
@@ -58,6 +59,10 @@ class FrontEnd {
   /// Whether the pyramid is there and is that of the last tracked frame. State: tracking.
   bool HasPyramid() const { return pyramid_of_ == std::get<Tracking>(state_).last.index; }
 
+  TrackingState state() const {
+    if (is_initializing()) return TrackingState::kInitializing;
+    return tracking() != nullptr ? TrackingState::kTracking : TrackingState::kLost;
+  }
   bool is_initializing() const { return std::holds_alternative<Initializing>(state_); }
   /// The data of a state; null in other states.
   const Tracking* tracking() const { return std::get_if<Tracking>(&state_); }

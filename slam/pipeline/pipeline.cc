@@ -90,11 +90,12 @@ FrameReport Pipeline::Process(const Frame& frame) {
     Initialize(pending);
   }
   KeepImage(frame);
+  if (watcher_) ShowState(frame, pending);
   StartDue(frame.image);
   report.timing_ms["tracking"] = MillisecondsSince(tracking);
   report.timing_ms["frame"] = MillisecondsSince(start);
 
-  report.state = front_end_.is_initializing() ? TrackingState::kInitializing : TrackingState::kLost;
+  report.state = front_end_.state();
   if (const FrontEnd::Tracking* now = front_end_.tracking()) {
     report.state = TrackingState::kTracking;
     report.world_from_camera = now->last.world_from_camera;
@@ -105,6 +106,19 @@ FrameReport Pipeline::Process(const Frame& frame) {
   report.num_keyframes = num_keyframes_;
   report.num_landmarks = num_landmarks_;
   return report;
+}
+
+void Pipeline::ShowState(const Frame& frame, const PendingFrame& pending) const {
+  PresentState state{.frame = frame, .state = front_end_.state(), .features = *pending.features};
+  if (const FrontEnd::Tracking* now = front_end_.tracking()) {
+    state.landmarks = now->last.landmarks;
+    state.map_from_camera = now->last.world_from_camera;
+  }
+  state.map_number = atlas_.present_number();
+  if (!atlas_.is_lent()) state.map = &atlas_.map();
+  state.ground = atlas_.ground();
+  state.loops = atlas_.loops;
+  watcher_(state);
 }
 
 void Pipeline::KeepImage(const Frame& frame) {

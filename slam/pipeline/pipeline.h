@@ -10,6 +10,7 @@
 #include "slam/pipeline/front_end.h"
 #include <orb360/slam/io/frame_source.h>
 #include <orb360/slam/io/map_file.h>
+#include <orb360/slam/pipeline/present_state.h>
 #include <orb360/slam/pipeline/system.h>
 
 namespace orb360 {
@@ -27,6 +28,7 @@ class Pipeline {
   // These are the functions of System.
   void LoadMap(const StoredMap& stored, bool keeps_map);
   void EnableDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
+  void Watch(const Watcher& watcher) { watcher_ = watcher; }
   FrameReport Process(const Frame& frame);
   Reconstruction Finish(const Positions& positions);
   ViewDepthReport ComputeDepth(const Reconstruction& finished, const ViewDepthCallbacks& callbacks);
@@ -38,6 +40,8 @@ class Pipeline {
   // Results that are due are adopted before a frame; jobs are started after it.
   void AdoptDue();
   void StartDue(const cv::Mat& image);
+  /// Shows the state after tracking to the watcher, before jobs take the map.
+  void ShowState(const Frame& frame, const PendingFrame& pending) const;
   /// Keeps the image of a frame for dense depth.
   void KeepImage(const Frame& frame);
 
@@ -85,6 +89,7 @@ class Pipeline {
   /// Whether frames are only localized in a loaded map, which stays as it is.
   bool keeps_map_ = false;
   bool is_map_loaded_ = false;
+  Watcher watcher_;       ///< Empty where nobody watches.
   int num_frames_ = 0;    ///< Number of frames processed.
   int free_threads_ = 1;  ///< Number of OpenMP threads for the present frame.
   /// Counts of the present map when it was last not lent to a job.

@@ -22,6 +22,10 @@ void System::EnableDepth(const std::filesystem::path& weights,
   pipeline_->EnableDepth(weights, folder);
 }
 
+void System::Watch(const std::function<void(const PresentState&)>& watcher) {
+  pipeline_->Watch(watcher);
+}
+
 FrameReport System::Process(const Frame& frame) { return pipeline_->Process(frame); }
 
 Reconstruction System::Finish(const Positions& positions) { return pipeline_->Finish(positions); }

@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "slam/io/octree/octree_file.h"
 #include "slam/io/ply.h"
 #include "tests/apps/orb360/run_fixture.h"
 
@@ -46,6 +47,12 @@ TEST_F(FuseTest, WritesTheBytesOfTheRunForAnyNumberOfThreads) {
   EXPECT_THAT(result.out, HasSubstr("points of"));
   EXPECT_EQ(ReadText(OutFile("cloud.ply")), cloud);
   EXPECT_FALSE(std::filesystem::exists(OutFile("cloud.ply.voxels")));
+}
+
+TEST_F(FuseTest, StandsBesideAnOctreeOfAllPointsThatTheRunWrote) {
+  const OctreeFile octree(OutFile("cloud.octree"));
+  EXPECT_EQ(octree.header().point_count, ReadSurfacePly(OutFile("cloud.ply")).size());
+  EXPECT_EQ(octree.header().attributes, kOctreeNormals | kOctreeConfidences);
 }
 
 TEST_F(FuseTest, WritesTheSurfaceThroughTheCloudOnRequest) {

@@ -33,6 +33,8 @@ class Program {
   void Signal(int signal) const;
   /// Waits until standard output contains `text`. False if the program ends without.
   bool WaitForOutput(const std::string& text);
+  /// Standard output so far.
+  std::string Output() const { return ReadText(folder_ / "out"); }
   ProgramResult Wait();
 
  private:

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,6 +22,7 @@ class DepthMapStore;
 struct Frame;
 struct KnownGround;
 struct Options;
+struct PresentState;
 struct StoredMap;
 
 /// The whole system, which computes poses, maps and dense depth from frames. One thread at a time
@@ -37,6 +39,9 @@ class System {
   /// Before the first frame: keeps images in `folder` for ComputeDepth with the network `weights`.
   /// Throws UserError where one of them cannot be used.
   void EnableDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
+
+  /// Before the first frame: shows the state after each frame to a watcher.
+  void Watch(const std::function<void(const PresentState&)>& watcher);
 
   /// Processes the next frame; timestamps must grow. Throws ContractError for an image of another
   /// size or type than 8-bit BGR. After another exception only Finish may be called.

@@ -1,0 +1,116 @@
+#include "apps/orb360/viewed_run.h"
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/orb360/run_octree.h"
+#include "apps/orb360/saved_views.h"
+#include "slam/io/octree/octree_file.h"
+#include "slam/io/optical_frame.h"
+#include "slam/io/sparse_model_file.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/io/trajectory.h>
+
+namespace orb360 {
+namespace {
+
+nlohmann::json ReadSummaryJson(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder)) {
+    throw UserError(folder.string() + ": is no folder; give that of a finished `orb360 run`");
+  }
+  const std::filesystem::path path = folder / "summary.json";
+  std::ifstream file(path);
+  if (!file) {
+    throw UserError(folder.string() +
+                    ": holds no finished run (there is no summary.json); `orb360 run INPUT --out "
+                    "DIR` makes one");
+  }
+  try {
+    nlohmann::json summary = nlohmann::json::parse(file);
+    if (summary.is_object()) return summary;
+  } catch (const nlohmann::json::exception&) {  // The message below says what to do.
+  }
+  throw UserError(path.string() + ": is damaged; run `orb360 run` again");
+}
+
+/// The frames of a run that has no reconstruction, as its trajectories tell them. Their indices in
+/// the input are unknown; numbers in order stand for them.
+SparseModel ModelOfTrajectories(const std::filesystem::path& folder) {
+  SparseModel model;
+  if (!std::filesystem::exists(folder / "trajectory.txt")) return model;
+  std::vector<double> keyframe_times;
+  if (std::filesystem::exists(folder / "keyframes.txt")) {
+    for (const StampedPose& pose : ReadTrajectory(folder / "keyframes.txt")) {
+      keyframe_times.push_back(pose.timestamp);
+    }
+  }
+  std::ranges::sort(keyframe_times);
+  for (const StampedPose& pose : ReadTrajectory(folder / "trajectory.txt")) {
+    PosedFrame frame;
+    frame.index = static_cast<int>(model.frames.size());
+    frame.timestamp = pose.timestamp;
+    frame.is_keyframe = std::ranges::binary_search(keyframe_times, pose.timestamp);
+    frame.world_from_optical = WorldFromOptical(pose.world_from_camera);
+    model.frames.push_back(frame);
+  }
+  return model;
+}
+
+/// The frames whose depth was saved, and why there are none.
+std::vector<int> FindViews(const std::filesystem::path& folder, const SparseModel& model,
+                           std::vector<std::string>* missing) {
+  if (!std::filesystem::exists(folder / kViewsName)) {
+    missing->push_back(
+        "Images and ranges of keyframes: the run did not keep them. `orb360 run --save-views` "
+        "does.");
+    return {};
+  }
+  std::vector<int> frames = FramesWithDepth(folder / kViewsName, model);
+  if (frames.empty()) {
+    missing->push_back(
+        "Images and ranges of keyframes: those in `views` belong to an earlier run. Run it again "
+        "with `--save-views`.");
+  }
+  return frames;
+}
+
+}  // namespace
+
+ViewedRun OpenViewedRun(const std::filesystem::path& folder, bool is_quiet) {
+  ViewedRun run;
+  RunScene& scene = run.scene;
+  scene.summary = ReadSummaryJson(folder);
+  scene.folder = folder.lexically_normal().string();
+  std::vector<std::string>& missing = scene.missing;
+  if (std::filesystem::exists(folder / kSparseModelName)) {
+    scene.model = ReadSparseModel(folder / kSparseModelName);
+    scene.views = FindViews(folder, scene.model, &missing);
+    run.views = folder / kViewsName;
+  } else {
+    scene.model = ModelOfTrajectories(folder);
+    missing.push_back(
+        "Keyframe graph, images and ranges: an older orb360 made this run, without "
+        "reconstruction.h5. Run it again to see them.");
+  }
+  if (scene.model.frames.empty()) missing.push_back("Trajectory: no frame of this run has a pose.");
+  if (std::filesystem::exists(folder / "scale.txt"))
+    scene.scales = ReadScales(folder / "scale.txt");
+  if (const auto octree = ProvideOctree(folder, is_quiet)) {
+    const OctreeFile checked(*octree);
+    if ((checked.header().attributes & kOctreeConfidences) == 0) {
+      missing.push_back(
+          "Dense cloud: the run made none (`--weights none`, or too little motion), so the points "
+          "are its landmarks, without confidence.");
+    }
+    run.octree = *octree;
+    scene.has_cloud = true;
+  } else {
+    missing.push_back("Points: the folder has no cloud.ply with points.");
+  }
+  return run;
+}
+
+}  // namespace orb360

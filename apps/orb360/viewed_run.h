@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+
+#include "slam/viewer/run_scene.h"
+
+namespace orb360 {
+
+/// What `orb360 view` and `orb360 report` show of a finished run.
+struct ViewedRun {
+  RunScene scene;
+  std::filesystem::path octree;  ///< Empty where there is none.
+  std::filesystem::path views;   ///< Folder of the depth maps of scene.views.
+};
+
+/// Reads the folder of a run. What it lacks, as one of an older version may, is left out and named
+/// in scene.missing. Makes the octree where it is missing, and says so unless `is_quiet`. Throws
+/// UserError with one line where the folder holds no finished run, or a damaged file.
+ViewedRun OpenViewedRun(const std::filesystem::path& folder, bool is_quiet);
+
+}  // namespace orb360

@@ -1,0 +1,48 @@
+#include "slam/viewer/listen_address.h"
+
+#include <cerrno>
+#include <cstring>
+#include <memory>
+
+#include <netdb.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <orb360/nn/base/check.h>
+
+namespace orb360 {
+
+void RequireFree(const std::string& address, int port) {
+  const std::string port_text = std::to_string(port);
+  addrinfo hints{};
+  hints.ai_flags = AI_NUMERICHOST | AI_PASSIVE;
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  const std::string numeric = address == "localhost" ? "127.0.0.1" : address;
+  if (getaddrinfo(numeric.c_str(), port_text.c_str(), &hints, &found) != 0) {
+    throw UserError("--view-address: " + address +
+                    " is no numeric address such as 127.0.0.1, ::1, or 0.0.0.0 for all");
+  }
+  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> list(found, freeaddrinfo);
+  const int descriptor = socket(list->ai_family, SOCK_STREAM, 0);
+  if (descriptor < 0) throw UserError("--view-address: " + address + ": " + std::strerror(errno));
+  // Connections of a server that has just ended do not count.
+  const int yes = 1;
+  setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  int error = bind(descriptor, list->ai_addr, list->ai_addrlen) == 0 ? 0 : errno;
+  if (error == 0 && listen(descriptor, 1) != 0) error = errno;
+  close(descriptor);
+  if (error == 0) return;
+  if (error == EADDRINUSE) {
+    throw UserError("port " + port_text +
+                    " is taken by another program; choose another with --port, or --port 0 for any "
+                    "that is free");
+  }
+  if (error == EACCES) {
+    throw UserError("port " + port_text + " is reserved; choose one from 1024 on with --port");
+  }
+  throw UserError("--view-address: " + address + " is no address of this machine (" +
+                  std::strerror(error) + ")");
+}
+
+}  // namespace orb360

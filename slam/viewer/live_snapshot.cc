@@ -1,0 +1,118 @@
+#include "slam/viewer/live_snapshot.h"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "slam/io/byte_number.h"
+#include "slam/io/optical_frame.h"
+#include "slam/map/covisibility.h"
+
+namespace orb360 {
+namespace {
+
+constexpr int kMinShared = 15;  // landmarks, as in the finished keyframe graph
+
+const char* NameOf(TrackingState state) {
+  switch (state) {
+    case TrackingState::kInitializing:
+      return "initializing";
+    case TrackingState::kTracking:
+      return "tracking";
+    case TrackingState::kLost:
+      return "lost";
+  }
+  return "lost";
+}
+
+/// x y z qx qy qz qw of the optical camera frame.
+nlohmann::json PoseJson(const Rigid3& world_from_camera) {
+  constexpr double kSteps = 1e5;  // in a unit of length
+  const Rigid3 pose = WorldFromOptical(world_from_camera);
+  nlohmann::json json = nlohmann::json::array();
+  for (const double value : pose.translation) json.push_back(std::round(value * kSteps) / kSteps);
+  for (const double value : pose.rotation.coeffs()) {
+    json.push_back(std::round(value * kSteps) / kSteps);
+  }
+  return json;
+}
+
+}  // namespace
+
+LiveSnapshot::MapPart CopyMap(const Map& map) {
+  LiveSnapshot::MapPart part;
+  for (const KeyframeId id : map.KeyframeIds()) {
+    const Keyframe& keyframe = map.keyframe(id);
+    part.keyframes.push_back({id, keyframe.frame_index, keyframe.world_from_camera});
+  }
+  for (const CovisibilityEdge& edge : FindCovisibilityEdges(map, kMinShared)) {
+    part.links.push_back({edge.first, edge.second});
+  }
+  for (LandmarkId id = 0; id < map.landmark_end(); ++id) {
+    if (!map.HasLandmark(id)) continue;
+    const Landmark& landmark = map.landmark(id);
+    if (landmark.observations.size() < 2) continue;
+    const KeyframeId keyframe = landmark.observations.front().keyframe;
+    const Rigid3 camera_from_map = map.keyframe(keyframe).world_from_camera.Inverse();
+    part.landmarks.push_back(
+        {keyframe, (camera_from_map * landmark.position).cast<float>(), landmark.color});
+  }
+  return part;
+}
+
+std::string LiveJson(const LiveSnapshot& snapshot, bool is_paused) {
+  nlohmann::json features = nlohmann::json::array();
+  const cv::Size size = snapshot.image.size();
+  for (const LiveSnapshot::Feature& feature : snapshot.features) {
+    features.push_back(std::lround(1000 * feature.pixel.x() / static_cast<float>(size.width)));
+    features.push_back(std::lround(1000 * feature.pixel.y() / static_cast<float>(size.height)));
+    features.push_back(feature.is_matched ? 1 : 0);
+  }
+  nlohmann::json keyframes = nlohmann::json::array();
+  for (const LiveSnapshot::Keyframe& keyframe : snapshot.map.keyframes) {
+    nlohmann::json entry = {keyframe.id, keyframe.frame};
+    for (nlohmann::json& value : PoseJson(snapshot.world_from_map * keyframe.map_from_camera)) {
+      entry.push_back(value);
+    }
+    keyframes.push_back(entry);
+  }
+  nlohmann::json loops = nlohmann::json::array();
+  for (const ClosedLoop& loop : snapshot.loops) loops.push_back({loop.frame, loop.place});
+  nlohmann::json json = {{"frame", snapshot.frame},
+                         {"time", snapshot.timestamp},
+                         {"state", NameOf(snapshot.state)},
+                         {"isPaused", is_paused},
+                         {"map", snapshot.map_number},
+                         {"revision", snapshot.revision},
+                         {"size", {size.width, size.height}},
+                         {"features", features},
+                         {"pose", nullptr},
+                         {"keyframes", keyframes},
+                         {"links", snapshot.map.links},
+                         {"loops", loops},
+                         {"cameraHeight", nullptr},
+                         {"landmarks", snapshot.map.landmarks.size()}};
+  if (snapshot.map_from_camera) {
+    json["pose"] = PoseJson(snapshot.world_from_map * *snapshot.map_from_camera);
+  }
+  if (snapshot.ground) json["cameraHeight"] = snapshot.ground->camera_height;
+  return json.dump();
+}
+
+std::string LivePoints(const LiveSnapshot& snapshot) {
+  std::string bytes;
+  AppendLittleEndian(static_cast<std::uint32_t>(snapshot.revision), &bytes);
+  AppendLittleEndian(static_cast<std::uint32_t>(snapshot.map.landmarks.size()), &bytes);
+  const Eigen::Quaternionf optical_from_camera = CameraFromOptical().conjugate().cast<float>();
+  for (const LiveSnapshot::Landmark& landmark : snapshot.map.landmarks) {
+    AppendLittleEndian(static_cast<std::int32_t>(landmark.keyframe), &bytes);
+    for (const float value : Eigen::Vector3f(optical_from_camera * landmark.position)) {
+      AppendLittleEndian(value, &bytes);
+    }
+    for (const std::uint8_t value : landmark.color) bytes += static_cast<char>(value);
+    bytes += '\0';
+  }
+  return bytes;
+}
+
+}  // namespace orb360

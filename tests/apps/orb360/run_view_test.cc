@@ -1,0 +1,111 @@
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/apps/orb360/run_fixture.h"
+#include "tests/slam/viewer/raw_http.h"
+
+namespace orb360 {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+/// A run that is shown while it goes on.
+class RunViewTest : public RunTest {
+ protected:
+  RunViewTest() { WriteRoom(); }
+
+  std::vector<std::string> Arguments(const std::string& out) const {
+    return {"run", Input(),     "--out", folder_ / out, "--threads",
+            "2",   "--weights", "none",  "--view=0"};
+  }
+
+  /// Waits for the address of a run and returns its port.
+  static int PortOf(Program* run) {
+    EXPECT_TRUE(run->WaitForOutput("/\n"));
+    const std::string out = run->Output();
+    const std::string before = "this run is at http://127.0.0.1:";
+    const size_t at = out.find(before);
+    return at == std::string::npos ? 0 : std::atoi(out.c_str() + at + before.size());
+  }
+
+  static int Post(int port, const std::string& path) {
+    std::string more("Content-Length: 0\r\nOrigin: http://localhost:");
+    more += std::to_string(port);
+    more += "\r\n";
+    std::string request = GetRequest(port, path, more);
+    request.replace(0, 3, "POST");
+    return StatusOf(Exchange(port, request));
+  }
+
+  /// The state of a run that is paused, as soon as it is at a frame.
+  static nlohmann::json StateAt(int port, int frame) {
+    nlohmann::json json;
+    for (int i = 0; i < 1000; ++i) {
+      json = nlohmann::json::parse(BodyOf(Exchange(port, GetRequest(port, "/live.json"))), nullptr,
+                                   false);
+      if (json.is_object() && json["size"][0] != 0 && json["frame"] >= frame) return json;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return json;
+  }
+};
+
+TEST_F(RunViewTest, HasTheSameResultWhileItIsLookedAt) {
+  EXPECT_EQ(Run().status, 0);
+  Program shown(Arguments("shown"));
+  const int port = PortOf(&shown);
+  std::atomic<bool> has_ended = false;
+  std::atomic<int> num_seen = 0;
+  std::thread page([&] {
+    while (!has_ended) {
+      for (const char* path : {"/live.json", "/live.points", "/live.jpg"}) {
+        num_seen += StatusOf(Exchange(port, GetRequest(port, path))) == 200 ? 1 : 0;
+      }
+    }
+  });
+  const ProgramResult result = shown.Wait();
+  has_ended = true;
+  page.join();
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_GT(num_seen, 3);
+  for (const char* name : {"trajectory.txt", "keyframes.txt", "cloud.ply", "reconstruction.h5"}) {
+    EXPECT_EQ(ReadText(folder_ / ("shown/" + std::string(name))), ReadText(OutFile(name))) << name;
+  }
+}
+
+TEST_F(RunViewTest, IsPausedStepsAndEndsEarly) {
+  Program run(Arguments("out"));
+  const int port = PortOf(&run);
+  EXPECT_EQ(Post(port, "/pause"), 200);
+  const int first = StateAt(port, 0)["frame"];
+  EXPECT_LT(first, kFrames - 6);
+  for (int step = 1; step <= 5; ++step) {
+    EXPECT_EQ(Post(port, "/step"), 200);
+    const nlohmann::json state = StateAt(port, first + step);
+    EXPECT_EQ(state["frame"], first + step);
+    EXPECT_EQ(state["isPaused"], true);
+  }
+  EXPECT_EQ(Post(port, "/finish"), 200);
+  const ProgramResult result = run.Wait();
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(Summary()["frames"], first + 6);
+  EXPECT_EQ(Summary()["warnings"][0], "ended early from the viewer");
+}
+
+TEST_F(RunViewTest, SaysThatAPortIsTakenBeforeAnyWork) {
+  Program first(Arguments("first"));
+  const int port = PortOf(&first);
+  Post(port, "/pause");
+  EXPECT_THAT(Refusal({"--view=" + std::to_string(port)}),
+              AllOf(HasSubstr("is taken by another program")));
+  Post(port, "/finish");
+  EXPECT_EQ(first.Wait().status, 0);
+}
+
+}  // namespace
+}  // namespace orb360

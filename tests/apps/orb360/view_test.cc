@@ -1,0 +1,164 @@
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "slam/io/octree/octree_file.h"
+#include "slam/io/ply.h"
+#include "tests/apps/orb360/run_fixture.h"
+
+namespace orb360 {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// The folder of a run as an older version has left it: no reconstruction, no octree.
+class ViewTest : public testing::Test {
+ protected:
+  ViewTest() {
+    std::filesystem::create_directory(Run());
+    WriteText(File("summary.json"),
+              R"({"input": "walk.mp4", "frames": 3, "tracked": 3, "loop_times": [[0.2, 0.0]],)"
+              R"( "scale": {"state": "metric", "sigma": 0.02, "value": 1.0}})");
+    std::vector<StampedPose> poses(3);
+    for (int i = 0; i < 3; ++i) poses[i].timestamp = 0.1 * i;
+    WriteTrajectory(File("trajectory.txt"), poses);
+    poses.erase(poses.begin() + 1);
+    WriteTrajectory(File("keyframes.txt"), poses);
+    std::vector<ColoredPoint> points(1000);
+    for (int i = 0; i < 1000; ++i) points[i].position = {static_cast<float>(i), 1, 2};
+    WritePly(File("cloud.ply"), points);
+  }
+
+  std::string Run() const { return folder_ / "run"; }
+  std::string File(const std::string& name) const { return Run() + "/" + name; }
+
+  void ExpectRefusal(const std::string& command, const std::string& what) const {
+    std::vector<std::string> arguments = {command, Run()};
+    if (command == "view") arguments.insert(arguments.end(), {"--port", "0"});
+    const ProgramResult result = RunOrb360(arguments);
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr(what)));
+  }
+
+  const TempFolder folder_;
+};
+
+/// `orb360 view` on a port that is free.
+class Viewing {
+ public:
+  explicit Viewing(const std::string& run, const std::vector<std::string>& more = {})
+      : program_(Arguments(run, more)) {
+    EXPECT_TRUE(program_.WaitForOutput("Ctrl-C"));
+  }
+  ProgramResult Stop() {
+    program_.Signal(SIGINT);
+    return program_.Wait();
+  }
+
+ private:
+  static std::vector<std::string> Arguments(const std::string& run,
+                                            const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"view", run, "--port", "0"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  Program program_;
+};
+
+TEST_F(ViewTest, MakesTheOctreeOfAnOlderRunAndSaysWhatIsMissing) {
+  Viewing viewing(Run());
+  const ProgramResult result = viewing.Stop();
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("http://127.0.0.1:"), HasSubstr("levels of detail"),
+                    HasSubstr("not there: Keyframe graph"), HasSubstr("not there: Dense cloud")));
+  EXPECT_THAT(result.err, IsEmpty());
+  EXPECT_EQ(OctreeFile(File("cloud.octree")).header().point_count, 1000U);
+}
+
+TEST_F(ViewTest, MakesTheOctreeAnewWhereTheCloudIsNewer) {
+  Viewing(Run()).Stop();
+  WritePly(File("cloud.ply"), std::vector<ColoredPoint>(10));
+  std::filesystem::last_write_time(
+      File("cloud.ply"), std::filesystem::file_time_type::clock::now() + std::chrono::seconds(2));
+  Viewing(Run()).Stop();
+  EXPECT_EQ(OctreeFile(File("cloud.octree")).header().point_count, 10U);
+}
+
+TEST_F(ViewTest, ShowsAPathWithoutACloud) {
+  std::filesystem::remove(File("cloud.ply"));
+  Viewing viewing(Run());
+  const ProgramResult result = viewing.Stop();
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("not there: Points"));
+}
+
+TEST_F(ViewTest, SaysThatAPortIsTaken) {
+  Program first({"view", Run(), "--port", "0"});
+  ASSERT_TRUE(first.WaitForOutput("Ctrl-C"));
+  first.Signal(SIGTERM);
+  const ProgramResult told = first.Wait();
+  EXPECT_EQ(told.status, 0);
+  const size_t at = told.out.find("127.0.0.1:") + 10;
+  const std::string port = told.out.substr(at, told.out.find('/', at) - at);
+  Program second({"view", Run(), "--port", port});
+  ASSERT_TRUE(second.WaitForOutput("Ctrl-C"));  // It is free again at once.
+  const ProgramResult refused = RunOrb360({"view", Run(), "--port", port});
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err,
+              AllOf(IsOneLine(), HasSubstr("port " + port + " is taken"), HasSubstr("--port")));
+}
+
+TEST_F(ViewTest, RefusesFoldersWithoutARunAndDamagedFiles) {
+  Viewing(Run()).Stop();
+  const std::string octree = ReadText(File("cloud.octree"));
+  WriteText(File("cloud.octree"), octree.substr(0, 5000));
+  std::filesystem::last_write_time(
+      File("cloud.octree"),
+      std::filesystem::file_time_type::clock::now() + std::chrono::seconds(2));
+  for (const char* command : {"view", "report"}) {
+    ExpectRefusal(command, "cloud.octree: is truncated");
+  }
+  std::filesystem::remove(File("cloud.octree"));
+  WriteText(File("cloud.ply"), "ply\nnothing");
+  ExpectRefusal("view", "cloud.ply");
+  WriteText(File("summary.json"), "{\"input\": ");
+  ExpectRefusal("view", "summary.json: is damaged");
+  std::filesystem::remove(File("summary.json"));
+  ExpectRefusal("report", "holds no finished run");
+  std::filesystem::remove_all(Run());
+  ExpectRefusal("view", "is no folder");
+}
+
+TEST_F(ViewTest, HasATokenWhenOpenedBeyondThisMachine) {
+  Viewing viewing(Run(), {"--view-address", "0.0.0.0"});
+  const ProgramResult result = viewing.Stop();
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, testing::ContainsRegex("http://[^/]+/[0-9a-f]+/"));
+}
+
+TEST_F(ViewTest, ReportIsOneFileOfTheSizeAskedFor) {
+  std::vector<ColoredPoint> points(400000);
+  for (int i = 0; i < 400000; ++i) {
+    points[i].position = {static_cast<float>(i % 700), static_cast<float>(i / 700), 2};
+  }
+  WritePly(File("cloud.ply"), points);
+  const ProgramResult result =
+      RunOrb360({"report", Run(), "--out", folder_ / "r.html", "--max-size", "3"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  const std::uintmax_t size = std::filesystem::file_size(folder_ / "r.html");
+  EXPECT_LE(size, 3'000'000U);
+  EXPECT_GE(size, 2'700'000U);
+  const std::string page = ReadText(folder_ / "r.html");
+  EXPECT_THAT(page, HasSubstr("embedded-octree"));
+  EXPECT_THAT(page, HasSubstr("walk.mp4"));
+  EXPECT_THAT(page, HasSubstr(" of 400000 points"));
+}
+
+}  // namespace
+}  // namespace orb360

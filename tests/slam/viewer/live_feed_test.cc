@@ -1,0 +1,150 @@
+#include "slam/viewer/live_feed.h"
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "slam/io/byte_number.h"
+#include "slam/io/optical_frame.h"
+
+namespace orb360 {
+namespace {
+
+/// A frame with two corners of three features; the last, which shows the second corner on a coarser
+/// level, is tracked.
+class LiveFeedTest : public testing::Test {
+ protected:
+  LiveFeedTest() {
+    frame_.index = 7;
+    frame_.timestamp = 0.35;
+    frame_.image = cv::Mat(50, 100, CV_8UC3, cv::Scalar(1, 2, 3));
+    for (const float u : {25.0f, 50.0f, 50.0f}) {
+      Keypoint keypoint{};
+      keypoint.pixel = {u, 10.0f};
+      features_.keypoints.push_back(keypoint);
+    }
+    features_.bearings.resize(3);
+    features_.descriptors.resize(3);
+    features_.corners = {0, 1, 1};
+    map_from_camera_.translation = {-2, 0, 0};  // two units ahead of the map's origin
+  }
+
+  PresentState State() const {
+    PresentState state{.frame = frame_, .state = TrackingState::kTracking, .features = features_};
+    state.landmarks = landmarks_;
+    state.map_from_camera = map_from_camera_;
+    return state;
+  }
+
+  nlohmann::json Json() { return nlohmann::json::parse(table_.at("live.json").make()); }
+
+  Frame frame_;
+  Features features_;
+  std::vector<LandmarkId> landmarks_ = {kNoId, kNoId, 4};
+  Rigid3 map_from_camera_;
+  LiveFeed feed_;
+  ResourceTable table_ = feed_.Resources();
+};
+
+TEST_F(LiveFeedTest, ShowsTheFrameWithItsFeatures) {
+  EXPECT_EQ(Json()["size"][0], 0);  // Nothing is there yet.
+  feed_.Take(State());
+  const nlohmann::json json = Json();
+  EXPECT_EQ(json["frame"], 7);
+  EXPECT_EQ(json["time"], 0.35);
+  EXPECT_EQ(json["state"], "tracking");
+  EXPECT_THAT(json["size"].get<std::vector<int>>(), testing::ElementsAre(100, 50));
+  EXPECT_THAT(json["features"].get<std::vector<int>>(),
+              testing::ElementsAre(250, 200, 0, 500, 200, 1));
+  EXPECT_EQ(json["isPaused"], false);
+  EXPECT_THAT(table_.at("live.jpg").make(), testing::StartsWith("\xff\xd8"));
+}
+
+TEST_F(LiveFeedTest, BeginsTheWorldAtTheFirstCamera) {
+  feed_.Take(State());
+  const nlohmann::json pose = Json()["pose"];
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(pose[axis].get<double>(), 0, 1e-9);
+  map_from_camera_.translation = {-5, 0, 0};
+  feed_.Take(State());
+  EXPECT_NEAR(Json()["pose"][0].get<double>(), 3, 1e-9);  // x is forward.
+}
+
+TEST_F(LiveFeedTest, CopiesTheMapOnlyForThosePagesThatAsk) {
+  Map map;
+  PresentState state = State();
+  state.map = &map;
+  feed_.Take(state);
+  EXPECT_EQ(Json()["revision"], 1);  // It asks for the next copy.
+  for (int i = 8; i < 20; ++i) {
+    frame_.index = i;
+    feed_.Take(state);
+  }
+  const nlohmann::json json = Json();
+  EXPECT_EQ(json["revision"], 2);
+  EXPECT_EQ(json["frame"], 8) << "later frames were not asked for";
+}
+
+TEST_F(LiveFeedTest, PausesStepsAndEndsTheRun) {
+  const auto never = [] { return false; };
+  EXPECT_TRUE(feed_.WaitForTurn(never));
+  table_.at("pause").make();
+  std::atomic<int> num_turns = 0;
+  std::atomic<bool> has_ended = false;
+  std::thread run([&] {
+    while (feed_.WaitForTurn(never)) ++num_turns;
+    has_ended = true;
+  });
+  const auto wait_for = [&](auto condition) {
+    for (int i = 0; i < 500 && !condition(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return condition();
+  };
+  EXPECT_EQ(num_turns, 0);
+  for (int step = 1; step <= 3; ++step) {
+    table_.at("step").make();
+    EXPECT_TRUE(wait_for([&] { return num_turns == step; }));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  EXPECT_EQ(num_turns, 3);
+  table_.at("resume").make();
+  EXPECT_TRUE(wait_for([&] { return num_turns > 100; }));
+  table_.at("finish").make();
+  EXPECT_TRUE(wait_for([&] { return has_ended.load(); }));
+  run.join();
+}
+
+TEST_F(LiveFeedTest, DoesNotKeepAPausedRunFromBeingInterrupted) {
+  table_.at("pause").make();
+  EXPECT_TRUE(feed_.WaitForTurn([] { return true; }));
+}
+
+TEST_F(LiveFeedTest, ChangesNothingByRequestsThatAreNotActions) {
+  for (const auto& [path, resource] : table_) {
+    EXPECT_EQ(resource.is_action, !path.starts_with("live.")) << path;
+  }
+}
+
+TEST(LivePoints, AreInTheFramesOfTheirKeyframes) {
+  LiveSnapshot snapshot;
+  snapshot.revision = 3;
+  // Ahead, right and up in the camera frame of memory.
+  snapshot.map.landmarks = {{5, Eigen::Vector3f(-2, 0.5f, 0.25f), {10, 20, 30}}};
+  const std::string bytes = LivePoints(snapshot);
+  ASSERT_EQ(bytes.size(), 28U);
+  EXPECT_EQ(ReadNumber<std::uint32_t>(bytes, 0, std::endian::little), 3U);
+  EXPECT_EQ(ReadNumber<std::uint32_t>(bytes, 4, std::endian::little), 1U);
+  EXPECT_EQ(ReadNumber<std::int32_t>(bytes, 8, std::endian::little), 5);
+  // Right, down, forward.
+  EXPECT_FLOAT_EQ(*ReadNumber<float>(bytes, 12, std::endian::little), 0.5f);
+  EXPECT_FLOAT_EQ(*ReadNumber<float>(bytes, 16, std::endian::little), -0.25f);
+  EXPECT_FLOAT_EQ(*ReadNumber<float>(bytes, 20, std::endian::little), 2.0f);
+  EXPECT_EQ(bytes.substr(24), std::string("\x0a\x14\x1e\0", 4));
+}
+
+}  // namespace
+}  // namespace orb360
