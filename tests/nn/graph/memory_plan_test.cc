@@ -80,7 +80,8 @@ TEST(MemoryPlan, TensorsOfRandomNetworksNeverOverlap) {
     const std::vector<FusedNode> nodes = FuseNodes(graph);
     const Lowered lowered = Lower(graph, nodes, backend, 16, 32);
     const std::vector<Step> steps = backend.MakeSteps(graph, nodes, lowered, 16, 32);
-    const BufferAssignment assignment = AssignBuffers(lowered, ScratchBytes(steps), /*keeps_values=*/false);
+    const BufferAssignment assignment =
+        AssignBuffers(lowered, ScratchBytes(steps), /*keeps_values=*/false);
     ExpectNoOverlap(assignment.pieces, assignment.offsets, assignment.bytes);
     if (HasFatalFailure()) return;
     EXPECT_GE(assignment.bytes, LeastBytes(assignment.pieces));
