@@ -1,6 +1,7 @@
 #include "nn/vulkan/instance.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string_view>
 #include <utility>
@@ -55,16 +56,24 @@ Instance::Instance(OnMessage on_message) {
   info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
   info.pApplicationInfo = &application;
   VkDebugUtilsMessengerCreateInfoEXT messenger{};
-  const char* const extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+  constexpr std::array kExtensions = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
+                                      VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+  const VkValidationFeatureEnableEXT barriers =
+      VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+  VkValidationFeaturesEXT features{};
   if (on_message) {
     RequireValidationLayer(loader);
     on_message_ = std::make_unique<OnMessage>(std::move(on_message));
     messenger = DescribeMessenger(on_message_.get());
+    features.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
+    features.enabledValidationFeatureCount = 1;
+    features.pEnabledValidationFeatures = &barriers;
+    messenger.pNext = &features;
     info.pNext = &messenger;  // for messages about the instance itself
     info.enabledLayerCount = 1;
     info.ppEnabledLayerNames = &kValidationLayer;
-    info.enabledExtensionCount = 1;
-    info.ppEnabledExtensionNames = &extension;
+    info.enabledExtensionCount = kExtensions.size();
+    info.ppEnabledExtensionNames = kExtensions.data();
   }
   VkInstance instance = VK_NULL_HANDLE;
   const VkResult result = loader.CreateInstance(&info, nullptr, &instance);
@@ -82,6 +91,7 @@ Instance::Instance(OnMessage on_message) {
         loader.GetInstanceProcAddr(instance, "vkCreateDebugUtilsMessengerEXT"));
     const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
         loader.GetInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT"));
+    messenger.pNext = nullptr;
     VkDebugUtilsMessengerEXT handle = VK_NULL_HANDLE;
     ORB360_CHECK(create(instance, &messenger, nullptr, &handle) == VK_SUCCESS);
     messenger_ = {handle, [instance, destroy](VkDebugUtilsMessengerEXT it) {

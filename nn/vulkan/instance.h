@@ -16,8 +16,8 @@ using OnMessage = std::function<void(const std::string&)>;
 /// Vulkan in this process.
 class Instance {
  public:
-  /// With `on_message`, the validation layer checks all calls and shaders. Throws UserError where
-  /// there is no Vulkan or, with `on_message`, no such layer.
+  /// With `on_message`, the validation layer checks all calls, shaders and barriers. Throws
+  /// UserError where there is no Vulkan or, with `on_message`, no such layer.
   explicit Instance(OnMessage on_message = {});
 
   const InstanceFunctions& functions() const { return functions_; }
