@@ -39,6 +39,7 @@ Executor::Workspace& Executor::Workspace::operator=(Workspace&&) noexcept = defa
 
 Executor::Executor(const Graph& graph, int height, int width, const ExecutorOptions& options) {
   ORB360_CHECK(options.threads >= 1, options.threads);
+  ORB360_CHECK(options.device.backend == nullptr || options.precision == DataType::kFloat);
   CheckImageSize(graph, height, width);
   const std::shared_ptr<const Backend> backend =
       options.device.backend != nullptr
