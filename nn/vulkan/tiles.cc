@@ -8,7 +8,7 @@ namespace {
 
 /// From large to small: 64 sums of an invocation fit into registers; 128 invocations are two to
 /// four subgroups. The small ones are for the inner levels of a network, which have few pixels.
-constexpr std::array kTiles = {
+constexpr std::array<ConvolutionTile, kTileCount> kTiles = {
     ConvolutionTile{32, 4, 4, 4, 0}, ConvolutionTile{32, 4, 2, 4, 0},
     ConvolutionTile{16, 8, 1, 4, 0}, ConvolutionTile{16, 4, 1, 4, 0},
     ConvolutionTile{8, 8, 1, 2, 0},  ConvolutionTile{8, 4, 1, 1, 0},

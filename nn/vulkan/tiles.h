@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include <orb360/nn/tensor.h>
 #include <orb360/nn/vulkan/devices.h>
 
@@ -20,7 +22,11 @@ struct ConvolutionTile {
   int columns = 0;  // pixels of an invocation, `width` apart
   int vectors = 0;  // of four output channels, of an invocation
   int chunk = 0;    // input channels in shared memory at once
+  friend auto operator<=>(const ConvolutionTile&, const ConvolutionTile&) = default;
 };
+
+/// Number of tiles to choose from.
+constexpr std::size_t kTileCount = 6;
 
 /// Chooses the tile by the kind of device: one with which each invocation computes much per value
 /// that it reads, as long as there are enough workgroups for all processors of the device. No

@@ -8,8 +8,11 @@
 
 namespace orb360::nn::vulkan {
 
-VulkanBackend::VulkanBackend(std::shared_ptr<const LogicalDevice> device)
-    : device_(std::move(device)), pipelines_(std::make_shared<Pipelines>(device_)) {}
+VulkanBackend::VulkanBackend(std::shared_ptr<const LogicalDevice> device,
+                             std::optional<VulkanDevice::Type> tiles_for)
+    : device_(std::move(device)),
+      pipelines_(std::make_shared<Pipelines>(device_)),
+      tiles_for_(tiles_for.value_or(device_->description().type)) {}
 
 NodeNeeds VulkanBackend::NeedsOf(const Graph&, const FusedNode& node) const {
   constexpr PortNeeds kPlanar{.layouts = PortNeeds::Layouts::kPlanar};
@@ -39,7 +42,7 @@ std::unique_ptr<const Program> VulkanBackend::MakeProgram(const Graph& graph,
                                                           Lowered lowered, int /*height*/,
                                                           int /*width*/, bool keeps_values) const {
   return std::make_unique<VulkanProgram>(graph, nodes, std::move(lowered), keeps_values, device_,
-                                         pipelines_);
+                                         pipelines_, tiles_for_);
 }
 
 }  // namespace orb360::nn::vulkan

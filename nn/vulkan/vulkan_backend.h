@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,7 +15,9 @@ namespace orb360::nn::vulkan {
 /// halo, and every node is one shader or a few.
 class VulkanBackend : public Backend {
  public:
-  explicit VulkanBackend(std::shared_ptr<const LogicalDevice> device);
+  /// `tiles_for` is the kind of device by which tiles are chosen; none: that of the device.
+  explicit VulkanBackend(std::shared_ptr<const LogicalDevice> device,
+                         std::optional<VulkanDevice::Type> tiles_for = {});
 
   /// Normalized convolutions stay single: the intermediate results of a chain fit into no cache of
   /// a graphics processor.
@@ -27,6 +30,7 @@ class VulkanBackend : public Backend {
  private:
   std::shared_ptr<const LogicalDevice> device_;
   std::shared_ptr<Pipelines> pipelines_;
+  VulkanDevice::Type tiles_for_;
 };
 
 }  // namespace orb360::nn::vulkan

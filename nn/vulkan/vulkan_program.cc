@@ -101,7 +101,7 @@ std::vector<std::size_t> ScratchOf(const Lowered& lowered, std::span<const Fused
 
 VulkanProgram::VulkanProgram(const Graph& graph, std::span<const FusedNode> nodes, Lowered lowered,
                              bool keeps_values, std::shared_ptr<const LogicalDevice> device,
-                             std::shared_ptr<Pipelines> pipelines)
+                             std::shared_ptr<Pipelines> pipelines, VulkanDevice::Type tiles_for)
     : device_(std::move(device)),
       pipelines_(std::move(pipelines)),
       lowered_(std::move(lowered)),
@@ -123,7 +123,7 @@ VulkanProgram::VulkanProgram(const Graph& graph, std::span<const FusedNode> node
       continue;
     }
     std::ranges::move(DispatchesOf(graph, nodes[std::get<std::size_t>(instruction.work)], operands,
-                                   device_->description().type, &constants),
+                                   tiles_for, &constants),
                       std::back_inserter(dispatches_));
   }
   Upload(constants.values());

@@ -21,10 +21,11 @@ namespace orb360::nn::vulkan {
 /// A network on a device: weights in its memory, and the launches of one run.
 class VulkanProgram : public Program {
  public:
-  /// Throws DeviceError where the device has too little memory or its driver fails.
+  /// Tiles are chosen as for a device of the kind `tiles_for`. Throws DeviceError where the device
+  /// has too little memory or its driver fails.
   VulkanProgram(const Graph& graph, std::span<const FusedNode> nodes, Lowered lowered,
                 bool keeps_values, std::shared_ptr<const LogicalDevice> device,
-                std::shared_ptr<Pipelines> pipelines);
+                std::shared_ptr<Pipelines> pipelines, VulkanDevice::Type tiles_for);
 
   std::unique_ptr<ProgramMemory> Allocate() const override;
   void Run(std::span<const std::span<const float>> inputs,

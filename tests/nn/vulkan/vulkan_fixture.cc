@@ -39,4 +39,9 @@ Device VulkanTest::OpenWith(const vulkan::LogicalDevice::Replace& replace) {
   return {std::move(name), std::make_shared<vulkan::VulkanBackend>(std::move(device))};
 }
 
+Device VulkanTest::OpenWithTilesFor(VulkanDevice::Type type) {
+  return {"test", std::make_shared<vulkan::VulkanBackend>(
+                      std::make_shared<const vulkan::LogicalDevice>(instance_, index_), type)};
+}
+
 }  // namespace orb360::nn

@@ -21,6 +21,8 @@ class VulkanTest : public ::testing::Test {
 
   /// Opens the device again, with functions replaced.
   Device OpenWith(const vulkan::LogicalDevice::Replace& replace);
+  /// Opens the device again, with the tiles of another kind of device.
+  Device OpenWithTilesFor(VulkanDevice::Type type);
 
   /// For the device that SetUp has opened.
   ExecutorOptions options() const { return {.device = device_}; }
