@@ -26,9 +26,10 @@ struct BufferAssignment {
   std::size_t separate_bytes = 0;    // if every value and scratch had memory of its own
 };
 
-/// Plans the memory of a lowered graph whose instructions need `scratch_bytes` each. Parts lie in their wholes, results replace inputs that are
-/// read for the last time if the kernel allows it, and the rest is packed by lifetime
-/// (memory_plan.h). With `keeps_values` every value keeps its memory to the end.
+/// Plans the memory of a lowered graph whose instructions need `scratch_bytes` each. Parts lie in
+/// their wholes, results replace inputs that are read for the last time if the kernel allows it,
+/// and the rest is packed by lifetime (memory_plan.h). With `keeps_values` every value keeps its
+/// memory to the end.
 BufferAssignment AssignBuffers(const Lowered& lowered, std::span<const std::size_t> scratch_bytes,
                                bool keeps_values);
 

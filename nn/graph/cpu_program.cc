@@ -54,8 +54,8 @@ std::unique_ptr<ProgramMemory> CpuProgram::Allocate() const {
                     "image");
   }
   for (std::size_t i = 0; i < lowered_.values.size(); ++i) {
-    memory->views.push_back(ViewOf(assignment_.buffers[i],
-                                   lowered_.values[i].format.shape.channels, memory->block.data()));
+    memory->views.push_back(ViewOf(assignment_.buffers[i], lowered_.values[i].format.shape.channels,
+                                   memory->block.data()));
   }
   const auto views = [&](const std::vector<int>& values) {
     std::vector<TensorView> list;

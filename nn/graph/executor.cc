@@ -31,8 +31,7 @@ void CheckImageSize(const Graph& graph, int height, int width) {
 
 }  // namespace
 
-Executor::Workspace::Workspace(const Executor& executor)
-    : memory_(executor.program_->Allocate()) {}
+Executor::Workspace::Workspace(const Executor& executor) : memory_(executor.program_->Allocate()) {}
 Executor::Workspace::~Workspace() = default;
 Executor::Workspace::Workspace(Workspace&&) noexcept = default;
 Executor::Workspace& Executor::Workspace::operator=(Workspace&&) noexcept = default;
@@ -49,8 +48,8 @@ Executor::Executor(const Graph& graph, int height, int width, const ExecutorOpti
       options.keeps_tensors ? KeepNodes(graph) : backend->Fuse(graph);
   Lowered lowered = Lower(graph, nodes, *backend, height, width);
   if (options.keeps_tensors) value_of_tensor_ = lowered.value_of_tensor;
-  program_ = backend->MakeProgram(graph, nodes, std::move(lowered), height, width,
-                                  options.keeps_tensors);
+  program_ =
+      backend->MakeProgram(graph, nodes, std::move(lowered), height, width, options.keeps_tensors);
   const auto shape = [&](int tensor) {
     return ShapeFor(graph.tensors[Index(tensor)], height, width);
   };
