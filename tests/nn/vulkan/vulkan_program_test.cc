@@ -1,6 +1,8 @@
 // Whole networks on a Vulkan device.
 
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <string>
 #include <thread>
 
@@ -13,6 +15,7 @@
 #include "tests/nn/vulkan/vulkan_fixture.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/nn/graph/network_file.h>
+#include <orb360/nn/models/depth_completion.h>
 
 namespace orb360::nn {
 namespace {
@@ -150,6 +153,51 @@ TEST_F(VulkanProgramTest, IsTurnedWithThePanorama) {
     EXPECT_EQ(different, 0u) << executor.outputs()[i].name;
   }
 }
+
+class VulkanReleasedNetworkSlow : public VulkanTest,
+                                  public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(VulkanReleasedNetworkSlow, CompletesAPanoramaAsTheCpuAndTheSameEveryTime) {
+  const Graph graph = ReadNetwork(std::filesystem::path(ORB360_SOURCE_DIR) / "weights" /
+                                  (std::string(GetParam()) + ".h5"));
+  const ImageSize size{512, 1024};
+  const PlainImage image = RandomImage({1, size.height, 3 * size.width}, 0, 255, 1);
+  const std::vector<std::uint8_t> rgb(image.values.begin(), image.values.end());
+  const PlainImage chance = RandomImage({1, size.height, size.width}, 0, 1, 2);
+  std::vector<float> depth(chance.values.size());
+  std::vector<float> confidence(chance.values.size());
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (chance.values[i] > 0.01) continue;
+    const auto row = static_cast<float>(i / 1024);
+    depth[i] = 2 + row / 100 + 100 * static_cast<float>(chance.values[i]);
+    confidence[i] = 1 - 50 * static_cast<float>(chance.values[i]);
+  }
+  const auto complete = [&](const ExecutorOptions& how) {
+    const DepthCompletion model(graph, size, how);
+    DepthCompletion::Workspace workspace(model);
+    return model.Complete({rgb, depth, confidence}, &workspace);
+  };
+  const CompletionOutput expected = complete({.threads = 2});
+  const CompletionOutput actual = complete(options());
+  const CompletionOutput again = complete(options());
+  EXPECT_TRUE(actual.depth == again.depth && actual.confidence == again.confidence);
+  double worst_depth = 0;  // of the logarithm
+  double worst_confidence = 0;
+  for (std::size_t i = 0; i < expected.depth.size(); ++i) {
+    const double error = std::log(actual.depth[i]) - std::log(expected.depth[i]);
+    const bool is_none = actual.depth[i] == 0 && expected.depth[i] == 0;
+    if (!is_none && !(std::abs(error) <= worst_depth)) worst_depth = std::abs(error);
+    const double difference = std::abs(actual.confidence[i] - expected.confidence[i]);
+    if (!(difference <= worst_confidence)) worst_confidence = difference;
+  }
+  // As far as the CPU may be from PyTorch.
+  EXPECT_LT(worst_depth, 1e-3);
+  EXPECT_LT(worst_confidence, 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, VulkanReleasedNetworkSlow,
+                         ::testing::Values("depth_completion", "encoder_decoder"),
+                         [](const auto& suite) { return std::string(suite.param); });
 
 }  // namespace
 }  // namespace orb360::nn
