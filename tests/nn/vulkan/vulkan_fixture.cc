@@ -12,6 +12,9 @@ namespace orb360::nn {
 
 void VulkanTest::SetUp() {
   try {
+    // As long as it exists, drivers and layers stay loaded, so that LeakSanitizer can name them.
+    static const auto* const stays = new vulkan::Instance([](const std::string&) {});
+    static_cast<void>(stays);
     instance_ = std::make_shared<vulkan::Instance>(
         [this](const std::string& message) { messages_.push_back(message); });
     VulkanDevices found;
