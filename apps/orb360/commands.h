@@ -22,6 +22,16 @@ inline const CLI::Validator kIsNumber(
     },
     "");
 
+/// Adds the option for the processor of the network, as nn::OpenDevice takes it.
+inline void AddDeviceOption(CLI::App* command, std::string* device) {
+  command
+      ->add_option("--device", *device,
+                   "Processor of the network: cpu; auto, the first GPU or else the CPU; vulkan or "
+                   "vulkan:N, a device of `orb360 devices`")
+      ->type_name("cpu|auto|vulkan[:N]")
+      ->capture_default_str();
+}
+
 /// Each of these adds a subcommand with its options to `app`. When the user chooses the subcommand,
 /// `*chosen` receives the command to run.
 void AddRunCommand(CLI::App* app, Command* chosen);
@@ -31,6 +41,7 @@ void AddGeoreferenceCommand(CLI::App* app, Command* chosen);
 void AddExportCommand(CLI::App* app, Command* chosen);
 void AddCalibrateCommand(CLI::App* app, Command* chosen);
 void AddConfigCommand(CLI::App* app, Command* chosen);
+void AddDevicesCommand(CLI::App* app, Command* chosen);
 void AddCompleteCommand(CLI::App* app, Command* chosen);
 void AddWeightsCommand(CLI::App* app, Command* chosen);
 void AddViewCommand(CLI::App* app, Command* chosen);

@@ -21,6 +21,7 @@
 #include "slam/io/sparse_file.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/nn/models/default_weights.h>
+#include <orb360/nn/vulkan/devices.h>
 #include <orb360/slam/depth/depth_completer.h>
 #include <orb360/slam/io/depth_image.h>
 
@@ -34,6 +35,7 @@ struct CompleteOptions {
   std::string out;
   int threads = 0;  // 0: as many as the machine has
   bool uses_bfloat16 = false;
+  std::string device = "cpu";  // as nn::OpenDevice takes it
   bool json = false;
 };
 
@@ -83,15 +85,27 @@ void WriteFractionImage(const std::filesystem::path& path, const cv::Mat& fracti
 /// The network, prepared again whenever the size of the images changes.
 class Completer {
  public:
-  explicit Completer(const CompleteOptions& options) : options_(options) {}
+  explicit Completer(const CompleteOptions& options)
+      : options_(options), device_(nn::OpenDevice(options.device)) {
+    if (device_.backend != nullptr && options.uses_bfloat16) {
+      throw UserError("--bfloat16 is for the CPU: leave it out, or use --device cpu");
+    }
+  }
 
   DenseDepth Complete(const cv::Mat& image, const SparseDepth& sparse) {
     if (!completer_ || completer_->camera().width() != image.cols ||
         completer_->camera().height() != image.rows) {
       Prepare(image.size());
     }
-    return completer_->Complete(image, sparse);
+    DenseDepth dense = completer_->Complete(image, sparse);
+    if (!completer_->device_failure().empty() && device_.backend != nullptr) {
+      std::cerr << "orb360: warning: " << completer_->device_failure() << '\n';
+      device_ = {};
+    }
+    return dense;
   }
+  /// Returns the name of the processor that completed the last image.
+  const std::string& device() const { return completer_->device(); }
 
  private:
   void Prepare(cv::Size size) {
@@ -99,12 +113,14 @@ class Completer {
                             ? options_.threads
                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     completer_.reset();
-    completer_.emplace(options_.weights,
-                       DepthCompleterOptions{
-                           .size = size, .threads = threads, .bfloat16 = options_.uses_bfloat16});
+    completer_.emplace(options_.weights, DepthCompleterOptions{.size = size,
+                                                               .threads = threads,
+                                                               .bfloat16 = options_.uses_bfloat16,
+                                                               .device = device_});
   }
 
   const CompleteOptions options_;
+  nn::Device device_;
   std::optional<DepthCompleter> completer_;
 };
 
@@ -135,7 +151,8 @@ nlohmann::json CompleteOne(const CompleteOptions& options, const std::filesystem
   WriteDepthImage(out, dense.range);
   nlohmann::json result = {{"sparse", sparse_path.string()},
                            {"depth", out.string()},
-                           {"confidence", write_fraction("_confidence", dense.confidence)}};
+                           {"confidence", write_fraction("_confidence", dense.confidence)},
+                           {"device", completer->device()}};
   if (!dense.ground.empty()) result["ground"] = write_fraction("_ground", dense.ground);
   if (dense.log_camera_height) {
     result["camera_height_guess"] = std::exp(*dense.log_camera_height);
@@ -225,6 +242,7 @@ void AddCompleteCommand(CLI::App* app, Command* chosen) {
       ->capture_default_str();
   command->add_flag("--bfloat16", options->uses_bfloat16,
                     "Convolve in bfloat16: faster and less exact, on processors that have it");
+  AddDeviceOption(command, &options->device);
   command->callback([options, chosen] {
     *chosen = [options] {
       if (options->weights.empty()) options->weights = nn::DefaultWeights().string();

@@ -50,6 +50,7 @@ int Main(int argc, char** argv) {
   orb360::AddConfigCommand(&app, &command);
   orb360::AddCompleteCommand(&app, &command);
   orb360::AddWeightsCommand(&app, &command);
+  orb360::AddDevicesCommand(&app, &command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -31,6 +31,8 @@
 #include "slam/pipeline/make_sparse_model.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/nn/base/option_schema.h>
+#include <orb360/nn/vulkan/devices.h>
+#include <orb360/slam/depth/depth_completer.h>
 #include <orb360/slam/io/config.h>
 #include <orb360/slam/io/map_file.h>
 #include <orb360/slam/io/sequence.h>
@@ -175,6 +177,7 @@ void RequireInRange(const ScaleOptions& scale, const std::string& input) {
 }
 
 int Run(const RunOptions& options) {
+  const nn::Device device = nn::OpenDevice(options.device);
   Options system_options;
   if (!options.config.empty()) {
     OptionSchema schema;
@@ -225,7 +228,7 @@ int Run(const RunOptions& options) {
   system_options.num_threads = threads;
   System system(EquirectangularCamera(size.width, size.height), system_options, mask);
   if (options.weights != "none") {
-    system.EnableDepth(options.weights, output.folder() / "depth.tmp");
+    system.EnableDepth(options.weights, output.folder() / "depth.tmp", device);
   }
   if (stored) options.localizes ? system.Localize(*stored) : system.LoadMap(*stored);
   stored.reset();
@@ -239,6 +242,10 @@ int Run(const RunOptions& options) {
   record.seconds = SecondsSince(start);
   const std::optional<DenseOutput> dense =
       FuseDepth(reconstruction, options, threads, output, &system, &record);
+  const DepthCompleter* const completer = system.depth_completer();
+  if (completer != nullptr && !completer->device_failure().empty()) {
+    Warn(completer->device_failure(), &record);
+  }
   const Rigid3 file_world_from_map = output.WorldOf(reconstruction);
   const SparseModel model =
       MakeSparseModel(reconstruction, system.maps(), EquirectangularCamera(size.width, size.height),
@@ -246,10 +253,10 @@ int Run(const RunOptions& options) {
   const GeoreferenceResult placed =
       PlaceRun(model, positions, reconstruction.up.has_value(), ParseUtcStart(options.positions));
   if (!placed.failure.empty() && positions->is_from_input) Warn(placed.failure, &record);
-  const nlohmann::json summary =
-      Summarize(reconstruction, record, dense,
-                {options.input, options.sequence.lens, fps, options.mask, masked_fraction,
-                 options.weights, threads, placed.description});
+  const nlohmann::json summary = Summarize(
+      reconstruction, record, dense,
+      {options.input, options.sequence.lens, fps, options.mask, masked_fraction, options.weights,
+       completer != nullptr ? completer->device() : "none", threads, placed.description});
   output.Finish(reconstruction, summary, dense);
   if (!options.map_out.empty()) {
     WriteLargestMap(options.map_out, size.width, file_world_from_map, system);

@@ -26,6 +26,7 @@ struct RunOptions {
   SequenceOptions sequence;
   PositionOptions positions;
   std::string weights;
+  std::string device = "cpu";  // as nn::OpenDevice takes it
   bool saves_sparse = false;
   bool saves_depth = false;
   bool saves_views = false;

@@ -113,6 +113,7 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
       {"levelled", reconstruction.up.has_value()},
       {"threads", description.threads},
       {"weights", description.weights},
+      {"device", description.device},
       {"positions", description.positions},
       {"interrupted", CaughtInterrupt() != 0 || record.failure != nullptr},
       {"warnings", record.warnings},

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "apps/orb360/commands.h"
+#include "nn/graph/fusion.h"
+#include "nn/graph/layer_cost.h"
 #include <orb360/nn/graph/executor.h>
 #include <orb360/nn/graph/graph.h>
 #include <orb360/nn/graph/network_file.h>
@@ -16,6 +18,7 @@ namespace {
 struct InspectOptions {
   std::string file;
   std::vector<int> size = {1024, 512};  // width and height, pixels
+  std::vector<double> roofline;         // 10^9 operations and 10^9 bytes a second, or empty
 };
 
 std::string ToText(const nn::Shape& shape) {
@@ -62,6 +65,34 @@ std::int64_t ParametersOf(const nn::Graph& graph, const nn::Node& node) {
   return count;
 }
 
+/// Prints the least time of each pass on a processor of the given speed and bandwidth.
+void PrintRoofline(const nn::Graph& graph, const InspectOptions& options, std::ostream& out) {
+  const double speed = options.roofline[0] * 1e9;
+  const double bandwidth = options.roofline[1] * 1e9;
+  const std::vector<nn::FusedNode> nodes = nn::FuseConvolutions(graph);
+  const std::vector<nn::LayerCost> costs =
+      nn::LayerCosts(graph, nodes, options.size[1], options.size[0]);
+  std::vector<std::vector<std::string>> rows = {
+      {"pass", "operation", "limited by", "MFLOP", "MB", "microseconds"}};
+  double total = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto operations = static_cast<double>(costs[i].operations);
+    const auto bytes = static_cast<double>(costs[i].bytes);
+    if (bytes == 0) continue;
+    const double seconds = nn::RooflineSeconds(costs[i], speed, bandwidth);
+    total += seconds;
+    rows.push_back({nodes[i].node.name, nn::NameOf(nodes[i].node.operation),
+                    operations / speed > bytes / bandwidth ? "arithmetic" : "memory",
+                    Formatted("%.2f", operations / 1e6), Formatted("%.2f", bytes / 1e6),
+                    Formatted("%.1f", seconds * 1e6)});
+  }
+  out << '\n';
+  PrintTable(rows, out);
+  out << "\nat least         " << Formatted("%.2f", total * 1e3) << " ms with "
+      << Formatted("%g", options.roofline[0]) << " GFLOP/s and "
+      << Formatted("%g", options.roofline[1]) << " GB/s\n";
+}
+
 int Inspect(const InspectOptions& options) {
   const nn::Graph graph = nn::ReadNetwork(options.file);
   const int width = options.size[0];
@@ -105,6 +136,7 @@ int Inspect(const InspectOptions& options) {
       << " MB without sharing\n"
       << "normalisation    " << graph.normalisation << '\n'
       << "provenance       " << graph.provenance << '\n';
+  if (!options.roofline.empty()) PrintRoofline(graph, options, out);
   return EXIT_SUCCESS;
 }
 
@@ -122,6 +154,15 @@ void AddWeightsCommand(CLI::App* app, Command* chosen) {
       ->check(CLI::Range(1, 1 << 15))
       ->type_name("W H")
       ->capture_default_str();
+  inspect
+      ->add_option(
+          "--roofline", options->roofline,
+          "Also print the least time of each pass on a processor that computes so many 10^9 "
+          "operations and moves so many 10^9 bytes a second")
+      ->expected(2)
+      ->check(CLI::Range(1e-3, 1e9))
+      ->check(kIsNumber)
+      ->type_name("GFLOPS GBPS");
   inspect->callback([options, chosen] { *chosen = [options] { return Inspect(*options); }; });
 }
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "nn/graph/fusion.h"
+#include "nn/graph/program.h"
 #include <orb360/nn/graph/graph.h>
 #include <orb360/nn/tensor.h>
 
@@ -32,20 +32,11 @@ struct NodeNeeds {
   std::vector<int> replaceable;
 };
 
-/// One kernel with its packed weights, for tensors of the requested formats. It can run on several
-/// threads at once and does not allocate.
-struct Step {
-  using Run =
-      std::function<void(std::span<const TensorView> inputs, std::span<const TensorView> outputs,
-                         std::span<std::byte> scratch)>;
-  Run run;
-  /// Bytes of memory, aligned to kAlignment, that one run needs for itself.
-  std::size_t scratch_bytes = 0;
-};
+struct Lowered;
 
 /// The interface to one kind of processor, and the only connection between a graph and kernels:
-/// whoever implements it can execute every network. Concatenation and slices need only the kernel
-/// of MakeCopy.
+/// whoever implements it can execute every network. Concatenation and slices need no kernel but
+/// that of a copy of channels.
 class Backend {
  public:
   Backend() = default;
@@ -53,14 +44,16 @@ class Backend {
   Backend& operator=(const Backend&) = delete;
   virtual ~Backend() = default;
 
+  /// Returns the graph's nodes, merged where the kernels do several in one pass.
+  virtual std::vector<FusedNode> Fuse(const Graph& graph) const { return FuseNodes(graph); }
   virtual NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const = 0;
-  /// Returns one step for each node, for images of that size. The steps of concatenations and
-  /// slices are empty.
-  virtual std::vector<Step> MakeSteps(const Graph& graph, std::span<const FusedNode> nodes,
-                                      int height, int width) const = 0;
-  /// Returns a step that copies `count` channels of its only input to its only output, between any
-  /// formats.
-  virtual Step MakeCopy(int from_first, int to_first, int count) const = 0;
+  /// Returns the program of `lowered`, made of `nodes` for images of that size: weights packed,
+  /// memory planned. With `keeps_values` the result of every instruction remains
+  /// (Program::Find).
+  virtual std::unique_ptr<const Program> MakeProgram(const Graph& graph,
+                                                     std::span<const FusedNode> nodes,
+                                                     Lowered lowered, int height, int width,
+                                                     bool keeps_values) const = 0;
 };
 
 }  // namespace orb360::nn

@@ -4,6 +4,8 @@
 #include <limits>
 #include <numeric>
 
+#include <orb360/nn/base/check.h>
+
 namespace orb360::nn {
 namespace {
 
@@ -17,8 +19,10 @@ struct Whole {
 
 class BufferAssigner {
  public:
-  BufferAssigner(const Lowered& lowered, bool keeps_values)
+  BufferAssigner(const Lowered& lowered, std::span<const std::size_t> scratch_bytes,
+                 bool keeps_values)
       : lowered_(lowered),
+        scratch_bytes_(scratch_bytes),
         keeps_values_(keeps_values),
         whole_of_(lowered.values.size()),
         first_channel_(lowered.values.size()),
@@ -135,10 +139,10 @@ class BufferAssigner {
     }
     const std::size_t first_scratch = assignment.pieces.size();
     int step = 0;
-    for (const Instruction& instruction : lowered_.instructions) {
+    for (const std::size_t bytes : scratch_bytes_) {
       ++step;
-      assignment.pieces.push_back({instruction.step.scratch_bytes, step, step});
-      assignment.separate_bytes += instruction.step.scratch_bytes;
+      assignment.pieces.push_back({bytes, step, step});
+      assignment.separate_bytes += bytes;
     }
     MemoryPlan plan = PlanMemory(assignment.pieces);
     assignment.scratch.assign(plan.offsets.begin() + static_cast<std::ptrdiff_t>(first_scratch),
@@ -157,6 +161,7 @@ class BufferAssigner {
   }
 
   const Lowered& lowered_;
+  const std::span<const std::size_t> scratch_bytes_;  // by instruction
   const bool keeps_values_;
   std::vector<int> whole_of_;       // by value
   std::vector<int> first_channel_;  // by value, of its whole
@@ -166,8 +171,10 @@ class BufferAssigner {
 
 }  // namespace
 
-BufferAssignment AssignBuffers(const Lowered& lowered, bool keeps_values) {
-  return BufferAssigner(lowered, keeps_values).Run();
+BufferAssignment AssignBuffers(const Lowered& lowered, std::span<const std::size_t> scratch_bytes,
+                               bool keeps_values) {
+  ORB360_CHECK(scratch_bytes.size() == lowered.instructions.size(), scratch_bytes.size());
+  return BufferAssigner(lowered, scratch_bytes, keeps_values).Run();
 }
 
 TensorView ViewOf(const BufferAssignment::Buffer& buffer, int channels, std::byte* memory) {

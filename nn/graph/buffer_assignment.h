@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "nn/graph/lowering.h"
@@ -25,10 +26,12 @@ struct BufferAssignment {
   std::size_t separate_bytes = 0;    // if every value and scratch had memory of its own
 };
 
-/// Plans the memory of a lowered graph. Parts lie in their wholes, results replace inputs that are
-/// read for the last time if the kernel allows it, and the rest is packed by lifetime
-/// (memory_plan.h). With `keeps_values` every value keeps its memory to the end.
-BufferAssignment AssignBuffers(const Lowered& lowered, bool keeps_values);
+/// Plans the memory of a lowered graph whose instructions need `scratch_bytes` each. Parts lie in
+/// their wholes, results replace inputs that are read for the last time if the kernel allows it,
+/// and the rest is packed by lifetime (memory_plan.h). With `keeps_values` every value keeps its
+/// memory to the end.
+BufferAssignment AssignBuffers(const Lowered& lowered, std::span<const std::size_t> scratch_bytes,
+                               bool keeps_values);
 
 /// Returns the value in the block that starts at `memory`.
 TensorView ViewOf(const BufferAssignment::Buffer& buffer, int channels, std::byte* memory);

@@ -11,6 +11,7 @@
 
 #include "nn/base/cpu.h"
 #include "nn/graph/cpu_needs.h"
+#include "nn/graph/cpu_program.h"
 #include "nn/kernels/average_pool.h"
 #include "nn/kernels/confidence_pool.h"
 #include "nn/kernels/convex_upsample.h"
@@ -196,6 +197,12 @@ Step MakeStep(const Graph& graph, const FusedNode& fused, int height, int width,
   return {std::visit(RunMaker(graph, fused, threads), fused.node.operation)};
 }
 
+Step MakeCopy(const ChannelCopy& copy, int threads) {
+  return {[=](Views in, Views out, Scratch) {
+    CopyChannels(in[0], copy.from_first, out[0], copy.to_first, copy.count, threads);
+  }};
+}
+
 }  // namespace
 
 CpuBackend::CpuBackend(int threads, DataType precision) : threads_(threads), precision_(precision) {
@@ -208,14 +215,26 @@ NodeNeeds CpuBackend::NeedsOf(const Graph& graph, const FusedNode& node) const {
   return CpuNeedsOf(graph, node, precision_);
 }
 
+std::unique_ptr<const Program> CpuBackend::MakeProgram(const Graph& graph,
+                                                       std::span<const FusedNode> nodes,
+                                                       Lowered lowered, int height, int width,
+                                                       bool keeps_values) const {
+  std::vector<Step> steps = MakeSteps(graph, nodes, lowered, height, width);
+  return std::make_unique<CpuProgram>(std::move(lowered), std::move(steps), keeps_values, threads_);
+}
+
 std::vector<Step> CpuBackend::MakeSteps(const Graph& graph, std::span<const FusedNode> nodes,
-                                        int height, int width) const {
-  std::vector<Step> steps(nodes.size());
+                                        const Lowered& lowered, int height, int width) const {
+  std::vector<Step> steps(lowered.instructions.size());
   std::exception_ptr failure;  // such as too little memory; it must not leave a parallel loop
 #pragma omp parallel for num_threads(threads_) schedule(dynamic)
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
+  for (std::size_t i = 0; i < steps.size(); ++i) {
     try {
-      steps[i] = MakeStep(graph, nodes[i], height, width, precision_, threads_);
+      const auto* const copy = std::get_if<ChannelCopy>(&lowered.instructions[i].work);
+      steps[i] = copy != nullptr
+                     ? MakeCopy(*copy, threads_)
+                     : MakeStep(graph, nodes[std::get<std::size_t>(lowered.instructions[i].work)],
+                                height, width, precision_, threads_);
     } catch (...) {
 #pragma omp critical
       failure = std::current_exception();
@@ -223,12 +242,6 @@ std::vector<Step> CpuBackend::MakeSteps(const Graph& graph, std::span<const Fuse
   }
   if (failure) std::rethrow_exception(failure);
   return steps;
-}
-
-Step CpuBackend::MakeCopy(int from_first, int to_first, int count) const {
-  return {[=, threads = threads_](Views in, Views out, Scratch) {
-    CopyChannels(in[0], from_first, out[0], to_first, count, threads);
-  }};
 }
 
 }  // namespace orb360::nn

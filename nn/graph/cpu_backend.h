@@ -1,8 +1,26 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
 #include "nn/graph/backend.h"
+#include "nn/graph/lowering.h"
 
 namespace orb360::nn {
+
+/// One kernel with its packed weights, for tensors of the requested formats. It can run on several
+/// threads at once and does not allocate.
+struct Step {
+  using Run =
+      std::function<void(std::span<const TensorView> inputs, std::span<const TensorView> outputs,
+                         std::span<std::byte> scratch)>;
+  Run run;
+  /// Bytes of memory, aligned to kAlignment, that one run needs for itself.
+  std::size_t scratch_bytes = 0;
+};
 
 /// The backend that uses the kernels of nn/kernels.
 class CpuBackend : public Backend {
@@ -12,9 +30,12 @@ class CpuBackend : public Backend {
   explicit CpuBackend(int threads, DataType precision = DataType::kFloat);
 
   NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const override;
-  std::vector<Step> MakeSteps(const Graph& graph, std::span<const FusedNode> nodes, int height,
-                              int width) const override;
-  Step MakeCopy(int from_first, int to_first, int count) const override;
+  std::unique_ptr<const Program> MakeProgram(const Graph& graph, std::span<const FusedNode> nodes,
+                                             Lowered lowered, int height, int width,
+                                             bool keeps_values) const override;
+  /// Returns one step for each instruction.
+  std::vector<Step> MakeSteps(const Graph& graph, std::span<const FusedNode> nodes,
+                              const Lowered& lowered, int height, int width) const;
 
  private:
   int threads_;

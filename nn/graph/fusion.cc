@@ -127,6 +127,10 @@ std::vector<FusedNode> FuseNodes(const Graph& graph) {
   return Needed(graph, MergeChains(graph, ConvolutionFusion(graph).Run()));
 }
 
+std::vector<FusedNode> FuseConvolutions(const Graph& graph) {
+  return Needed(graph, ConvolutionFusion(graph).Run());
+}
+
 std::vector<FusedNode> KeepNodes(const Graph& graph) {
   std::vector<FusedNode> nodes;
   for (const Node& node : graph.nodes) nodes.push_back({.node = node});

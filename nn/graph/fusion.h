@@ -35,6 +35,9 @@ struct FusedNode {
 /// are removed.
 std::vector<FusedNode> FuseNodes(const Graph& graph);
 
+/// The same without the normalized convolutions' neighbours.
+std::vector<FusedNode> FuseConvolutions(const Graph& graph);
+
 /// Returns the graph's nodes unchanged.
 std::vector<FusedNode> KeepNodes(const Graph& graph);
 

@@ -19,13 +19,11 @@ class Lowering {
   Lowering(const Graph& graph, std::span<const FusedNode> nodes, const Backend& backend, int height,
            int width)
       : graph_(graph),
-        backend_(backend),
         height_(height),
         width_(width),
         nodes_(nodes),
         needs_(CollectNeeds(graph, nodes, backend)),
         formats_(ChooseFormats(graph, nodes, needs_)),
-        steps_(backend.MakeSteps(graph, nodes, height, width)),
         copies_(graph.tensors.size()) {
     lowered_.value_of_tensor.assign(graph.tensors.size(), -1);
   }
@@ -39,7 +37,7 @@ class Lowering {
       } else if (const auto* slice = std::get_if<SliceOp>(&node.operation)) {
         AddSlice(node, *slice);
       } else {
-        AddNode(node, needs_[i], std::move(steps_[i]));
+        AddNode(i);
       }
     }
     for (const Graph::Output& output : graph_.outputs) {
@@ -62,7 +60,7 @@ class Lowering {
   }
   void AddCopy(int from, int from_first, int to, int to_first, int count) {
     lowered_.instructions.push_back({"copy of " + graph_.tensors[Index(value(from).tensor)].name,
-                                     backend_.MakeCopy(from_first, to_first, count),
+                                     ChannelCopy{from_first, to_first, count},
                                      {from},
                                      {to},
                                      {}});
@@ -90,9 +88,11 @@ class Lowering {
     return copy;
   }
 
-  void AddNode(const Node& node, const NodeNeeds& needs, Step step) {
+  void AddNode(std::size_t index) {
+    const Node& node = nodes_[index].node;
+    const NodeNeeds& needs = needs_[index];
     const Format of_result = formats_[Index(node.outputs.front())];
-    Instruction instruction{node.name, std::move(step), {}, {}, needs.replaceable};
+    Instruction instruction{node.name, index, {}, {}, needs.replaceable};
     for (std::size_t i = 0; i < node.inputs.size(); ++i) {
       instruction.inputs.push_back(ForInput(node.inputs[i], needs.inputs[i], of_result));
     }
@@ -136,13 +136,11 @@ class Lowering {
   }
 
   const Graph& graph_;
-  const Backend& backend_;
   const int height_;
   const int width_;
   const std::span<const FusedNode> nodes_;
   const std::vector<NodeNeeds> needs_;
   const std::vector<Format> formats_;
-  std::vector<Step> steps_;               // by node
   std::vector<std::vector<int>> copies_;  // by tensor: its values in other formats
   Lowered lowered_;
 };

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "nn/graph/backend.h"
@@ -21,10 +23,18 @@ struct Value {
   int first_channel = 0;
 };
 
-/// One step and the values that it reads and writes.
+/// Copies `count` channels of the only input to the only output, between any formats.
+struct ChannelCopy {
+  int from_first = 0;
+  int to_first = 0;
+  int count = 0;
+};
+
+/// One step of a run and the values that it reads and writes.
 struct Instruction {
   std::string name;  // of the node, or of the tensor that is copied
-  Step step;
+  /// Index of the node, or what is copied.
+  std::variant<std::size_t, ChannelCopy> work;
   std::vector<int> inputs;       // indices of values
   std::vector<int> outputs;      // likewise; several instructions may fill parts of one value
   std::vector<int> replaceable;  // NodeNeeds::replaceable

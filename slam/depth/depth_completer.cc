@@ -1,5 +1,7 @@
 #include <cmath>
 #include <span>
+#include <string>
+#include <utility>
 
 #include <opencv2/imgproc.hpp>
 
@@ -13,7 +15,8 @@ namespace {
 
 nn::ExecutorOptions HowToRun(const DepthCompleterOptions& options) {
   return {.threads = options.threads,
-          .precision = options.bfloat16 ? nn::DataType::kBFloat16 : nn::DataType::kFloat};
+          .precision = options.bfloat16 ? nn::DataType::kBFloat16 : nn::DataType::kFloat,
+          .device = options.device};
 }
 
 template <typename T>
@@ -24,13 +27,49 @@ std::span<const T> PixelsOf(const cv::Mat& image) {
 }  // namespace
 
 struct DepthCompleter::Network {
-  Network(const std::filesystem::path& weights, const DepthCompleterOptions& options)
-      : model(nn::ReadNetwork(weights), {options.size.height, options.size.width},
-              HowToRun(options)),
-        workspace(model) {}
+  /// A network for one processor.
+  struct Prepared {
+    Prepared(const nn::Graph& graph, const DepthCompleterOptions& options)
+        : model(graph, {options.size.height, options.size.width}, HowToRun(options)),
+          workspace(model) {}
 
-  nn::DepthCompletion model;
-  nn::DepthCompletion::Workspace workspace;
+    nn::DepthCompletion model;
+    nn::DepthCompletion::Workspace workspace;
+  };
+
+  Network(const std::filesystem::path& weights, DepthCompleterOptions how_to_run)
+      : graph(nn::ReadNetwork(weights)), options(std::move(how_to_run)) {
+    try {
+      prepared = std::make_unique<Prepared>(graph, options);
+    } catch (const nn::DeviceError& error) {
+      GoOnWithCpu(error);
+    }
+    if (options.device.backend == nullptr) graph = {};
+  }
+
+  void GoOnWithCpu(const nn::DeviceError& error) {
+    failure = std::string(error.what()) + "; the network runs on the CPU instead";
+    options.device = {};
+    prepared.reset();
+    prepared = std::make_unique<Prepared>(graph, options);
+    graph = {};
+  }
+
+  nn::CompletionOutput Complete(const nn::CompletionInput& input) {
+    if (options.device.backend != nullptr) {
+      try {
+        return prepared->model.Complete(input, &prepared->workspace);
+      } catch (const nn::DeviceError& error) {
+        GoOnWithCpu(error);
+      }
+    }
+    return prepared->model.Complete(input, &prepared->workspace);
+  }
+
+  nn::Graph graph;  ///< Kept as long as the CPU may have to go on.
+  DepthCompleterOptions options;
+  std::unique_ptr<Prepared> prepared;
+  std::string failure;
 };
 
 DepthCompleter::DepthCompleter(const std::filesystem::path& weights,
@@ -40,6 +79,10 @@ DepthCompleter::DepthCompleter(const std::filesystem::path& weights,
 
 DepthCompleter::~DepthCompleter() = default;
 
+const std::string& DepthCompleter::device() const { return network_->options.device.name; }
+
+const std::string& DepthCompleter::device_failure() const { return network_->failure; }
+
 DenseDepth DepthCompleter::Complete(const cv::Mat& color, const SparseDepth& sparse) {
   const cv::Size size(camera_.width(), camera_.height());
   ORB360_CHECK(color.type() == CV_8UC3 && color.size() == size, color.cols, color.rows);
@@ -47,9 +90,8 @@ DenseDepth DepthCompleter::Complete(const cv::Mat& color, const SparseDepth& spa
   cv::Mat rgb;
   cv::cvtColor(color, rgb, cv::COLOR_BGR2RGB);
   nn::CompletionOutput dense =
-      network_->model.Complete({PixelsOf<unsigned char>(rgb), PixelsOf<float>(sparse.range),
-                                PixelsOf<float>(sparse.confidence)},
-                               &network_->workspace);
+      network_->Complete({PixelsOf<unsigned char>(rgb), PixelsOf<float>(sparse.range),
+                          PixelsOf<float>(sparse.confidence)});
   DenseDepth depth{cv::Mat(size, CV_32F, dense.depth.data()).clone(),
                    cv::Mat(size, CV_32F, dense.confidence.data()).clone(), color};
   if (!dense.ground.empty()) depth.ground = cv::Mat(size, CV_32F, dense.ground.data()).clone();

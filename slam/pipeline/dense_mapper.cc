@@ -10,11 +10,13 @@
 
 namespace orb360 {
 DenseMapper::DenseMapper(const std::filesystem::path& weights, const std::filesystem::path& folder,
-                         const DepthOptions& options, int num_threads)
+                         const DepthOptions& options, int num_threads, const nn::Device& device)
     : options_(options),
       num_threads_(num_threads),
       depth_maps_(folder),
-      completer_(weights, {.size = {2 * options.height, options.height}, .threads = num_threads}),
+      completer_(
+          weights,
+          {.size = {2 * options.height, options.height}, .threads = num_threads, .device = device}),
       images_(folder / "images", {camera().width(), camera().height()}, options.stereo),
       completion_(&completer_, options) {}
 

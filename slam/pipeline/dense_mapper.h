@@ -21,14 +21,15 @@ namespace orb360 {
 /// measurements of the ground from them.
 class DenseMapper {
  public:
-  /// `weights` is a network file. `folder` contains the images and depth maps during the lifetime
-  /// of the object; it is created here and removed by the destructor. Throws UserError where the
-  /// network cannot be read or the folder cannot be created.
+  /// `weights` is a network file, which runs on `device`. `folder` contains the images and depth
+  /// maps during the lifetime of the object; it is created here and removed by the destructor.
+  /// Throws UserError where the network cannot be read or the folder cannot be created.
   DenseMapper(const std::filesystem::path& weights, const std::filesystem::path& folder,
-              const DepthOptions& options, int num_threads);
+              const DepthOptions& options, int num_threads, const nn::Device& device = {});
 
   /// The camera of the images that are completed.
   const EquirectangularCamera& camera() const { return completer_.camera(); }
+  const DepthCompleter& completer() const { return completer_; }
   KeptImages& images() { return images_; }
 
   /// Waits until all images are on disk, and for the completion of a keyframe that has not been

@@ -58,11 +58,11 @@ void Pipeline::LoadMap(const StoredMap& stored, bool keeps_map) {
 }
 
 void Pipeline::EnableDepth(const std::filesystem::path& weights,
-                           const std::filesystem::path& folder) {
+                           const std::filesystem::path& folder, const nn::Device& device) {
   ORB360_CHECK(num_frames_ == 0 && !dense_, num_frames_);
   DepthOptions options = options_.depth;
   options.height = std::min(options.height, camera_.height());  // More would show nothing more.
-  dense_.emplace(weights, folder, options, num_threads_);
+  dense_.emplace(weights, folder, options, num_threads_, device);
 }
 
 FrameReport Pipeline::Process(const Frame& frame) {

@@ -27,7 +27,8 @@ class Pipeline {
 
   // These are the functions of System.
   void LoadMap(const StoredMap& stored, bool keeps_map);
-  void EnableDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
+  void EnableDepth(const std::filesystem::path& weights, const std::filesystem::path& folder,
+                   const nn::Device& device);
   void Watch(const Watcher& watcher) { watcher_ = watcher; }
   FrameReport Process(const Frame& frame);
   Reconstruction Finish(const Positions& positions);

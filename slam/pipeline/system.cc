@@ -17,9 +17,9 @@ void System::LoadMap(const StoredMap& stored) { pipeline_->LoadMap(stored, false
 
 void System::Localize(const StoredMap& stored) { pipeline_->LoadMap(stored, true); }
 
-void System::EnableDepth(const std::filesystem::path& weights,
-                         const std::filesystem::path& folder) {
-  pipeline_->EnableDepth(weights, folder);
+void System::EnableDepth(const std::filesystem::path& weights, const std::filesystem::path& folder,
+                         const nn::Device& device) {
+  pipeline_->EnableDepth(weights, folder, device);
 }
 
 void System::Watch(const std::function<void(const PresentState&)>& watcher) {
@@ -46,6 +46,11 @@ const DepthMapStore* System::depth_maps() const {
   if (!dense) return nullptr;
   if (dense->failure()) std::rethrow_exception(dense->failure());
   return &dense->depth_maps();
+}
+
+const DepthCompleter* System::depth_completer() const {
+  const std::optional<DenseMapper>& dense = pipeline_->dense();
+  return dense ? &dense->completer() : nullptr;
 }
 
 }  // namespace orb360

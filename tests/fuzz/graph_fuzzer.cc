@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <memory>
 #include <string_view>
+#include <vector>
 
 #include "nn/graph/buffer_assignment.h"
 #include "nn/graph/cpu_needs.h"
@@ -24,11 +26,10 @@ class NoKernels : public Backend {
   NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const override {
     return CpuNeedsOf(graph, node, precision_);
   }
-  std::vector<Step> MakeSteps(const Graph&, std::span<const FusedNode> nodes, int,
-                              int) const override {
-    return std::vector<Step>(nodes.size());
+  std::unique_ptr<const Program> MakeProgram(const Graph&, std::span<const FusedNode>, Lowered, int,
+                                             int, bool) const override {
+    return nullptr;
   }
-  Step MakeCopy(int, int, int) const override { return {}; }
 
  private:
   DataType precision_;
@@ -58,7 +59,8 @@ void Check(std::string_view text) {
       for (const DataType precision : {DataType::kFloat, DataType::kBFloat16}) {
         const Lowered lowered = Lower(graph, fuses ? FuseNodes(graph) : KeepNodes(graph),
                                       NoKernels(precision), side, 2 * side);
-        CheckPlan(AssignBuffers(lowered, /*keeps_values=*/!fuses));
+        const std::vector<std::size_t> scratch(lowered.instructions.size());
+        CheckPlan(AssignBuffers(lowered, scratch, /*keeps_values=*/!fuses));
       }
     }
   } catch (const UserError&) {

@@ -6,6 +6,7 @@
 
 #include "nn/base/cpu.h"
 #include "tests/nn/graph/network_run.h"
+#include "tests/nn/graph/node_check.h"
 #include "tests/nn/graph/random_network.h"
 #include "tests/nn/reference_interpreter.h"
 #include <orb360/nn/base/check.h>
@@ -14,49 +15,11 @@
 namespace orb360::nn {
 namespace {
 
-PlainImage ToImage(const TensorView& tensor) {
-  PlainImage image(tensor.shape);
-  for (int c = 0; c < tensor.shape.channels; ++c) {
-    for (int y = 0; y < tensor.shape.height; ++y) {
-      for (int x = 0; x < tensor.shape.width; ++x) image.at(c, y, x) = At(tensor, c, y, x);
-    }
-  }
-  return image;
-}
-
-// Every node against double precision on the numbers that the executor gave it: what is allowed is
-// then the rounding of that node alone.
-void ExpectEveryNodeRight(const Graph& graph, const std::vector<PlainImage>& inputs) {
-  const Shape& size = inputs.front().shape;
-  const Executor executor(graph, size.height, size.width, {.threads = 2, .keeps_tensors = true});
-  NetworkRun run(executor, inputs);
-  Executor::Workspace workspace(executor);
-  run(executor, &workspace);
-  const auto find = [&](int tensor) {
-    return executor.Find(workspace, graph.tensors[static_cast<std::size_t>(tensor)].name);
-  };
-  for (const Node& node : graph.nodes) {
-    std::vector<PlainImage> images;
-    for (const int tensor : node.inputs) images.push_back(ToImage(find(tensor)));
-    std::vector<const PlainImage*> read;
-    for (const PlainImage& image : images) read.push_back(&image);
-    NodeResult expected = InterpretNode(graph, node, read);
-    for (std::size_t i = 0; i < node.outputs.size(); ++i) {
-      PlainImage& tolerance = expected.magnitudes[i];
-      // The errors of some hundreds of additions grow like the root of their number; functions like
-      // log are exact to the last bits of the largest of their result and 0.1.
-      for (double& value : tolerance.values) value = 64 * 0x1p-24 * (value + 0.1);
-      SCOPED_TRACE(node.name + " (" + NameOf(node.operation) + ")");
-      ExpectNear(find(node.outputs[i]), expected.outputs[i], tolerance);
-      if (testing::Test::HasFailure()) return;
-    }
-  }
-}
-
 TEST(Executor, EveryNodeOfRandomNetworksAgreesWithDoublePrecision) {
   for (unsigned seed = 1; seed <= 25; ++seed) {
     SCOPED_TRACE(seed);
-    ExpectEveryNodeRight(RandomNetwork(25, seed).Build(), RandomInputs(8, 16, seed));
+    ExpectEveryNodeRight(RandomNetwork(25, seed).Build(), RandomInputs(8, 16, seed),
+                         {.threads = 2});
     if (HasFailure()) return;
   }
 }
@@ -207,7 +170,7 @@ TEST(Executor, TakesOddImagesAndSinglePixelsWhereTheGraphDoes) {
   const Graph graph = net.Build();
   for (const auto& [height, width] : {std::pair{1, 1}, {1, 7}, {5, 1}, {7, 9}, {33, 35}}) {
     SCOPED_TRACE(testing::Message() << width << "x" << height);
-    ExpectEveryNodeRight(graph, {RandomImage({3, height, width}, 0.1f, 1, 1)});
+    ExpectEveryNodeRight(graph, {RandomImage({3, height, width}, 0.1f, 1, 1)}, {.threads = 2});
   }
 }
 

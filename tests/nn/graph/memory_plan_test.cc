@@ -8,6 +8,7 @@
 
 #include "nn/graph/buffer_assignment.h"
 #include "nn/graph/cpu_backend.h"
+#include "nn/graph/cpu_program.h"
 #include "tests/nn/graph/random_network.h"
 #include <orb360/nn/tensor.h>
 
@@ -76,8 +77,11 @@ TEST(MemoryPlan, TensorsOfRandomNetworksNeverOverlap) {
   const CpuBackend backend(1);
   for (unsigned seed = 1; seed <= 100; ++seed) {
     const Graph graph = RandomNetwork(50, seed).Build();
-    const Lowered lowered = Lower(graph, FuseNodes(graph), backend, 16, 32);
-    const BufferAssignment assignment = AssignBuffers(lowered, /*keeps_values=*/false);
+    const std::vector<FusedNode> nodes = FuseNodes(graph);
+    const Lowered lowered = Lower(graph, nodes, backend, 16, 32);
+    const std::vector<Step> steps = backend.MakeSteps(graph, nodes, lowered, 16, 32);
+    const BufferAssignment assignment =
+        AssignBuffers(lowered, ScratchBytes(steps), /*keeps_values=*/false);
     ExpectNoOverlap(assignment.pieces, assignment.offsets, assignment.bytes);
     if (HasFatalFailure()) return;
     EXPECT_GE(assignment.bytes, LeastBytes(assignment.pieces));

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <string>
 
@@ -16,132 +15,36 @@
 #include "nn/base/hdf5_handle.h"
 #include "tests/nn/dump.h"
 #include "tests/nn/graph/dump_run.h"
+#include "tests/nn/graph/reference_check.h"
 #include "tests/slam/io/temp_folder.h"
 #include <orb360/nn/graph/network_file.h>
 
 namespace orb360::nn {
 namespace {
 
-constexpr float kEpsilon = std::numeric_limits<float>::epsilon();
-
-const std::filesystem::path kData = std::filesystem::path(ORB360_SOURCE_DIR) / "tests/nn/data";
-
-/// The largest finite magnitude: the norm that errors of a tensor are measured by.
-float LargestOf(const DumpedTensor& tensor) {
-  float largest = 0;
-  for (const float value : tensor.values) {
-    if (std::isfinite(value)) largest = std::max(largest, std::abs(value));
-  }
-  return largest;
-}
-
-/// The worst element of `result` when it is farther than `tolerance` from `expected`, which may
-/// hold fewer channels; "" otherwise. NaN and infinity must be where they are expected.
-std::string WorstDifference(const DumpedTensor& result, const DumpedTensor& expected,
-                            float tolerance) {
-  const auto [channels, height, width] = expected.shape;
-  if (result.shape.channels < channels || result.shape.height != height ||
-      result.shape.width != width) {
-    return "has another shape";
-  }
-  float worst = tolerance;
-  std::string text;
-  for (std::size_t i = 0; i < expected.values.size(); ++i) {
-    const float a = result.values[i];
-    const float b = expected.values[i];
-    if (a == b || (std::isnan(a) && std::isnan(b))) continue;
-    const float difference = std::abs(a - b);
-    if (difference <= worst) continue;
-    // NaN where a number should be, or the other way round, is as bad as it gets.
-    worst = std::isnan(difference) ? std::numeric_limits<float>::infinity() : difference;
-    const int pixel = static_cast<int>(i) % (height * width);
-    text = "channel " + std::to_string(static_cast<int>(i) / (height * width));
-    text += " row " + std::to_string(pixel / width) + " column " + std::to_string(pixel % width);
-    text += ": " + std::to_string(a) + " instead of " + std::to_string(b) + ", tolerance " +
-            std::to_string(tolerance);
-  }
-  return text;
-}
-
-/// What errors of a tensor are measured by: its norm and those of what its node reads, from which
-/// it may be small by cancellation.
-float NormOf(const Graph& graph, const Dump& dump, const std::string& tensor) {
-  const auto norm = [&](int index) {
-    const auto found = dump.find(graph.tensors[static_cast<std::size_t>(index)].name);
-    return found == dump.end() ? 0 : LargestOf(found->second);
-  };
-  float largest = LargestOf(dump.at(tensor));
-  for (const Node& node : graph.nodes) {
-    const bool is_writer = std::ranges::any_of(node.outputs, [&](int output) {
-      return graph.tensors[static_cast<std::size_t>(output)].name == tensor;
-    });
-    if (!is_writer) continue;
-    for (const int input : node.inputs) largest = std::max(largest, norm(input));
-  }
-  return largest;
-}
-
-/// Every tensor of the dumps in a file against those of runs that keep them. `roundings`: how often
-/// a value of the size of the norm may have been rounded.
-void ExpectEveryTensorOf(const std::filesystem::path& path, float roundings) {
-  const Graph graph = ReadNetwork(path);
-  for (const auto& [name, dump] : ReadDumps(path)) {
-    const DumpRun run(graph, dump, {.threads = 2, .keeps_tensors = true});
-    for (const auto& [tensor, expected] : dump) {
-      const float tolerance = roundings * kEpsilon * NormOf(graph, dump, tensor);
-      EXPECT_EQ(WorstDifference(run.Find(tensor), expected, tolerance), "")
-          << path.stem() << " " << name << " " << tensor;
-    }
-  }
-}
-
-/// The same for outputs of runs as fast as they can be.
-void ExpectOutputsOf(const std::filesystem::path& path, float roundings) {
-  const Graph graph = ReadNetwork(path);
-  for (const auto& [name, dump] : ReadDumps(path)) {
-    const DumpRun run(graph, dump);
-    for (const Graph::Output& output : graph.outputs) {
-      const std::string& tensor = graph.tensors[static_cast<std::size_t>(output.tensor)].name;
-      const float tolerance = roundings * kEpsilon * NormOf(graph, dump, tensor);
-      EXPECT_EQ(WorstDifference(run.outputs().at(output.name), dump.at(tensor), tolerance), "")
-          << path.stem() << " " << name << " " << output.name;
-    }
-  }
-}
-
-/// Sums of up to 450 products, each rounded: sqrt(450) if all were of the norm's size.
-constexpr float kRoundingsOfOperation = 20;
-/// Errors that add up over some fifty nodes.
-constexpr float kRoundingsOfNetwork = 64;
-
 class OperationReference : public ::testing::TestWithParam<const char*> {
  protected:
-  std::filesystem::path path_ = kData / (std::string(GetParam()) + ".h5");
+  std::filesystem::path path_ = ReferenceFile(GetParam());
 };
 
 TEST_P(OperationReference, IsWhatPyTorchComputes) {
-  ExpectEveryTensorOf(path_, kRoundingsOfOperation);
+  ExpectEveryTensorOf(path_, kRoundingsOfOperation, {.threads = 2});
 }
 
 TEST_P(OperationReference, IsTheSameInANetworkMadeForSpeed) {
   ExpectOutputsOf(path_, kRoundingsOfOperation);
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, OperationReference,
-                         ::testing::Values("convolution", "convolution_across_poles",
-                                           "normalized_convolution",
-                                           "normalized_convolution_across_poles", "pooling",
-                                           "upsampling", "upsampling_across_poles", "elementwise",
-                                           "panorama"),
+INSTANTIATE_TEST_SUITE_P(Every, OperationReference, ::testing::ValuesIn(kReferenceOperations),
                          [](const auto& suite) { return std::string(suite.param); });
 
 class NetworkReference : public ::testing::TestWithParam<const char*> {
  protected:
-  std::filesystem::path path_ = kData / (std::string(GetParam()) + ".h5");
+  std::filesystem::path path_ = ReferenceFile(GetParam());
 };
 
 TEST_P(NetworkReference, IsReproducedNodeByNode) {
-  ExpectEveryTensorOf(path_, kRoundingsOfNetwork);
+  ExpectEveryTensorOf(path_, kRoundingsOfNetwork, {.threads = 2});
 }
 
 TEST_P(NetworkReference, GivesTheSameResultWhenMadeForSpeed) {
@@ -160,9 +63,7 @@ TEST_P(NetworkReference, GivesTheSameBitsForAnyNumberOfThreads) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, NetworkReference,
-                         ::testing::Values("unguided", "encoder_decoder", "multi_stream",
-                                           "depth_completion"),
+INSTANTIATE_TEST_SUITE_P(Every, NetworkReference, ::testing::ValuesIn(kReferenceNetworks),
                          [](const auto& suite) { return std::string(suite.param); });
 
 /// Lets weights_tools write references that are too large for the repository. False where its
@@ -256,7 +157,7 @@ TEST_F(PublishedReference, IsReproducedNodeByNodeWithinATenthOfAMillimetre) {
       {"level1.c", "mid/c2"},    {"level2", "mid/x3"},    {"level2.c", "mid/c3"},
       {"level3", "mid/x4"},      {"level3.c", "mid/c4"},  {"decoded0", "mid/x12"},
       {"decoded0.c", "mid/c12"}, {"propagated", "out/x"}, {"propagated.c", "out/c"}};
-  Graph graph = ReadNetwork(kData / "unguided.h5");
+  Graph graph = ReadNetwork(ReferenceFile("unguided"));
   for (Weight& weight : graph.weights) {
     const std::string layer = weight.name.substr(0, weight.name.find('.'));
     const bool is_bias = weight.name.ends_with("bias");

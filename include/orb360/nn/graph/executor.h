@@ -7,10 +7,14 @@
 #include <string_view>
 #include <vector>
 
-#include <orb360/nn/base/aligned_vector.h>
+#include <orb360/nn/graph/device.h>
 #include <orb360/nn/graph/graph.h>
 
 namespace orb360::nn {
+
+/// A network prepared for a processor, and what one of its runs works in.
+class Program;
+class ProgramMemory;
 
 /// How an Executor computes.
 struct ExecutorOptions {
@@ -19,6 +23,9 @@ struct ExecutorOptions {
   /// The type in which convolutions multiply. kBFloat16 is faster and rounds to 8 bits; it needs a
   /// processor that supports it (UserError otherwise). Everything else is computed in floats.
   DataType precision = DataType::kFloat;
+  /// The processor that computes. On another one than the CPU, `threads` has no meaning and
+  /// `precision` must be kFloat.
+  Device device = {};
   /// Runs every node by itself and keeps its result (Executor::Find). This is for inspection and is
   /// slow.
   bool keeps_tensors = false;
@@ -32,19 +39,18 @@ class Executor {
   /// Memory of one run. A workspace serves one run at a time.
   class Workspace {
    public:
-    /// Allocates the memory. Throws UserError where there is too little.
+    /// Allocates the memory. Throws UserError where there is too little, and DeviceError where a
+    /// device has too little.
     explicit Workspace(const Executor& executor);
+    ~Workspace();
+    /// Moves the memory.
+    Workspace(Workspace&& other) noexcept;
+    /// Frees the memory of this workspace and takes over the other one's.
+    Workspace& operator=(Workspace&& other) noexcept;
 
    private:
     friend class Executor;
-    struct Bound {  // what one instruction works on
-      std::vector<TensorView> inputs;
-      std::vector<TensorView> outputs;
-      std::span<std::byte> scratch;
-    };
-    AlignedVector<std::byte> memory_;
-    std::vector<TensorView> views_;  // by value
-    std::vector<Bound> bound_;       // by instruction
+    std::unique_ptr<ProgramMemory> memory_;
   };
 
   /// An input or output: channels x height x width floats, row by row.
@@ -78,13 +84,11 @@ class Executor {
   std::size_t naive_bytes() const;
 
  private:
-  struct Plan;  // the instructions and the places of their tensors in memory
-
-  int threads_;
-  std::shared_ptr<const Plan> plan_;
+  std::shared_ptr<const Program> program_;
   std::vector<Port> inputs_;
   std::vector<Port> outputs_;
   std::vector<std::string> tensors_;  // names of the graph's; only with keeps_tensors
+  std::vector<int> value_of_tensor_;  // of the program; likewise
 };
 
 }  // namespace orb360::nn

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include <opencv2/core.hpp>
 
+#include <orb360/nn/graph/device.h>
 #include <orb360/slam/depth/dense_depth.h>
 #include <orb360/slam/depth/sparse_depth.h>
 #include <orb360/slam/geometry/camera.h>
@@ -18,11 +20,14 @@ struct DepthCompleterOptions {
   /// Number of OpenMP threads, at least 1. No result depends on it.
   int threads = 1;
   /// Computes convolutions in bfloat16, which is faster and less exact. Throws UserError if the
-  /// processor does not support it.
+  /// processor does not support it. Contract: `device` is the CPU.
   bool bfloat16 = false;
+  /// The processor on which the network runs (nn::OpenDevice).
+  nn::Device device = {};
 };
 
-/// Depth completion of keyframes by a network (paper III-C). Not thread-safe.
+/// Depth completion of keyframes by a network (paper III-C). Where a device fails, the CPU goes on
+/// in its place. Not thread-safe.
 class DepthCompleter {
  public:
   /// `weights` is a network file. Throws UserError if it cannot be read or is not a network for
@@ -36,6 +41,11 @@ class DepthCompleter {
   /// Completes a keyframe. `color` is CV_8UC3, BGR, of the camera's size, as are the images of
   /// `sparse`. The result is in the unit of `sparse`.
   DenseDepth Complete(const cv::Mat& color, const SparseDepth& sparse);
+
+  /// Returns the name of the processor on which the network runs (nn::Device::name).
+  const std::string& device() const;
+  /// Returns one line that says why the CPU has taken over from a device; empty where it has not.
+  const std::string& device_failure() const;
 
  private:
   struct Network;

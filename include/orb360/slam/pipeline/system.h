@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include <orb360/nn/graph/device.h>
 #include <orb360/slam/geometry/camera.h>
 #include <orb360/slam/pipeline/frame_report.h>
 #include <orb360/slam/pipeline/reconstruction.h>
@@ -16,6 +17,7 @@ namespace cv {
 class Mat;
 }
 namespace orb360 {
+class DepthCompleter;
 class Map;
 class Pipeline;
 class DepthMapStore;
@@ -36,9 +38,10 @@ class System {
   void LoadMap(const StoredMap& stored);
   /// The same, but frames are only localized in the map, which does not change.
   void Localize(const StoredMap& stored);
-  /// Before the first frame: keeps images in `folder` for ComputeDepth with the network `weights`.
-  /// Throws UserError where one of them cannot be used.
-  void EnableDepth(const std::filesystem::path& weights, const std::filesystem::path& folder);
+  /// Before the first frame: keeps images in `folder` for ComputeDepth with the network `weights`,
+  /// which runs on `device`. Throws UserError where one of them cannot be used.
+  void EnableDepth(const std::filesystem::path& weights, const std::filesystem::path& folder,
+                   const nn::Device& device = {});
 
   /// Before the first frame: shows the state after each frame to a watcher.
   void Watch(const std::function<void(const PresentState&)>& watcher);
@@ -57,6 +60,9 @@ class System {
   ViewDepthReport ComputeDepth(const Reconstruction&, const ViewDepthCallbacks& = {});
   /// Returns that depth, or null without EnableDepth. Throws UserError where images were not kept.
   const DepthMapStore* depth_maps() const;
+  /// Returns what runs the network, or null without EnableDepth. No job may be running: after
+  /// Finish.
+  const DepthCompleter* depth_completer() const;
 
  private:
   std::unique_ptr<Pipeline> pipeline_;

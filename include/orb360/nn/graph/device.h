@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace orb360::nn {
+
+/// The interface of a graph to the kernels of one kind of processor.
+class Backend;
+
+/// A device other than the CPU failed while a network was prepared or run: it was lost, or it has
+/// too little memory. The same network can be run on the CPU. `what()` is one line that says what
+/// happened on which device.
+class DeviceError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A processor on which networks run (OpenDevice).
+struct Device {
+  /// Its name for people, such as "cpu" or "vulkan:0 (NAME OF THE DEVICE)".
+  std::string name = "cpu";
+  /// What runs networks there; null for the CPU.
+  std::shared_ptr<const Backend> backend;
+};
+
+}  // namespace orb360::nn

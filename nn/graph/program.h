@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include <orb360/nn/tensor.h>
+
+namespace orb360::nn {
+
+/// What one run of a Program works in.
+class ProgramMemory {
+ public:
+  ProgramMemory() = default;
+  ProgramMemory(const ProgramMemory&) = delete;
+  ProgramMemory& operator=(const ProgramMemory&) = delete;
+  virtual ~ProgramMemory() = default;
+};
+
+/// A network prepared for one size of image on one kind of processor (Backend::MakeProgram). It
+/// never changes, so any number of threads may run it at once, each with memory of its own.
+class Program {
+ public:
+  Program() = default;
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+  virtual ~Program() = default;
+
+  /// Throws UserError where there is too little memory.
+  virtual std::unique_ptr<ProgramMemory> Allocate() const = 0;
+  /// Computes `outputs` from `inputs`, whose order and sizes are those of the graph. `memory` is of
+  /// this program.
+  virtual void Run(std::span<const std::span<const float>> inputs,
+                   std::span<const std::span<float>> outputs, ProgramMemory* memory) const = 0;
+  /// Returns a value of Lowered::values after a run. Contract: made with `keeps_values`.
+  virtual TensorView Find(const ProgramMemory& memory, int value) const = 0;
+
+  /// Bytes of the tensors and scratch of one run.
+  virtual std::size_t planned_bytes() const = 0;
+  /// The same if each had memory of its own.
+  virtual std::size_t naive_bytes() const = 0;
+};
+
+}  // namespace orb360::nn

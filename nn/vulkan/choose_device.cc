@@ -1,0 +1,95 @@
+#include "nn/vulkan/choose_device.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+
+#include <orb360/nn/base/check.h>
+
+namespace orb360::nn {
+namespace {
+
+constexpr std::string_view kPrefix = "vulkan:";
+
+/// N of "vulkan:N".
+std::optional<int> IndexOf(const std::string& name) {
+  if (!name.starts_with(kPrefix)) return {};
+  const std::string digits = name.substr(kPrefix.size());
+  constexpr std::size_t kMaxDigits = 4;
+  const bool is_number =
+      !digits.empty() && digits.size() <= kMaxDigits &&
+      std::ranges::all_of(digits, [](unsigned char c) { return std::isdigit(c) != 0; });
+  if (!is_number) return {};
+  return std::stoi(digits);
+}
+
+bool IsGpu(const VulkanDevice& device) {
+  using enum VulkanDevice::Type;
+  return device.type == kDiscrete || device.type == kIntegrated || device.type == kVirtual;
+}
+
+std::string List(const std::vector<VulkanDevice>& devices) {
+  std::string text;
+  for (const VulkanDevice& device : devices) {
+    if (!text.empty()) text += ", ";
+    text += "vulkan:" + std::to_string(device.index) + " (" + device.name;
+    if (!device.problem.empty()) text += "; " + device.problem;
+    text += ")";
+  }
+  return text.empty() ? "no device" : text;
+}
+
+}  // namespace
+
+const char* NameOf(VulkanDevice::Type type) {
+  switch (type) {
+    case VulkanDevice::Type::kDiscrete:
+      return "discrete GPU";
+    case VulkanDevice::Type::kIntegrated:
+      return "integrated GPU";
+    case VulkanDevice::Type::kVirtual:
+      return "virtual GPU";
+    case VulkanDevice::Type::kCpu:
+      return "CPU";
+    case VulkanDevice::Type::kOther:
+      break;
+  }
+  return "other";
+}
+
+void CheckDeviceName(const std::string& name) {
+  if (name == "cpu" || name == "auto" || name == "vulkan" || IndexOf(name)) return;
+  throw UserError("device \"" + name + "\" should be cpu, auto, vulkan or vulkan:N (`orb360 " +
+                  "devices` lists them)");
+}
+
+std::optional<int> ChooseDevice(const std::string& name, const VulkanDevices& found) {
+  CheckDeviceName(name);
+  if (name == "cpu") return {};
+  const auto good_gpu = [](const VulkanDevice& device) {
+    return device.problem.empty() && IsGpu(device);
+  };
+  const auto gpu = std::ranges::find_if(found.devices, good_gpu);
+  if (name == "auto") {
+    return gpu != found.devices.end() ? std::optional(gpu->index) : std::nullopt;
+  }
+  if (!found.problem.empty()) throw UserError("--device " + name + ": " + found.problem);
+  if (const std::optional<int> index = IndexOf(name)) {
+    const auto device = std::ranges::find(found.devices, *index, &VulkanDevice::index);
+    if (device == found.devices.end()) {
+      throw UserError("--device " + name + ": there is no such device; found " +
+                      List(found.devices));
+    }
+    if (device->problem.empty()) return *index;
+    throw UserError("--device " + name + ": networks cannot run on " + device->name + ": " +
+                    device->problem);
+  }
+  if (gpu != found.devices.end()) return gpu->index;
+  const auto any = std::ranges::find_if(
+      found.devices, [](const VulkanDevice& device) { return device.problem.empty(); });
+  if (any != found.devices.end()) return any->index;
+  throw UserError("--device " + name + ": networks cannot run on any device; found " +
+                  List(found.devices));
+}
+
+}  // namespace orb360::nn

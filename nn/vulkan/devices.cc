@@ -1,0 +1,56 @@
+#include <memory>
+#include <string>
+
+#include "nn/vulkan/choose_device.h"
+#include "nn/vulkan/instance.h"
+#include "nn/vulkan/logical_device.h"
+#include "nn/vulkan/physical_device.h"
+#include "nn/vulkan/vulkan_backend.h"
+#include <orb360/nn/base/check.h>
+#include <orb360/nn/vulkan/devices.h>
+
+namespace orb360::nn {
+namespace {
+
+VulkanDevices DevicesOf(const vulkan::Instance& instance) {
+  VulkanDevices found;
+  for (std::size_t i = 0; i < instance.devices().size(); ++i) {
+    found.devices.push_back(vulkan::Describe(instance, static_cast<int>(i)));
+  }
+  if (found.devices.empty()) {
+    found.problem =
+        "there is no Vulkan device on this machine; install the driver of the graphics card, or "
+        "use --device cpu";
+  }
+  return found;
+}
+
+}  // namespace
+
+VulkanDevices ListVulkanDevices() {
+  try {
+    return DevicesOf(vulkan::Instance());
+  } catch (const UserError& error) {
+    return {{}, error.what()};
+  }
+}
+
+Device OpenDevice(const std::string& name) {
+  CheckDeviceName(name);
+  if (name == "cpu") return {};
+  std::shared_ptr<const vulkan::Instance> instance;
+  VulkanDevices found;
+  try {
+    instance = std::make_shared<vulkan::Instance>();
+    found = DevicesOf(*instance);
+  } catch (const UserError& error) {
+    found.problem = error.what();
+  }
+  const std::optional<int> index = ChooseDevice(name, found);
+  if (!index) return {};
+  auto device = std::make_shared<const vulkan::LogicalDevice>(instance, *index);
+  const std::string opened = device->name();
+  return {opened, std::make_shared<vulkan::VulkanBackend>(std::move(device))};
+}
+
+}  // namespace orb360::nn

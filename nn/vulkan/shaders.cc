@@ -1,0 +1,69 @@
+#include "nn/vulkan/shaders.h"
+
+namespace orb360::nn::vulkan {
+namespace {
+
+// The folder of the .inc files, which the build makes, is on the include path.
+constexpr std::uint32_t average_pool[] = {
+#include "average_pool.inc"
+};
+constexpr std::uint32_t confidence_pool[] = {
+#include "confidence_pool.inc"
+};
+constexpr std::uint32_t convex_upsample[] = {
+#include "convex_upsample.inc"
+};
+constexpr std::uint32_t convolution[] = {
+#include "convolution.inc"
+};
+constexpr std::uint32_t dense[] = {
+#include "dense.inc"
+};
+constexpr std::uint32_t elementwise[] = {
+#include "elementwise.inc"
+};
+constexpr std::uint32_t elementwise_pair[] = {
+#include "elementwise_pair.inc"
+};
+constexpr std::uint32_t global_average_pool[] = {
+#include "global_average_pool.inc"
+};
+constexpr std::uint32_t latitude_sine[] = {
+#include "latitude_sine.inc"
+};
+constexpr std::uint32_t median_choose[] = {
+#include "median_choose.inc"
+};
+constexpr std::uint32_t median_count[] = {
+#include "median_count.inc"
+};
+constexpr std::uint32_t median_log[] = {
+#include "median_log.inc"
+};
+constexpr std::uint32_t median_select[] = {
+#include "median_select.inc"
+};
+constexpr std::uint32_t normalized_convolution[] = {
+#include "normalized_convolution.inc"
+};
+constexpr std::uint32_t upsample_bilinear[] = {
+#include "upsample_bilinear.inc"
+};
+constexpr std::uint32_t upsample_nearest[] = {
+#include "upsample_nearest.inc"
+};
+
+}  // namespace
+
+std::span<const std::uint32_t> CodeOf(Shader shader) {
+  switch (shader) {
+#define ORB360_CASE(enumerator, file) \
+  case Shader::enumerator:            \
+    return file;
+    ORB360_VULKAN_SHADERS(ORB360_CASE)
+#undef ORB360_CASE
+  }
+  return {};
+}
+
+}  // namespace orb360::nn::vulkan

@@ -1,0 +1,17 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// Doubles height and width by repeating pixels.
+#include "common.glsl"
+
+layout(push_constant) uniform Parameters {
+  View x;
+  View y;
+  int height;  // of y
+  int width;
+};
+
+void main() {
+  ivec3 at = ivec3(gl_GlobalInvocationID);
+  if (at.y >= height || at.x >= width) return;
+  arena[At(y, at.z, at.y, at.x)] = arena[At(x, at.z, at.y / 2, at.x / 2)];
+}

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "nn/graph/backend.h"
+#include "nn/vulkan/logical_device.h"
+#include "nn/vulkan/pipelines.h"
+
+namespace orb360::nn::vulkan {
+
+/// The backend that runs networks by Vulkan on one device: tensors are planes of floats without
+/// halo, and every node is one shader or a few.
+class VulkanBackend : public Backend {
+ public:
+  /// `tiles_for` is the kind of device by which tiles are chosen; none: that of the device.
+  explicit VulkanBackend(std::shared_ptr<const LogicalDevice> device,
+                         std::optional<VulkanDevice::Type> tiles_for = {});
+
+  /// Normalized convolutions stay single: the intermediate results of a chain fit into no cache of
+  /// a graphics processor.
+  std::vector<FusedNode> Fuse(const Graph& graph) const override { return FuseConvolutions(graph); }
+  NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const override;
+  std::unique_ptr<const Program> MakeProgram(const Graph& graph, std::span<const FusedNode> nodes,
+                                             Lowered lowered, int height, int width,
+                                             bool keeps_values) const override;
+
+ private:
+  std::shared_ptr<const LogicalDevice> device_;
+  std::shared_ptr<Pipelines> pipelines_;
+  VulkanDevice::Type tiles_for_;
+};
+
+}  // namespace orb360::nn::vulkan

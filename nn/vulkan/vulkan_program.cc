@@ -1,0 +1,244 @@
+#include "nn/vulkan/vulkan_program.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "nn/vulkan/commands.h"
+#include <orb360/nn/base/check.h>
+
+namespace orb360::nn::vulkan {
+namespace {
+
+std::size_t Index(int i) { return static_cast<std::size_t>(i); }
+
+/// Bytes of a tensor as it lies in memory.
+std::size_t BytesOf(const Place& place) {
+  return Index(place.shape.channels) * place.plane * sizeof(float);
+}
+
+/// Copies rows of `width` floats between two pieces of memory with distances of `from_row` and
+/// `to_row` floats between rows.
+void CopyRows(const float* from, std::size_t from_row, float* to, std::size_t to_row,
+              const Shape& shape) {
+  const std::size_t width = Index(shape.width);
+  for (std::size_t row = 0; row < Index(shape.channels) * Index(shape.height); ++row) {
+    std::memcpy(to + row * to_row, from + row * from_row, width * sizeof(float));
+  }
+}
+
+struct VulkanMemory : ProgramMemory {
+  explicit VulkanMemory(const LogicalDevice& device) : commands(device) {}
+
+  Buffer upload;
+  Buffer arena;
+  Buffer download;
+  Owned<VkDescriptorPool> descriptors;
+  Commands commands;  // declared last: destroyed before what they use
+};
+
+struct Descriptors {
+  Owned<VkDescriptorPool> pool;
+  VkDescriptorSet set = VK_NULL_HANDLE;  // of the pool
+};
+
+/// Returns a set that binds two buffers to the shaders.
+Descriptors Bind(const LogicalDevice& device, VkDescriptorSetLayout layout,
+                 const std::array<VkBuffer, 2>& buffers) {
+  const char* const action = "bind buffers";
+  const DeviceFunctions& functions = device.functions();
+  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                  static_cast<std::uint32_t>(buffers.size())};
+  VkDescriptorPoolCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+  info.maxSets = 1;
+  info.poolSizeCount = 1;
+  info.pPoolSizes = &size;
+  VkDescriptorPool pool = VK_NULL_HANDLE;
+  device.Check(functions.CreateDescriptorPool(device.handle(), &info, nullptr, &pool), action);
+  Descriptors bound{device.Own(pool, functions.DestroyDescriptorPool)};
+  VkDescriptorSetAllocateInfo allocation{};
+  allocation.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+  allocation.descriptorPool = pool;
+  allocation.descriptorSetCount = 1;
+  allocation.pSetLayouts = &layout;
+  device.Check(functions.AllocateDescriptorSets(device.handle(), &allocation, &bound.set), action);
+  for (std::uint32_t i = 0; i < buffers.size(); ++i) {
+    const VkDescriptorBufferInfo buffer{buffers[i], 0, VK_WHOLE_SIZE};
+    VkWriteDescriptorSet write{};
+    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+    write.dstSet = bound.set;
+    write.dstBinding = i;
+    write.descriptorCount = 1;
+    write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    write.pBufferInfo = &buffer;
+    functions.UpdateDescriptorSets(device.handle(), 1, &write, 0, nullptr);
+  }
+  return bound;
+}
+
+/// Throws DeviceError for more than shaders can address on the device.
+void RequireBufferOf(const LogicalDevice& device, std::size_t bytes) {
+  if (bytes <= device.description().max_buffer_bytes) return;
+  throw DeviceError(device.name() + " could not prepare a network: it needs " +
+                    std::to_string(bytes >> 20) + " MiB in one buffer, and the device has up to " +
+                    std::to_string(device.description().max_buffer_bytes >> 20) + " MiB");
+}
+
+/// Scratch memory of each instruction.
+std::vector<std::size_t> ScratchOf(const Lowered& lowered, std::span<const FusedNode> nodes) {
+  std::vector<std::size_t> bytes;
+  for (const Instruction& instruction : lowered.instructions) {
+    const auto* const node = std::get_if<std::size_t>(&instruction.work);
+    bytes.push_back(node != nullptr ? ScratchBytes(nodes[*node].node.operation) : 0);
+  }
+  return bytes;
+}
+
+}  // namespace
+
+VulkanProgram::VulkanProgram(const Graph& graph, std::span<const FusedNode> nodes, Lowered lowered,
+                             bool keeps_values, std::shared_ptr<const LogicalDevice> device,
+                             std::shared_ptr<Pipelines> pipelines, VulkanDevice::Type tiles_for)
+    : device_(std::move(device)),
+      pipelines_(std::move(pipelines)),
+      lowered_(std::move(lowered)),
+      assignment_(AssignBuffers(lowered_, ScratchOf(lowered_, nodes), keeps_values)),
+      keeps_values_(keeps_values) {
+  RequireBufferOf(*device_, assignment_.bytes);
+  Constants constants;
+  for (std::size_t i = 0; i < lowered_.instructions.size(); ++i) {
+    const Instruction& instruction = lowered_.instructions[i];
+    Operands operands{PlacesOf(instruction.inputs), PlacesOf(instruction.outputs),
+                      static_cast<std::uint32_t>(assignment_.scratch[i] / sizeof(float))};
+    if (const auto* const copy = std::get_if<ChannelCopy>(&instruction.work)) {
+      Place& from = operands.inputs.front();
+      Place& to = operands.outputs.front();
+      from.offset += static_cast<std::uint32_t>(copy->from_first) * from.plane;
+      to.offset += static_cast<std::uint32_t>(copy->to_first) * to.plane;
+      from.shape.channels = to.shape.channels = copy->count;
+      dispatches_.push_back(CopyOf(from, to));
+      continue;
+    }
+    std::ranges::move(DispatchesOf(graph, nodes[std::get<std::size_t>(instruction.work)], operands,
+                                   tiles_for, &constants),
+                      std::back_inserter(dispatches_));
+  }
+  Upload(constants.values());
+}
+
+Place VulkanProgram::PlaceOf(int value) const {
+  const BufferAssignment::Buffer& buffer = assignment_.buffers[Index(value)];
+  const auto plane = static_cast<std::uint32_t>(buffer.whole.plane_stride());
+  return {lowered_.values[Index(value)].format.shape,
+          static_cast<std::uint32_t>(buffer.offset / sizeof(float)) +
+              static_cast<std::uint32_t>(buffer.first_channel) * plane,
+          static_cast<std::uint32_t>(buffer.whole.row_stride()), plane};
+}
+
+std::vector<Place> VulkanProgram::PlacesOf(std::span<const int> values) const {
+  std::vector<Place> places;
+  for (const int value : values) places.push_back(PlaceOf(value));
+  return places;
+}
+
+void VulkanProgram::Upload(std::span<const float> constants) {
+  RequireBufferOf(*device_, constants.size_bytes());
+  constants_ = Buffer(*device_, constants.size_bytes(), BufferUse::kDevice);
+  if (constants.empty()) return;
+  const Buffer upload(*device_, constants.size_bytes(), BufferUse::kUpload);
+  std::memcpy(upload.data(), constants.data(), constants.size_bytes());
+  Commands commands(*device_);
+  commands.CopyBuffer(upload.get(), 0, constants_.get(), 0, constants.size_bytes());
+  commands.Finish();
+  commands.RunAndWait();
+}
+
+std::unique_ptr<ProgramMemory> VulkanProgram::Allocate() const {
+  auto memory = std::make_unique<VulkanMemory>(*device_);
+  std::size_t upload = 0;
+  std::size_t download = 0;
+  for (const int input : lowered_.inputs) upload += BytesOf(PlaceOf(input));
+  for (const int output : lowered_.outputs) download += BytesOf(PlaceOf(output));
+  if (keeps_values_) download = assignment_.bytes;
+  memory->upload = Buffer(*device_, upload, BufferUse::kUpload);
+  memory->arena = Buffer(*device_, assignment_.bytes, BufferUse::kDevice);
+  memory->download = Buffer(*device_, download, BufferUse::kDownload);
+  Descriptors bound =
+      Bind(*device_, pipelines_->set_layout(), {memory->arena.get(), constants_.get()});
+  memory->descriptors = std::move(bound.pool);
+
+  Commands& commands = memory->commands;
+  std::size_t at = 0;
+  for (const int input : lowered_.inputs) {
+    const Place place = PlaceOf(input);
+    commands.CopyBuffer(memory->upload.get(), at, memory->arena.get(), place.offset * sizeof(float),
+                        BytesOf(place));
+    at += BytesOf(place);
+  }
+  Record(bound.set, &commands);
+  at = 0;
+  for (const int output : lowered_.outputs) {
+    if (keeps_values_) break;
+    const Place place = PlaceOf(output);
+    commands.CopyBuffer(memory->arena.get(), place.offset * sizeof(float), memory->download.get(),
+                        at, BytesOf(place));
+    at += BytesOf(place);
+  }
+  if (keeps_values_) {
+    commands.CopyBuffer(memory->arena.get(), 0, memory->download.get(), 0, assignment_.bytes);
+  }
+  commands.Finish();
+  return memory;
+}
+
+void VulkanProgram::Record(VkDescriptorSet set, Commands* commands) const {
+  const DeviceFunctions& functions = device_->functions();
+  functions.CmdBindDescriptorSets(commands->get(), VK_PIPELINE_BIND_POINT_COMPUTE,
+                                  pipelines_->layout(), 0, 1, &set, 0, nullptr);
+  commands->Barrier();
+  for (const Dispatch& dispatch : dispatches_) {
+    const auto& [pipeline, parameters, groups] = dispatch;
+    functions.CmdBindPipeline(commands->get(), VK_PIPELINE_BIND_POINT_COMPUTE,
+                              pipelines_->Get(pipeline));
+    functions.CmdPushConstants(
+        commands->get(), pipelines_->layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
+        static_cast<std::uint32_t>(parameters.size() * sizeof(std::uint32_t)), parameters.data());
+    functions.CmdDispatch(commands->get(), groups[0], groups[1], groups[2]);
+    // Also before what does not read the result: memory is used again by later tensors.
+    commands->Barrier();
+  }
+}
+
+void VulkanProgram::Run(std::span<const std::span<const float>> inputs,
+                        std::span<const std::span<float>> outputs, ProgramMemory* memory) const {
+  auto& [upload, arena, download, descriptors, commands] = static_cast<VulkanMemory&>(*memory);
+  std::byte* to = upload.data();
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const Place place = PlaceOf(lowered_.inputs[i]);
+    CopyRows(inputs[i].data(), Index(place.shape.width), reinterpret_cast<float*>(to), place.row,
+             place.shape);
+    to += BytesOf(place);
+  }
+  commands.RunAndWait();
+  download.Invalidate(*device_);
+  const std::byte* from = download.data();
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const Place place = PlaceOf(lowered_.outputs[i]);
+    if (keeps_values_) from = download.data() + place.offset * sizeof(float);
+    CopyRows(reinterpret_cast<const float*>(from), place.row, outputs[i].data(),
+             Index(place.shape.width), place.shape);
+    from += BytesOf(place);
+  }
+}
+
+TensorView VulkanProgram::Find(const ProgramMemory& memory, int value) const {
+  ORB360_CHECK(keeps_values_);
+  const auto& vulkan = static_cast<const VulkanMemory&>(memory);
+  return ViewOf(assignment_.buffers[Index(value)],
+                lowered_.values[Index(value)].format.shape.channels, vulkan.download.data());
+}
+
+}  // namespace orb360::nn::vulkan

@@ -1,0 +1,172 @@
+// The processor of the network: --device of run and complete, and `orb360 devices`.
+
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/apps/orb360/program.h"
+#include "tests/apps/orb360/run_fixture.h"
+#include <orb360/slam/io/depth_image.h>
+
+namespace orb360 {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+/// Variables of the environment of programs that are started in its lifetime.
+class Environment {
+ public:
+  explicit Environment(const std::map<std::string, std::string>& variables) {
+    for (const auto& [name, value] : variables) {
+      const char* const before = std::getenv(name.c_str());
+      before_[name] = before != nullptr ? before : "";
+      setenv(name.c_str(), value.c_str(), 1);
+    }
+  }
+  ~Environment() {
+    for (const auto& [name, value] : before_) {
+      value.empty() ? unsetenv(name.c_str()) : setenv(name.c_str(), value.c_str(), 1);
+    }
+  }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  std::map<std::string, std::string> before_;
+};
+
+class DeviceTest : public RunTest {
+ protected:
+  DeviceTest() { WriteMeanNetwork(folder_ / "net.h5"); }
+
+  nlohmann::json Devices() const {
+    const ProgramResult result =
+        RunOrb360({"devices", "--weights", folder_ / "net.h5", "--size", "64", "32", "--json"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return nlohmann::json::parse(result.out);
+  }
+
+  /// Skips the test where no Vulkan device can run networks.
+  bool HasVulkan() const {
+    const nlohmann::json found = Devices();
+    for (const nlohmann::json& device : found["devices"]) {
+      if (device["device"] != "cpu" && device["problem"] == "") return true;
+    }
+    return false;
+  }
+
+  ProgramResult RunOn(const std::string& device) const {
+    return Run({"--weights", folder_ / "net.h5", "--cloud-quality", "draft", "--save-depth",
+                "--device", device});
+  }
+
+  ProgramResult Complete(const std::string& device, const std::string& out) const {
+    cv::imwrite(folder_ / "image.png", cv::Mat(24, 48, CV_8UC3, cv::Scalar(10, 20, 30)));
+    cv::Mat range = cv::Mat::zeros(24, 48, CV_32F);
+    for (int i = 0; i < 20; ++i) range.at<float>(1 + i, 2 * i) = 2 + 0.5f * static_cast<float>(i);
+    WriteDepthImage(folder_ / "sparse.png", range);
+    return RunOrb360({"complete", "--image", folder_ / "image.png", "--sparse",
+                      folder_ / "sparse.png", "--weights", folder_ / "net.h5", "--out",
+                      folder_ / out, "--json", "--device", device});
+  }
+};
+
+/// A driver that loses its device after that many submissions.
+std::map<std::string, std::string> FailingDriver(int submissions) {
+  return {{"LD_LIBRARY_PATH", ORB360_BINARY_DIR "/tests/apps/orb360/failing_vulkan"},
+          {"ORB360_TEST_SUBMISSIONS", std::to_string(submissions)}};
+}
+
+/// No driver at all.
+const std::map<std::string, std::string> kNoDriver = {{"VK_ICD_FILENAMES", "/nonexistent.json"},
+                                                      {"VK_DRIVER_FILES", "/nonexistent.json"}};
+
+TEST_F(DeviceTest, TheCpuIsAlwaysListedAndMeasured) {
+  for (const auto& variables : {std::map<std::string, std::string>(), kNoDriver}) {
+    const Environment environment(variables);
+    const nlohmann::json cpu = Devices()["devices"][0];
+    EXPECT_EQ(cpu["device"], "cpu");
+    EXPECT_GT(cpu["milliseconds"], 0.0);
+  }
+}
+
+TEST_F(DeviceTest, WithoutADriverTheCpuIsTakenOrTheReasonTold) {
+  const Environment environment(kNoDriver);
+  EXPECT_THAT(Devices()["problem"].get<std::string>(), HasSubstr("Vulkan"));
+  const ProgramResult automatic = Complete("auto", "auto.png");
+  ASSERT_EQ(automatic.status, 0) << automatic.err;
+  EXPECT_EQ(nlohmann::json::parse(automatic.out)[0]["device"], "cpu");
+  const ProgramResult vulkan = Complete("vulkan", "vulkan.png");
+  EXPECT_EQ(vulkan.status, 1);
+  EXPECT_THAT(vulkan.err, AllOf(IsOneLine(), HasSubstr("--device vulkan: "), HasSubstr("Vulkan")));
+}
+
+TEST_F(DeviceTest, UnknownDevicesAreRefusedBeforeAnyWork) {
+  WriteBlanks();
+  const std::string net = folder_ / "net.h5";
+  EXPECT_THAT(Refusal({"--weights", net, "--device", "gpu"}),
+              HasSubstr("should be cpu, auto, vulkan or vulkan:N"));
+  EXPECT_THAT(Refusal({"--weights", net, "--device", "vulkan:77"}), HasSubstr("vulkan:77: "));
+  EXPECT_THAT(Refusal({"--weights", "none", "--device", "auto"}), HasSubstr("--device: without"));
+}
+
+TEST_F(DeviceTest, CompletesOnADeviceAsOnTheCpu) {
+  if (!HasVulkan()) GTEST_SKIP() << "no Vulkan device can run networks here";
+  const ProgramResult cpu = Complete("cpu", "cpu.png");
+  const ProgramResult vulkan = Complete("vulkan", "vulkan.png");
+  ASSERT_EQ(cpu.status, 0) << cpu.err;
+  ASSERT_EQ(vulkan.status, 0) << vulkan.err;
+  EXPECT_THAT(nlohmann::json::parse(vulkan.out)[0]["device"].get<std::string>(),
+              StartsWith("vulkan:"));
+  const cv::Mat expected = ReadDepthImage(folder_ / "cpu.png");
+  const cv::Mat actual = ReadDepthImage(folder_ / "vulkan.png");
+  EXPECT_GT(cv::countNonZero(expected), 0);
+  EXPECT_LE(cv::norm(expected, actual, cv::NORM_INF), 1.0 / 256);  // the unit of the file
+}
+
+TEST_F(DeviceTest, ARunStatesItsDevice) {
+  if (!HasVulkan()) GTEST_SKIP() << "no Vulkan device can run networks here";
+  WriteRoom();
+  const ProgramResult result = RunOn("vulkan");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, IsEmpty());
+  EXPECT_THAT(Summary()["device"].get<std::string>(), StartsWith("vulkan:"));
+  EXPECT_GT(Summary()["cloud"]["points"], 0);
+}
+
+TEST_F(DeviceTest, ARunWhoseDeviceIsLostGoesOnWithTheCpuAndWarnsOnce) {
+  if (!HasVulkan()) GTEST_SKIP() << "no Vulkan device can run networks here";
+  WriteRoom();
+  ASSERT_EQ(RunOn("cpu").status, 0);
+  const nlohmann::json expected = Summary();
+  const std::string cloud = ReadText(OutFile("cloud.ply"));
+  EXPECT_EQ(expected["device"], "cpu");
+  for (const int submissions : {0, 2}) {  // the weights and one image
+    std::filesystem::remove_all(Out());
+    const Environment environment(FailingDriver(submissions));
+    const ProgramResult result = RunOn("vulkan");
+    EXPECT_EQ(result.status, 0);
+    EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("warning: vulkan:"),
+                                  HasSubstr("the device was lost"), HasSubstr("on the CPU")));
+    const nlohmann::json summary = Summary();
+    EXPECT_EQ(summary["device"], "cpu");
+    EXPECT_EQ(summary["warnings"].size(), 1u);
+    EXPECT_EQ(summary["cloud"]["views"], expected["cloud"]["views"]);
+    if (submissions == 0) {
+      EXPECT_TRUE(ReadText(OutFile("cloud.ply")) == cloud);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace orb360

@@ -1,0 +1,71 @@
+#include "nn/vulkan/choose_device.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <orb360/nn/base/check.h>
+
+namespace orb360::nn {
+namespace {
+
+using enum VulkanDevice::Type;
+
+VulkanDevices Machine(const std::vector<VulkanDevice::Type>& types) {
+  VulkanDevices found;
+  for (const VulkanDevice::Type type : types) {
+    VulkanDevice device;
+    device.index = static_cast<int>(found.devices.size());
+    device.name = NameOf(type);
+    device.type = type;
+    found.devices.push_back(device);
+  }
+  return found;
+}
+
+std::string ErrorOf(const std::string& name, const VulkanDevices& found) {
+  try {
+    ChooseDevice(name, found);
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(ChooseDevice, AutoTakesTheFirstGpuAndNeverADriverOnTheCpu) {
+  EXPECT_EQ(ChooseDevice("auto", Machine({kCpu, kIntegrated, kDiscrete})), 1);
+  EXPECT_EQ(ChooseDevice("auto", Machine({kCpu})), std::nullopt);
+  EXPECT_EQ(ChooseDevice("auto", Machine({})), std::nullopt);
+  EXPECT_EQ(ChooseDevice("auto", {{}, "no driver"}), std::nullopt);
+  VulkanDevices found = Machine({kDiscrete, kIntegrated});
+  found.devices[0].problem = "it is too old";
+  EXPECT_EQ(ChooseDevice("auto", found), 1);
+}
+
+TEST(ChooseDevice, VulkanPrefersGpusAndTakesWhatThereIs) {
+  EXPECT_EQ(ChooseDevice("vulkan", Machine({kCpu, kDiscrete})), 1);
+  EXPECT_EQ(ChooseDevice("vulkan", Machine({kCpu})), 0);
+  EXPECT_EQ(ChooseDevice("vulkan:0", Machine({kCpu, kDiscrete})), 0);
+  EXPECT_EQ(ChooseDevice("cpu", Machine({kDiscrete})), std::nullopt);
+}
+
+TEST(ChooseDevice, SaysWhatWasFound) {
+  EXPECT_THAT(ErrorOf("vulkan:7", Machine({kDiscrete})),
+              testing::AllOf(testing::HasSubstr("vulkan:7"),
+                             testing::HasSubstr("found vulkan:0 (discrete GPU)")));
+  EXPECT_THAT(ErrorOf("vulkan", {{}, "there is no driver"}), testing::HasSubstr("no driver"));
+  VulkanDevices old = Machine({kDiscrete});
+  old.devices[0].problem = "it has Vulkan 1.0, and 1.2 is needed";
+  EXPECT_THAT(ErrorOf("vulkan:0", old), testing::HasSubstr("1.2 is needed"));
+  EXPECT_THAT(ErrorOf("vulkan", old), testing::HasSubstr("1.2 is needed"));
+}
+
+TEST(ChooseDevice, RefusesOtherNames) {
+  for (const char* name : {"", "gpu", "vulkan:", "vulkan:-1", "vulkan:1x", "vulkan:99999", "CPU"}) {
+    EXPECT_THAT(ErrorOf(name, Machine({kDiscrete})),
+                testing::HasSubstr("should be cpu, auto, vulkan or vulkan:N"))
+        << name;
+  }
+}
+
+}  // namespace
+}  // namespace orb360::nn

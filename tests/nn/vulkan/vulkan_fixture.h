@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "nn/vulkan/logical_device.h"
+#include <orb360/nn/graph/executor.h>
+
+namespace orb360::nn {
+
+/// Tests on a Vulkan device with the validation layer, which must have nothing to say. They use the
+/// device of the environment variable ORB360_TEST_DEVICE, or else what `--device vulkan` chooses,
+/// and are skipped where there is none.
+class VulkanTest : public ::testing::Test {
+ protected:
+  void SetUp() override;
+  void TearDown() override;
+
+  /// Opens the device again, with functions replaced.
+  Device OpenWith(const vulkan::LogicalDevice::Replace& replace);
+  /// Opens the device again, with the tiles of another kind of device.
+  Device OpenWithTilesFor(VulkanDevice::Type type);
+
+  /// For the device that SetUp has opened.
+  ExecutorOptions options() const { return {.device = device_}; }
+
+  Device device_;
+  std::shared_ptr<const vulkan::Instance> instance_;
+  int index_ = 0;
+
+ private:
+  std::vector<std::string> messages_;
+};
+
+}  // namespace orb360::nn

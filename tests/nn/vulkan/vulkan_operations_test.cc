@@ -1,0 +1,123 @@
+// Every operation on a Vulkan device, against PyTorch's results and against double precision.
+
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "tests/nn/graph/network_builder.h"
+#include "tests/nn/graph/node_check.h"
+#include "tests/nn/graph/random_network.h"
+#include "tests/nn/graph/reference_check.h"
+#include "tests/nn/kernels/plain_image.h"
+#include "tests/nn/vulkan/vulkan_fixture.h"
+
+namespace orb360::nn {
+namespace {
+
+class VulkanOperationReference : public VulkanTest,
+                                 public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(VulkanOperationReference, IsWhatPyTorchComputes) {
+  ExpectEveryTensorOf(ReferenceFile(GetParam()), kRoundingsOfOperation, options());
+}
+
+TEST_P(VulkanOperationReference, IsTheSameInANetworkMadeForSpeed) {
+  ExpectOutputsOf(ReferenceFile(GetParam()), kRoundingsOfOperation, options());
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, VulkanOperationReference, ::testing::ValuesIn(kReferenceOperations),
+                         [](const auto& suite) { return std::string(suite.param); });
+
+using VulkanOperations = VulkanTest;
+
+// Sizes of one pixel, below and above a workgroup, and not a multiple of it.
+constexpr std::pair<int, int> kSizes[] = {{1, 1}, {1, 7}, {5, 1}, {7, 9}, {33, 35}, {6, 150}};
+
+TEST_F(VulkanOperations, AreRightForImagesOfAnySize) {
+  NetworkBuilder net(1);
+  net.Input("x", 3);
+  net.Convolution("wide", "x", 3, 70, 3, 2);
+  net.Convolution("a", "wide", 70, 17, 5, 2, "zero");
+  net.Convolution("b", "a", 17, 18, 1);
+  net.Node("leaky", "leaky_relu", {"b"}, {{"slope", 0.1}});
+  net.NormalizedConvolution("d", "x", "x", 3, 2, 5);
+  net.NormalizedConvolution("largest", "x", "x", 3, 5, 15, "zero");
+  net.Node("mean", "global_average_pool", {"leaky"});
+  net.Dense("g", "mean", 18, 70);
+  net.Node("row", "latitude_sine", {"x"});
+  for (const char* name : {"leaky", "d", "largest", "g", "row"}) net.Output(name, name);
+  const Graph graph = net.Build();
+  for (const auto& [height, width] : kSizes) {
+    SCOPED_TRACE(testing::Message() << width << "x" << height);
+    ExpectEveryNodeRight(graph, {RandomImage({3, height, width}, 0.1f, 1, 1)}, options());
+  }
+}
+
+TEST_F(VulkanOperations, ChangeTheSizeOfImagesOfAnySize) {
+  NetworkBuilder net(2);
+  net.Input("x", 5);
+  net.Input("c", 5);
+  net.Node("average", "average_pool", {"x"});
+  net.Node("quarter", "confidence_pool", {"x", "c"}, {{"rule", "quarter"}}, 2);
+  net.Node("root", "confidence_pool", {"x", "c"}, {{"rule", "sqrt"}}, 2);
+  net.Node("nearest", "upsample_nearest", {"average"});
+  net.Node("zero", "upsample_bilinear", {"average"}, {{"padding", "zero"}});
+  net.Node("wrap", "upsample_bilinear", {"average"}, {{"padding", "wrap_replicate"}});
+  net.Node("pole", "upsample_bilinear", {"x"}, {{"padding", "wrap_cross_pole"}});
+  net.Node("one", "slice", {"average"}, {{"first", 3}, {"count", 1}});
+  net.Convolution("weights", "average", 5, 36, 1);
+  net.Node("convex", "convex_upsample", {"one", "weights"}, {{"padding", "wrap_replicate"}});
+  for (const char* name :
+       {"quarter", "quarter.1", "root", "root.1", "nearest", "zero", "wrap", "pole", "convex"}) {
+    net.Output(name, name);
+  }
+  const Graph graph = net.Build();
+  for (const auto& [height, width] : kSizes) {
+    SCOPED_TRACE(testing::Message() << 2 * width << "x" << 2 * height);
+    ExpectEveryNodeRight(graph,
+                         {RandomImage({5, 2 * height, 2 * width}, -1, 1, 1),
+                          RandomImage({5, 2 * height, 2 * width}, 0, 1, 2)},
+                         options());
+  }
+}
+
+TEST_F(VulkanOperations, FindTheMedianOfAnyNumberOfPoints) {
+  NetworkBuilder net(1);
+  net.Input("depth", 1);
+  net.Input("confidence", 1);
+  net.Node("points", "median_log", {"depth", "confidence"}, nlohmann::json::object(), 3);
+  net.Output("x", "points");
+  net.Output("c", "points.1");
+  net.Output("median", "points.2");
+  const Graph graph = net.Build();
+  for (const auto& [height, width] : kSizes) {
+    SCOPED_TRACE(testing::Message() << width << "x" << height);
+    const PlainImage confidence = RandomImage({1, height, width}, -0.5f, 2, 2);
+    ExpectEveryNodeRight(graph, {RandomImage({1, height, width}, -8, 12, 1), confidence},
+                         options());
+    PlainImage odd({1, height, width});  // none, or extreme ones
+    ExpectEveryNodeRight(graph, {odd, confidence}, options());
+    const double extremes[] = {1e-40,
+                               3e38,
+                               std::numeric_limits<double>::infinity(),
+                               std::numeric_limits<double>::quiet_NaN(),
+                               -1,
+                               1e-45};
+    for (std::size_t i = 0; i < odd.values.size(); ++i) {
+      odd.values[i] = static_cast<float>(extremes[i % std::size(extremes)]);
+    }
+    ExpectEveryNodeRight(graph, {odd, RandomImage({1, height, width}, 0.1f, 1, 3)}, options());
+  }
+}
+
+TEST_F(VulkanOperations, OfRandomNetworksAgreeWithDoublePrecision) {
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    ExpectEveryNodeRight(RandomNetwork(25, seed).Build(), RandomInputs(8, 16, seed), options());
+    if (HasFailure()) return;
+  }
+}
+
+}  // namespace
+}  // namespace orb360::nn
