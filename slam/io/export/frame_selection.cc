@@ -3,18 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nn/base/statistics.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {
-
-/// Returns the median; 0 for no values.
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Returns the median distance of what a frame observes, 0 where it observes nothing.
 double MedianRange(const SparseModel& model, const PosedFrame& frame) {
@@ -25,7 +18,7 @@ double MedianRange(const SparseModel& model, const PosedFrame& frame) {
                       frame.world_from_optical.translation)
                          .norm());
   }
-  return Median(std::move(ranges));
+  return ranges.empty() ? 0.0 : Median(ranges);
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "nn/base/statistics.h"
+
 namespace orb360 {
 namespace {
 
@@ -60,12 +62,6 @@ std::vector<double> Angles(const LensCalibration& calibration, std::span<const L
     angles.push_back(2.0 * std::asin(std::min(1.0, 0.5 * Difference(calibration, match).norm())));
   }
   return angles;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 /// One step of Gauss and Newton with weights by Cauchy's loss of width `width`, radians.

@@ -1,22 +1,16 @@
 #include "slam/io/positions/metadata_track.h"
 
-#include <memory>
 #include <system_error>
 
 #include "slam/io/positions/utc_time.h"
+#include "slam/io/video/libav.h"
 #include <orb360/nn/base/check.h>
 
-#ifdef ORB360_HAS_LIBAV
 extern "C" {
-#include <libavcodec/packet.h>
-#include <libavformat/avformat.h>
 #include <libavutil/log.h>
 }
-#endif
 
 namespace orb360 {
-
-#ifdef ORB360_HAS_LIBAV
 namespace {
 
 /// Keeps libav from writing to standard error, while it lives; UserErrors tell what was wrong.
@@ -31,18 +25,11 @@ class QuietLibav {
   int level_;
 };
 
-struct CloseInput {
-  void operator()(AVFormatContext* context) const { avformat_close_input(&context); }
-};
-struct FreePacket {
-  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
-};
-
-std::unique_ptr<AVFormatContext, CloseInput> Open(const std::filesystem::path& path) {
+LibavPtr<AVFormatContext> Open(const std::filesystem::path& path) {
   AVFormatContext* context = nullptr;
   // The prefix keeps a name with a colon from being taken for a protocol.
   if (avformat_open_input(&context, ("file:" + path.string()).c_str(), nullptr, nullptr) == 0) {
-    return std::unique_ptr<AVFormatContext, CloseInput>(context);
+    return LibavPtr<AVFormatContext>(context);
   }
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
@@ -86,7 +73,7 @@ MetadataSummary ReadMetadataTrack(const std::filesystem::path& path, std::string
     has_video = has_video || is_video;
   }
   if (!has_track) return summary;
-  const std::unique_ptr<AVPacket, FreePacket> packet(av_packet_alloc());
+  const LibavPtr<AVPacket> packet(av_packet_alloc());
   while (av_read_frame(context.get(), packet.get()) == 0) {
     const AVStream& stream = *context->streams[packet->stream_index];
     if (stream.codecpar->codec_tag == wanted && packet->pts != AV_NOPTS_VALUE) {
@@ -100,16 +87,5 @@ MetadataSummary ReadMetadataTrack(const std::filesystem::path& path, std::string
   }
   return summary;
 }
-
-#else
-
-MetadataSummary ReadMetadataTrack(const std::filesystem::path& path, std::string_view,
-                                  const std::function<void(const MetadataSample&)>&) {
-  throw UserError(path.string() +
-                  ": this orb360 was built without libav, which reads positions from videos; "
-                  "install libavformat-dev and build it with -DORB360_WITH_LIBAV=ON");
-}
-
-#endif
 
 }  // namespace orb360

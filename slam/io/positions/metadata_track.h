@@ -25,7 +25,7 @@ struct MetadataSummary {
 
 /// Calls `take` with each sample of the tracks with the four-character tag, such as "gpmd" or
 /// "camm", of an MP4 or QuickTime file, in the order of the file. Frames are skipped, not read.
-/// Throws UserError for a file that is not a video container, and where this build has no libav.
+/// Throws UserError for a file that is not a video container.
 MetadataSummary ReadMetadataTrack(const std::filesystem::path& path, std::string_view tag,
                                   const std::function<void(const MetadataSample&)>& take);
 
