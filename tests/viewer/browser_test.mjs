@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { coverage, findColor, launch, open, serve, settle, shownPoints } from "./page.mjs";
+import { coverage, findColor, launch, open, serve, serveLive, settle, shownPoints } from "./page.mjs";
 
 const run = process.env.ORB360_RUN;
 let browser;
@@ -268,6 +268,37 @@ test("shows why a run cannot be loaded", async () => {
     assert.match(await page.$eval("#center", (center) => center.textContent), /is damaged/);
     await page.close();
   });
+});
+
+test("shows, steps and finishes a run that goes on", async () => {
+  const live = await serveLive(process.env.ORB360_TOWN, join(run, "..", "live"));
+  const page = await browser.newPage();
+  const problems = [];
+  page.on("pageerror", (error) => problems.push(error.message));
+  page.on("console", (message) => message.type() === "error" && problems.push(message.text()));
+  await page.goto(live.url);
+  const frameNow = () => page.$eval("#view", (canvas) => Number(canvas.dataset.frame));
+  const click = (name) => page.evaluate((text) => [...document.querySelectorAll(".live-buttons button")]
+    .find((button) => button.textContent === text).click(), name);
+  await click("One frame");
+  await page.waitForFunction(() => document.body.dataset.state === "ready");
+  for (let i = 0; i < 4; ++i) {
+    const before = await frameNow();
+    await click("One frame");
+    await page.waitForFunction(
+      (frame) => Number(document.querySelector("#view").dataset.frame) === frame + 1, {}, before);
+  }
+  assert.equal(await page.$eval(".chip", (chip) => chip.textContent), "paused");
+  await click("Go on");
+  await page.waitForFunction(() => Number(document.querySelector("#view").dataset.keyframes) > 3 &&
+    Number(document.querySelector("#view").dataset.landmarks) > 100);
+  assert.ok(await page.$eval(".live-image canvas", (canvas) => canvas.width > 300));
+  assert.deepEqual(problems, []);
+  await click("Finish early");
+  assert.equal(await live.ended, 0);
+  await page.waitForFunction(() => document.body.dataset.connection === "lost");
+  assert.match(await page.$eval("#banner", (banner) => banner.textContent), /has ended/);
+  await page.close();
 });
 
 test("opens a report from a file, without a server", async () => {
