@@ -211,7 +211,9 @@ int Run(const RunOptions& options) {
       ReadRunPositions(options.positions, options.input, fps, &unusable);
   if (!unusable.empty()) Warn(unusable, &record);
   std::optional<LiveView> live;
-  if (options.view_port >= 0) live.emplace(options.view_address, options.view_port);
+  if (!options.view_port.empty()) {
+    live.emplace(options.view_address, std::stoi(options.view_port));
+  }
   RunOutput output(options.out);
   if (stored) output.SetWorld(stored->file_world_from_map);
   // This throws now if the map could not be written at the end. It may be in the output folder.

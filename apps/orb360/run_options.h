@@ -32,7 +32,7 @@ struct RunOptions {
   bool saves_views = false;
   bool has_mesh = false;
   std::string cloud_quality;  // "": as the configuration says
-  int view_port = -1;         // -1: it is not shown
+  std::string view_port;      // "": the run is not shown
   std::string view_address = "127.0.0.1";
   bool is_quiet = false;
 };

@@ -15,8 +15,8 @@ BUILD = Path(os.environ.get("ORB360_BINARY_DIR", ROOT / "build"))
 WITH_COMMANDS = ("orb360", "town")
 # Programs that are not this project's.
 FOREIGN = {"apt-get", "cd", "clang-format", "clang-tidy", "cmake", "ctest", "do", "done", "doxygen",
-           "dpkg", "export", "ffmpeg", "for", "git", "head", "mkdir", "ninja", "npm", "ns-train",
-           "rm", "sudo", "time", "yes"}
+           "dpkg", "export", "ffmpeg", "for", "git", "head", "mkdir", "ninja", "node", "npm",
+           "ns-train", "rm", "sudo", "time", "yes"}
 
 
 @functools.cache

@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { coverage, findColor, launch, open, serve, settle, shownPoints } from "./page.mjs";
+import { coverage, findColor, launch, open, serve, serveLive, settle, shownPoints } from "./page.mjs";
 
 const run = process.env.ORB360_RUN;
 let browser;
@@ -65,20 +65,22 @@ onPage("shows the points of a run", {}, async (page) => {
   assert.match(await page.title(), /orb360$/);
 });
 
-onPage("streams finer points when the camera comes near", {}, async (page) => {
-  await page.evaluate(() => {
-    const slider = [...document.querySelectorAll(".slider input")].find(
-      (input) => input.parentElement.textContent.startsWith("Points at once"));
-    slider.value = "4.5";
-    slider.dispatchEvent(new Event("input"));
-  });
-  await settle(page);
-  assert.ok((await shownPoints(page)) < 60000);
-  const before = page.requests.length;
-  await page.focus("#view");
-  for (let i = 0; i < 8; ++i) await page.keyboard.press("+");
-  await settle(page);
-  assert.ok(page.requests.length > before, "nothing was loaded");
+onPage("shows as many points as are asked for", {}, async (page) => {
+  const all = await shownPoints(page);
+  const ask = async (exponent) => {
+    await page.evaluate((value) => {
+      const slider = [...document.querySelectorAll(".slider input")].find(
+        (input) => input.parentElement.textContent.startsWith("Points at once"));
+      slider.value = String(value);
+      slider.dispatchEvent(new Event("input"));
+    }, exponent);
+    await settle(page);
+    return shownPoints(page);
+  };
+  const few = await ask(4.5);
+  assert.ok(few > 5000 && few < 60000, `${few} points`);
+  assert.ok(few < 0.5 * all);
+  assert.equal(await ask(7), all);
 });
 
 onPage("opens the panorama of a keyframe that is clicked", {}, async (page) => {
@@ -268,6 +270,37 @@ test("shows why a run cannot be loaded", async () => {
     assert.match(await page.$eval("#center", (center) => center.textContent), /is damaged/);
     await page.close();
   });
+});
+
+test("shows, steps and finishes a run that goes on", async () => {
+  const live = await serveLive(process.env.ORB360_TOWN, join(run, "..", "live"));
+  const page = await browser.newPage();
+  const problems = [];
+  page.on("pageerror", (error) => problems.push(error.message));
+  page.on("console", (message) => message.type() === "error" && problems.push(message.text()));
+  await page.goto(live.url);
+  const frameNow = () => page.$eval("#view", (canvas) => Number(canvas.dataset.frame));
+  const click = (name) => page.evaluate((text) => [...document.querySelectorAll(".live-buttons button")]
+    .find((button) => button.textContent === text).click(), name);
+  await click("One frame");
+  await page.waitForFunction(() => document.body.dataset.state === "ready");
+  for (let i = 0; i < 4; ++i) {
+    const before = await frameNow();
+    await click("One frame");
+    await page.waitForFunction(
+      (frame) => Number(document.querySelector("#view").dataset.frame) === frame + 1, {}, before);
+  }
+  assert.equal(await page.$eval(".chip", (chip) => chip.textContent), "paused");
+  await click("Go on");
+  await page.waitForFunction(() => Number(document.querySelector("#view").dataset.keyframes) > 3 &&
+    Number(document.querySelector("#view").dataset.landmarks) > 100);
+  assert.ok(await page.$eval(".live-image canvas", (canvas) => canvas.width > 300));
+  assert.deepEqual(problems, []);
+  await click("Finish early");
+  assert.equal(await live.ended, 0);
+  await page.waitForFunction(() => document.body.dataset.connection === "lost");
+  assert.match(await page.$eval("#banner", (banner) => banner.textContent), /has ended/);
+  await page.close();
 });
 
 test("opens a report from a file, without a server", async () => {

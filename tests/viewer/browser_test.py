@@ -25,8 +25,8 @@ def main() -> int:
     report = out / "report.html"
     subprocess.run([BUILD / "orb360", "report", out / "run", "--out", report, "--max-size", "12"],
                    **quiet)
-    environment = {**os.environ, "ORB360_RUN": str(out / "run"), "ORB360_REPORT": str(report),
-                   "ORB360_CHROMIUM": chromium}
+    environment = {**os.environ, "ORB360_RUN": str(out / "run"), "ORB360_TOWN": str(out / "town"),
+                   "ORB360_REPORT": str(report), "ORB360_CHROMIUM": chromium}
     tests = subprocess.run(["node", "--test", "--test-concurrency=1", "browser_test.mjs"],
                            cwd=BUILD / "viewer_tests", env=environment, check=False)
     return 1 if tests.returncode != 0 else 0

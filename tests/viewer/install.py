@@ -43,7 +43,7 @@ def main() -> int:
     packages = ["package.json", "package-lock.json"]
     return (install(WEB, [*packages, "tsconfig.json", "build.mjs", "src"], build / "viewer_web")
             or install(HERE, [*packages, "browser_test.mjs", "measure.mjs", "page.mjs",
-                        "read_octree.mjs"],
+                        "read_octree.mjs", "units_test.mjs"],
                        build / "viewer_tests"))
 
 

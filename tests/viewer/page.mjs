@@ -1,24 +1,31 @@
 // What the tests of the page share: the program, the browser, and the pixels of the screen.
 import { spawn } from "node:child_process";
+import { request } from "node:http";
 import { join } from "node:path";
 import puppeteer from "puppeteer-core";
 
 export const orb360 = join(process.env.ORB360_BINARY_DIR, "orb360");
 
-/** Starts `orb360 view` and waits for its address. */
-export async function serve(run, port = 0) {
-  const program = spawn(orb360, ["view", run, "--port", String(port)]);
+/** Starts the program and waits until it prints an address. */
+async function start(parameters) {
+  const program = spawn(orb360, parameters);
   const ended = new Promise((resolve) => program.on("exit", resolve));
   let text = "";
   const url = await new Promise((resolve, reject) => {
     program.stdout.on("data", (data) => {
       text += data;
-      const found = /(http:\S+)/.exec(text);
+      const found = /(http:\S+)\s/.exec(text);
       if (found) resolve(found[1]);
     });
     program.stderr.on("data", (data) => (text += data));
-    ended.then(() => reject(new Error(`orb360 view has ended: ${text}`)));
+    ended.then(() => reject(new Error(`orb360 has ended: ${text}`)));
   });
+  return { program, ended, url };
+}
+
+/** Starts `orb360 view`. */
+export async function serve(run, port = 0) {
+  const { program, ended, url } = await start(["view", run, "--port", String(port)]);
   return {
     url,
     port: Number(new URL(url).port),
@@ -28,6 +35,18 @@ export async function serve(run, port = 0) {
       return ended;
     },
   };
+}
+
+/** Starts a run that is shown, and pauses it at once. */
+export async function serveLive(input, out) {
+  const { ended, url } = await start(
+    ["run", input, "--out", out, "--weights", "none", "--mask", "none", "--view=0"]);
+  const { host, origin } = new URL(url);
+  const status = await new Promise((resolve) => request(
+    `${url}pause`, { method: "POST", headers: { Host: host, Origin: origin, "Content-Length": 0 } },
+    (response) => resolve(response.resume().statusCode)).end());
+  if (status !== 200) throw new Error(`pause was answered with ${status}`);
+  return { ended, url };
 }
 
 export function launch() {

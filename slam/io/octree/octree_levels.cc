@@ -22,11 +22,7 @@ void OctreeLevels::Add(const SortedPoint& point) {
   const int level = std::clamp(common + 1 - kOctreeCellBits, 0, kOctreeMaxLevel);
   for (int above = 0; above <= level; ++above) {
     std::optional<Open>& open = open_[above];
-    if (!open) {
-      open.emplace();
-      open->node.level = above;
-      open->node.code = CubeOf(point.code, above);
-    }
+    if (!open) open.emplace(Open{{above, CubeOf(point.code, above), 0, {}}, {}, 0});
   }
   open_[level]->node.points.push_back(point);
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
@@ -82,18 +83,20 @@ TEST_F(RunViewTest, IsPausedStepsAndEndsEarly) {
   Program run(Arguments("out"));
   const int port = PortOf(&run);
   EXPECT_EQ(Post(port, "/pause"), 200);
+  EXPECT_EQ(Post(port, "/step"), 200);
   const int first = StateAt(port, 0)["frame"];
-  EXPECT_LT(first, kFrames - 6);
-  for (int step = 1; step <= 5; ++step) {
+  const int last = std::max(first + 3, 14);
+  ASSERT_LT(last, kFrames);
+  for (int frame = first + 1; frame <= last; ++frame) {
     EXPECT_EQ(Post(port, "/step"), 200);
-    const nlohmann::json state = StateAt(port, first + step);
-    EXPECT_EQ(state["frame"], first + step);
+    const nlohmann::json state = StateAt(port, frame);
+    EXPECT_EQ(state["frame"], frame);
     EXPECT_EQ(state["isPaused"], true);
   }
   EXPECT_EQ(Post(port, "/finish"), 200);
   const ProgramResult result = run.Wait();
   EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(Summary()["frames"], first + 6);
+  EXPECT_EQ(Summary()["frames"], last + 1);
   EXPECT_EQ(Summary()["warnings"][0], "ended early from the viewer");
 }
 
@@ -103,7 +106,7 @@ TEST_F(RunViewTest, SaysThatAPortIsTakenBeforeAnyWork) {
   Post(port, "/pause");
   EXPECT_THAT(Refusal({"--view=" + std::to_string(port)}),
               AllOf(HasSubstr("is taken by another program")));
-  Post(port, "/finish");
+  EXPECT_EQ(Post(port, "/resume"), 200);
   EXPECT_EQ(first.Wait().status, 0);
 }
 

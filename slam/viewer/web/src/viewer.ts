@@ -278,6 +278,7 @@ export class Viewer {
   }
 
   private showEmpty(): void {
+    this.page.stage.classList.add("without-cloud");
     this.page.center.replaceChildren(
       this.run.frames.index.length > 0
         ? centerMessage("No points", "This run has a path but no cloud.")

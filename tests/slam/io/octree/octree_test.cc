@@ -1,14 +1,18 @@
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
+#include <random>
 #include <set>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "slam/io/crc32.h"
 #include "slam/io/octree/octree_file.h"
 #include "slam/io/octree/octree_writer.h"
 #include "slam/io/ply.h"
@@ -191,6 +195,43 @@ TEST_F(OctreeTest, SaysWhatIsWrongWithAFileInOneLine) {
     WriteText(folder_ / "bad.octree", damaged);
     EXPECT_THAT(message("bad.octree"), HasSubstr("damaged")) << at;
   }
+}
+
+/// Writes the checksums of header and index anew, as somebody would who wants to get past them.
+void WriteChecksums(std::string* bytes) {
+  OctreeHeader header{};
+  std::memcpy(&header, bytes->data(), sizeof header);
+  if (header.index_offset <= bytes->size()) {
+    header.index_crc = Crc32(std::string_view(*bytes).substr(header.index_offset));
+  }
+  std::memcpy(bytes->data(), &header, sizeof header);
+  header.header_crc = Crc32(std::string_view(*bytes).substr(0, offsetof(OctreeHeader, header_crc)));
+  std::memcpy(bytes->data(), &header, sizeof header);
+}
+
+TEST_F(OctreeTest, SurvivesFilesWhoseChecksumsFitWhatWasChangedInThem) {
+  Write(20000);
+  const std::string whole = ReadText(folder_ / "a.octree");
+  const size_t index = whole.size() - OctreeFile(folder_ / "a.octree").nodes().size() * 32;
+  std::mt19937 random(6);
+  int num_refused = 0;
+  for (int i = 0; i < 500; ++i) {
+    std::string bytes = whole;
+    for (unsigned edits = 1 + random() % 4; edits > 0; --edits) {
+      const size_t at = random() % 2 == 0 ? 12 + random() % (sizeof(OctreeHeader) - 12)
+                                          : index + random() % (whole.size() - index);
+      bytes[at] = static_cast<char>(random());
+    }
+    WriteChecksums(&bytes);
+    WriteText(folder_ / "bad.octree", bytes);
+    try {
+      const OctreeFile octree(folder_ / "bad.octree");
+      for (const OctreeNode& node : octree.nodes()) octree.ReadPoints(node);
+    } catch (const UserError&) {
+      ++num_refused;
+    }
+  }
+  EXPECT_GT(num_refused, 200);
 }
 
 }  // namespace

@@ -1,0 +1,152 @@
+// Modules of the page by themselves, bundled by esbuild.
+import assert from "node:assert/strict";
+import { createRequire } from "node:module";
+import { fileURLToPath } from "node:url";
+import { test } from "node:test";
+
+const web = fileURLToPath(new URL("../viewer_web/", import.meta.url));
+const esbuild = createRequire(`${web}package.json`)("esbuild");
+
+/** Imports what a TypeScript text exports. */
+async function load(text) {
+  const { outputFiles } = await esbuild.build({
+    stdin: { contents: text, resolveDir: web, loader: "ts" },
+    bundle: true, format: "esm", write: false,
+  });
+  return import(
+    "data:text/javascript;base64," + Buffer.from(outputFiles[0].contents).toString("base64"));
+}
+
+const { format, chooseNodes, THREE, ViewRange, colorAt, ticksBetween, readLivePoints } = await load(`
+  export * as format from "./src/format";
+  export * as THREE from "three";
+  export { chooseNodes } from "./src/node_choice";
+  export { ViewRange } from "./src/view_range";
+  export { colorAt } from "./src/color_maps";
+  export { ticksBetween } from "./src/charts";
+  export { readLivePoints } from "./src/live_source";
+`);
+
+test("lengths have a unit, and the uncertainty that the scale gives them", () => {
+  assert.equal(format.length(12.345, "m"), "12.35 m");
+  assert.equal(format.length(-0.5, "m"), "−50 cm");
+  assert.equal(format.length(0.5, "units"), "0.50 units");
+  assert.equal(format.length(1234.5, "m"), "1234.5 m");
+  assert.equal(format.uncertainLength(10, "m", 0.02), "10.00 m ± 20 cm");
+  assert.equal(format.uncertainLength(10, "units", null), "10.00 units");
+});
+
+/** A complete octree of a cube at the origin, every node with 100 points. */
+function completeOctree(side, depth) {
+  const nodes = [];
+  const add = (min, size, level) => {
+    const place = nodes.length;
+    const node = { min, side: size, level, pointCount: 100, children: [], octant: 0 };
+    nodes.push(node);
+    if (level === depth) return place;
+    for (let octant = 0; octant < 8; ++octant) {
+      const corner = [4, 2, 1].map((bit, axis) => min[axis] + (octant & bit ? size / 2 : 0));
+      const child = add(corner, size / 2, level + 1);
+      nodes[child].octant = octant;
+      node.children.push(child);
+    }
+    return place;
+  };
+  add([0, 0, 0], side, 0);
+  return nodes;
+}
+
+function choose(nodes, eye, target, { budget = 1e9, isLoaded = () => true } = {}) {
+  const camera = new THREE.PerspectiveCamera(60, 1, 0.01, 1e4);
+  camera.up.set(0, 0, 1);
+  camera.position.set(...eye);
+  camera.lookAt(...target);
+  camera.updateMatrixWorld();
+  return chooseNodes(nodes, {
+    camera, pixelsPerRadian: 900, clip: null, budget, cellsPerSide: 64, isLoaded,
+  });
+}
+
+test("nodes near the camera are shown finer than distant ones", () => {
+  const nodes = completeOctree(100, 4);
+  const { shown } = choose(nodes, [-1, 50, 50], [100, 50, 50]);
+  const distanceOf = (node) => Math.hypot(
+    ...node.min.map((min, axis) => Math.max(min - [-1, 50, 50][axis], 0,
+      [-1, 50, 50][axis] - min - node.side)));
+  const deepest = shown.map((place) => nodes[place]).filter((node) => node.level === 4);
+  assert.ok(deepest.length > 0);
+  // 64 cells of a node of level 3, 12.5 wide, are 1.3 pixels of 1/900 rad apart at 135.
+  assert.ok(choose(nodes, [-1000, 50, 50], [0, 50, 50]).shown.every((p) => nodes[p].level <= 1));
+  assert.ok(deepest.every((node) => distanceOf(node) < 136));
+});
+
+test("nodes out of view are not shown, and children only with their parents", () => {
+  const nodes = completeOctree(100, 3);
+  assert.deepEqual(choose(nodes, [-10, 50, 50], [-100, 50, 50]).shown, [0]);
+  const { shown } = choose(nodes, [150, 50, 50], [50, 50, 50]);
+  const set = new Set(shown);
+  nodes.forEach((node, place) => node.children.forEach((child) => {
+    if (set.has(child)) assert.ok(set.has(place));
+  }));
+});
+
+test("the budget of points holds, and what is missing is asked for by importance", () => {
+  const nodes = completeOctree(100, 4);
+  const few = choose(nodes, [-5, 50, 50], [50, 50, 50], { budget: 2000 });
+  assert.equal(few.shown.length, 20);
+  const none = choose(nodes, [-5, 50, 50], [50, 50, 50], { isLoaded: (place) => place === 0 });
+  assert.deepEqual(none.shown, [0]);
+  assert.equal(none.missing.length, 8);
+  // The near half first.
+  assert.ok(none.missing.slice(0, 4).every((place) => nodes[place].min[0] === 0));
+});
+
+test("ranges of a view are found by their place in the panorama", () => {
+  const [width, height] = [4, 2];
+  const bytes = new ArrayBuffer(8 + 3 * width * height);
+  const view = new DataView(bytes);
+  view.setUint32(0, width, true);
+  view.setUint32(4, height, true);
+  for (let i = 1; i < 8; ++i) {
+    view.setUint16(8 + 2 * i, Math.round(32768 + 1024 * Math.log(i)), true);
+    view.setUint8(8 + 16 + i, 51);
+  }
+  const range = new ViewRange(bytes);
+  assert.equal(range.at(0.1, 0.1), null);
+  assert.ok(Math.abs(range.at(0.3, 0.2).range - 1) < 1e-3);
+  assert.ok(Math.abs(range.at(0.99, 0.99).range - 7) < 7e-3);
+  assert.ok(Math.abs(range.at(1.3, 0.2).range - 1) < 1e-3, "the seam is not closed");
+  assert.equal(range.at(0.3, 0.2).confidence, 0.2);
+  assert.equal(range.texels(range.limits())[0], 0);
+  assert.throws(() => new ViewRange(bytes.slice(0, 20)), /truncated/);
+});
+
+test("landmarks of a live run are read as they are written", () => {
+  const bytes = new ArrayBuffer(28);
+  const view = new DataView(bytes);
+  view.setUint32(0, 3, true);
+  view.setUint32(4, 1, true);
+  view.setInt32(8, 5, true);
+  [0.5, -0.25, 2].forEach((value, axis) => view.setFloat32(12 + 4 * axis, value, true));
+  [10, 20, 30].forEach((value, c) => view.setUint8(24 + c, value));
+  const points = readLivePoints(bytes);
+  assert.equal(points.revision, 3);
+  assert.deepEqual([...points.keyframe], [5]);
+  assert.deepEqual([...points.position], [0.5, -0.25, 2]);
+  assert.deepEqual([...points.color], [10, 20, 30]);
+  assert.throws(() => readLivePoints(bytes.slice(0, 20)), /truncated/);
+});
+
+test("colours of maps grow brighter from end to end", () => {
+  const brightness = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
+  for (const name of ["viridis", "cividis", "magma"]) {
+    for (let i = 1; i <= 20; ++i) {
+      assert.ok(brightness(colorAt(name, i / 20)) > brightness(colorAt(name, (i - 1) / 20)), name);
+    }
+  }
+});
+
+test("charts have round ticks within their limits", () => {
+  assert.deepEqual(ticksBetween(0, 10), [0, 5, 10]);
+  assert.deepEqual(ticksBetween(0.98, 1.02).map((tick) => tick.toFixed(2)), ["0.98", "1.00", "1.02"]);
+});
