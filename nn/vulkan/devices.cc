@@ -35,22 +35,27 @@ VulkanDevices ListVulkanDevices() {
   }
 }
 
-Device OpenDevice(const std::string& name) {
+Device OpenDevice(const std::string& name, bool uses_halves) {
   CheckDeviceName(name);
-  if (name == "cpu") return {};
   std::shared_ptr<const vulkan::Instance> instance;
   VulkanDevices found;
-  try {
-    instance = std::make_shared<vulkan::Instance>();
-    found = DevicesOf(*instance);
-  } catch (const UserError& error) {
-    found.problem = error.what();
+  if (name != "cpu") {
+    try {
+      instance = std::make_shared<vulkan::Instance>();
+      found = DevicesOf(*instance);
+    } catch (const UserError& error) {
+      found.problem = error.what();
+    }
   }
   const std::optional<int> index = ChooseDevice(name, found);
+  const VulkanDevice* const chosen =
+      index ? &found.devices[static_cast<std::size_t>(*index)] : nullptr;
+  const bool stores_halves = ChooseHalves(name, chosen, uses_halves);
   if (!index) return {};
   auto device = std::make_shared<const vulkan::LogicalDevice>(instance, *index);
-  const std::string opened = device->name();
-  return {opened, std::make_shared<vulkan::VulkanBackend>(std::move(device))};
+  const std::string opened = device->name() + (stores_halves ? " with 16-bit storage" : "");
+  const vulkan::VulkanBackendOptions options{.uses_halves = stores_halves};
+  return {opened, std::make_shared<vulkan::VulkanBackend>(std::move(device), options)};
 }
 
 }  // namespace orb360::nn

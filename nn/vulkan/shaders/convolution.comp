@@ -13,6 +13,9 @@ layout(constant_id = 5) const int COLUMNS = 1;
 layout(constant_id = 6) const int VECTORS = 1;
 layout(constant_id = 7) const int CHUNK = 1;
 layout(constant_id = 8) const int HAS_RESIDUAL = 0;
+layout(constant_id = 9) const int X_IS_HALF = 0;
+layout(constant_id = 10) const int RESIDUAL_IS_HALF = 0;
+layout(constant_id = 11) const int Y_IS_HALF = 0;
 
 layout(push_constant) uniform Parameters {
   View x;
@@ -44,7 +47,7 @@ void LoadTile(int first, ivec2 corner) {
     if (channel < in_channels) {
       ivec2 from = Source(corner.y + pixel / IN_WIDTH, corner.x + pixel % IN_WIDTH, in_height,
                           in_width);
-      if (from.x >= 0) value = arena[At(x, channel, from.x, from.y)];
+      if (from.x >= 0) value = Load(At(x, channel, from.x, from.y), X_IS_HALF);
     }
     tile[i] = value;
   }
@@ -93,10 +96,10 @@ void main() {
         int channel = (group * VECTORS + j) * 4 + k;
         if (channel >= out_channels) break;
         float value = result[k];
-        if (HAS_RESIDUAL != 0) value += arena[At(residual, channel, v, u)];
+        if (HAS_RESIDUAL != 0) value += Load(At(residual, channel, v, u), RESIDUAL_IS_HALF);
         // NaN fails both comparisons and stays NaN.
         if (value <= 0.0) value = slope == 0.0 ? 0.0 : value * slope;
-        arena[At(y, channel, v, u)] = value;
+        Store(At(y, channel, v, u), Y_IS_HALF, value);
       }
     }
   }

@@ -57,7 +57,7 @@ TEST_F(VulkanTiles, ChangeNoBitAndAgreeWithTheCpu) {
           vulkan::ChooseTile(type, c.kernel, c.stride, channels, OutputOf(c));
       tile.chunk = 0;
       tiles.insert(tile);
-      const Device device = OpenWithTilesFor(type);
+      const Device device = OpenWith(vulkan::VulkanBackendOptions{.tiles_for = type});
       const std::vector<float> actual =
           RunOnce(Executor(graph, height, width, {.device = device}), inputs)[0];
       if (first.empty()) first = actual;
