@@ -1,4 +1,5 @@
 // What all shaders share: the two buffers, and how tensors lie in the first one.
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_spirv_intrinsics : require
 #ifdef HAS_HALVES
 #extension GL_EXT_shader_16bit_storage : require
