@@ -22,14 +22,23 @@ inline const CLI::Validator kIsNumber(
     },
     "");
 
-/// Adds the option for the processor of the network, as nn::OpenDevice takes it.
-inline void AddDeviceOption(CLI::App* command, std::string* device) {
+/// The processor of the network, as nn::OpenDevice takes it.
+struct DeviceOptions {
+  std::string name = "cpu";
+  bool uses_halves = false;
+};
+
+/// Adds the options for it.
+inline void AddDeviceOptions(CLI::App* command, DeviceOptions* device) {
   command
-      ->add_option("--device", *device,
+      ->add_option("--device", device->name,
                    "Processor of the network: cpu; auto, the first GPU or else the CPU; vulkan or "
                    "vulkan:N, a device of `orb360 devices`")
       ->type_name("cpu|auto|vulkan[:N]")
       ->capture_default_str();
+  command->add_flag("--float16", device->uses_halves,
+                    "Keep results of convolutions as 16-bit floats on a GPU: less traffic of its "
+                    "memory, and less exact");
 }
 
 /// Each of these adds a subcommand with its options to `app`. When the user chooses the subcommand,

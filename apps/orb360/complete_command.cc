@@ -35,7 +35,7 @@ struct CompleteOptions {
   std::string out;
   int threads = 0;  // 0: as many as the machine has
   bool uses_bfloat16 = false;
-  std::string device = "cpu";  // as nn::OpenDevice takes it
+  DeviceOptions device;
   bool json = false;
 };
 
@@ -86,7 +86,8 @@ void WriteFractionImage(const std::filesystem::path& path, const cv::Mat& fracti
 class Completer {
  public:
   explicit Completer(const CompleteOptions& options)
-      : options_(options), device_(nn::OpenDevice(options.device)) {
+      : options_(options),
+        device_(nn::OpenDevice(options.device.name, options.device.uses_halves)) {
     if (device_.backend != nullptr && options.uses_bfloat16) {
       throw UserError("--bfloat16 is for the CPU: leave it out, or use --device cpu");
     }
@@ -242,7 +243,7 @@ void AddCompleteCommand(CLI::App* app, Command* chosen) {
       ->capture_default_str();
   command->add_flag("--bfloat16", options->uses_bfloat16,
                     "Convolve in bfloat16: faster and less exact, on processors that have it");
-  AddDeviceOption(command, &options->device);
+  AddDeviceOptions(command, &options->device);
   command->callback([options, chosen] {
     *chosen = [options] {
       if (options->weights.empty()) options->weights = nn::DefaultWeights().string();

@@ -77,9 +77,10 @@ int ThreadsOf(const DevicesOptions& options) {
 
 /// Returns the time as above, or why there is none.
 nlohmann::json Measure(const nn::Graph& graph, const DevicesOptions& options,
-                       const std::string& name) {
+                       const std::string& name, bool uses_halves = false) {
   try {
-    const nn::ExecutorOptions how{.threads = ThreadsOf(options), .device = nn::OpenDevice(name)};
+    const nn::ExecutorOptions how{.threads = ThreadsOf(options),
+                                  .device = nn::OpenDevice(name, uses_halves)};
     return {{"milliseconds", MeasureMs(graph, {options.size[1], options.size[0]}, how)}};
   } catch (const nn::DeviceError& error) {
     return {{"milliseconds", nullptr}, {"problem", error.what()}};
@@ -99,14 +100,19 @@ nlohmann::json Describe(const nn::VulkanDevice& device) {
           {"subgroup_size", device.subgroup_size},
           {"float16", device.has_float16},
           {"problem", device.problem},
-          {"milliseconds", nullptr}};
+          {"milliseconds", nullptr},
+          {"milliseconds_float16", nullptr}};
 }
 
 std::string TimeText(const nlohmann::json& device) {
   if (device["milliseconds"].is_null()) return device["problem"].get<std::string>();
   char text[32];
   std::snprintf(text, sizeof text, "%.1f ms", device["milliseconds"].get<double>());
-  return text;
+  const auto halves = device.find("milliseconds_float16");
+  if (halves == device.end() || halves->is_null()) return text;
+  char more[48];
+  std::snprintf(more, sizeof more, ", %.1f ms with --float16", halves->get<double>());
+  return std::string(text) + more;
 }
 
 void Print(const nlohmann::json& devices) {
@@ -136,7 +142,11 @@ int ListDevices(const DevicesOptions& options) {
   for (const nn::VulkanDevice& device : found.devices) {
     nlohmann::json described = Describe(device);
     if (device.problem.empty()) {
-      described.update(Measure(graph, options, described["device"].get<std::string>()));
+      const auto name = described["device"].get<std::string>();
+      described.update(Measure(graph, options, name));
+      if (device.has_float16) {
+        described["milliseconds_float16"] = Measure(graph, options, name, true)["milliseconds"];
+      }
     }
     devices.push_back(std::move(described));
   }

@@ -177,7 +177,7 @@ void RequireInRange(const ScaleOptions& scale, const std::string& input) {
 }
 
 int Run(const RunOptions& options) {
-  const nn::Device device = nn::OpenDevice(options.device);
+  const nn::Device device = nn::OpenDevice(options.device.name, options.device.uses_halves);
   Options system_options;
   if (!options.config.empty()) {
     OptionSchema schema;

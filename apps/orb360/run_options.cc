@@ -31,7 +31,7 @@ void AddRunOptions(CLI::App* command, RunOptions* options) {
                    "Network for dense depth and the dense cloud (default: the one "
                    "that comes with orb360); or none, for landmarks alone")
       ->type_name("none|FILE");
-  AddDeviceOption(command, &options->device);
+  AddDeviceOptions(command, &options->device);
   command
       ->add_option("--mask", options->mask,
                    "What to leave out: auto finds what moves with the camera; or none; or an image "
@@ -135,7 +135,7 @@ RunOptions Settle(RunOptions options) {
   for (const auto& [name, is_given] : {std::pair("--save-depth", options.saves_depth),
                                        {"--save-views", options.saves_views},
                                        {"--mesh", options.has_mesh},
-                                       {"--device", options.device != "cpu"},
+                                       {"--device", options.device.name != "cpu"},
                                        {"--cloud-quality", !options.cloud_quality.empty()}}) {
     if (is_given && options.weights == "none") {
       throw UserError(std::string(name) +

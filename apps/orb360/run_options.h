@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <opencv2/core.hpp>
 
+#include "apps/orb360/commands.h"
 #include "apps/orb360/run_positions.h"
 #include <orb360/slam/io/sequence.h>
 
@@ -26,7 +27,7 @@ struct RunOptions {
   SequenceOptions sequence;
   PositionOptions positions;
   std::string weights;
-  std::string device = "cpu";  // as nn::OpenDevice takes it
+  DeviceOptions device;
   bool saves_sparse = false;
   bool saves_depth = false;
   bool saves_views = false;

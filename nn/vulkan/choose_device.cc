@@ -63,6 +63,16 @@ void CheckDeviceName(const std::string& name) {
                   "devices` lists them)");
 }
 
+bool ChooseHalves(const std::string& name, const VulkanDevice* device, bool wanted) {
+  if (!wanted || name == "auto") return wanted && device != nullptr && device->has_float16;
+  if (device == nullptr) {
+    throw UserError(
+        "--float16 is for graphics processors: leave it out, or choose one by --device");
+  }
+  if (device->has_float16) return true;
+  throw UserError("--float16: " + device->name + " cannot read and write 16-bit floats");
+}
+
 std::optional<int> ChooseDevice(const std::string& name, const VulkanDevices& found) {
   CheckDeviceName(name);
   if (name == "cpu") return {};

@@ -11,6 +11,10 @@ namespace orb360::nn {
 /// OpenDevice does.
 std::optional<int> ChooseDevice(const std::string& name, const VulkanDevices& found);
 
+/// Returns whether a device keeps results as 16-bit floats where `wanted`. Throws UserError as
+/// OpenDevice does. `device` is null for the CPU.
+bool ChooseHalves(const std::string& name, const VulkanDevice* device, bool wanted);
+
 /// Throws UserError for a name that is none of OpenDevice's.
 void CheckDeviceName(const std::string& name);
 

@@ -1,5 +1,6 @@
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "nn/vulkan/choose_device.h"
 #include "nn/vulkan/instance.h"
@@ -25,6 +26,13 @@ VulkanDevices DevicesOf(const vulkan::Instance& instance) {
   return found;
 }
 
+Device Open(std::shared_ptr<const vulkan::Instance> instance, int index, bool stores_halves) {
+  auto device = std::make_shared<const vulkan::LogicalDevice>(std::move(instance), index);
+  const std::string name = device->name() + (stores_halves ? " with 16-bit storage" : "");
+  const vulkan::VulkanBackendOptions options{.uses_halves = stores_halves};
+  return {name, std::make_shared<vulkan::VulkanBackend>(std::move(device), options)};
+}
+
 }  // namespace
 
 VulkanDevices ListVulkanDevices() {
@@ -35,22 +43,31 @@ VulkanDevices ListVulkanDevices() {
   }
 }
 
-Device OpenDevice(const std::string& name) {
+Device OpenDevice(const std::string& name, bool uses_halves) {
   CheckDeviceName(name);
-  if (name == "cpu") return {};
   std::shared_ptr<const vulkan::Instance> instance;
   VulkanDevices found;
-  try {
-    instance = std::make_shared<vulkan::Instance>();
-    found = DevicesOf(*instance);
-  } catch (const UserError& error) {
-    found.problem = error.what();
+  if (name != "cpu") {
+    try {
+      instance = std::make_shared<vulkan::Instance>();
+      found = DevicesOf(*instance);
+    } catch (const UserError& error) {
+      found.problem = error.what();
+    }
   }
   const std::optional<int> index = ChooseDevice(name, found);
+  const VulkanDevice* const chosen =
+      index ? &found.devices[static_cast<std::size_t>(*index)] : nullptr;
+  const bool stores_halves = ChooseHalves(name, chosen, uses_halves);
   if (!index) return {};
-  auto device = std::make_shared<const vulkan::LogicalDevice>(instance, *index);
-  const std::string opened = device->name();
-  return {opened, std::make_shared<vulkan::VulkanBackend>(std::move(device))};
+  try {
+    return Open(std::move(instance), *index, stores_halves);
+  } catch (const UserError&) {
+    if (name != "auto") throw;
+  } catch (const DeviceError& error) {
+    if (name != "auto") throw UserError(error.what());
+  }
+  return {};
 }
 
 }  // namespace orb360::nn

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "nn/vulkan/shaders.h"
@@ -13,7 +14,9 @@ namespace orb360::nn::vulkan {
 struct PipelineKey {
   Shader shader = Shader::kElementwise;
   std::vector<std::uint32_t> constants;
-  friend auto operator<=>(const PipelineKey&, const PipelineKey&) = default;
+  friend bool operator<(const PipelineKey& a, const PipelineKey& b) {
+    return std::tie(a.shader, a.constants) < std::tie(b.shader, b.constants);
+  }
 };
 
 /// One launch of a shader.

@@ -47,6 +47,17 @@ class Parameters {
   std::vector<std::uint32_t> words_;
 };
 
+/// Adds to a launch which of its tensors are 16-bit floats, in the order of the shader's constants.
+Dispatch WithStorage(Dispatch dispatch, std::initializer_list<const Place*> places) {
+  bool has_halves = false;
+  for (const Place* place : places) {
+    dispatch.pipeline.constants.push_back(place->is_half ? 1 : 0);
+    has_halves |= place->is_half;
+  }
+  if (has_halves) dispatch.pipeline.shader = WithHalves(dispatch.pipeline.shader);
+  return dispatch;
+}
+
 /// `constants` begin with width and height of a workgroup.
 Dispatch Launch(Shader shader, std::vector<std::uint32_t> constants, Parameters parameters,
                 int groups_x, int groups_y, int groups_z) {
@@ -105,15 +116,18 @@ class DispatchMaker {
     const std::uint32_t at = constants_->AddConvolution(weight(0), weight(1), tile.vectors);
     const bool adds = fused_.adds_residual;
     Parameters parameters;
-    parameters << in_[0] << (adds ? in_[1] : in_[0]) << out_[0];
+    const Place& residual = adds ? in_[1] : in_[0];
+    parameters << in_[0] << residual << out_[0];
     parameters << from.channels << from.height << from.width;
     parameters << to.channels << to.height << to.width << at << fused_.slope;
-    return One(Launch(
-        Shader::kConvolution,
-        {Word(tile.width), Word(tile.height), Word(op.padding), Word(kernel()), Word(op.stride),
-         Word(tile.columns), Word(tile.vectors), Word(tile.chunk), Word(static_cast<int>(adds))},
-        parameters, GroupsFor(to.width, tile.width * tile.columns),
-        GroupsFor(to.height, tile.height), GroupsFor(to.channels, 4 * tile.vectors)));
+    return One(WithStorage(
+        Launch(Shader::kConvolution,
+               {Word(tile.width), Word(tile.height), Word(op.padding), Word(kernel()),
+                Word(op.stride), Word(tile.columns), Word(tile.vectors), Word(tile.chunk),
+                Word(static_cast<int>(adds))},
+               parameters, GroupsFor(to.width, tile.width * tile.columns),
+               GroupsFor(to.height, tile.height), GroupsFor(to.channels, 4 * tile.vectors)),
+        {&in_[0], &residual, &out_[0]}));
   }
   Result operator()(const DenseOp&) const {
     const std::uint32_t at = constants_->AddDense(weight(0), weight(1));
@@ -124,18 +138,22 @@ class DispatchMaker {
                       GroupsFor(outputs, group), 1, 1));
   }
   Result operator()(const UpsampleNearestOp&) const {
-    return One(ForEachPixel(Shader::kUpsampleNearest, {}, out_[0].shape, FromTo(out_[0])));
+    return One(
+        WithStorage(ForEachPixel(Shader::kUpsampleNearest, {}, out_[0].shape, FromTo(out_[0])),
+                    {&in_[0], &out_[0]}));
   }
   Result operator()(const UpsampleBilinearOp& op) const {
-    return One(
-        ForEachPixel(Shader::kUpsampleBilinear, {Word(op.padding)}, out_[0].shape, FromTo(in_[0])));
+    return One(WithStorage(
+        ForEachPixel(Shader::kUpsampleBilinear, {Word(op.padding)}, out_[0].shape, FromTo(in_[0])),
+        {&in_[0], &out_[0]}));
   }
   Result operator()(const ConvexUpsampleOp& op) const {
     return One(ForEachPixel(Shader::kConvexUpsample, {Word(op.padding)}, in_[0].shape,
                             Sized(Parameters() << in_[0] << in_[1] << out_[0], in_[0])));
   }
   Result operator()(const AveragePoolOp&) const {
-    return One(ForEachPixel(Shader::kAveragePool, {}, out_[0].shape, FromTo(out_[0])));
+    return One(WithStorage(ForEachPixel(Shader::kAveragePool, {}, out_[0].shape, FromTo(out_[0])),
+                           {&in_[0], &out_[0]}));
   }
   Result operator()(const GlobalAveragePoolOp&) const {
     return One(Launch(Shader::kGlobalAveragePool, {Word(kMaxInvocations), 1}, FromTo(in_[0]), 1, 1,
@@ -207,12 +225,15 @@ class DispatchMaker {
     return Sized(Parameters() << in_[0] << out_[0], size);
   }
   Result Elementwise(ElementFunction function, float a = 0, float b = 0) const {
-    return One(ForEachPixel(Shader::kElementwise, {Word(static_cast<int>(function))}, out_[0].shape,
-                            FromTo(out_[0]) << a << b));
+    return One(WithStorage(ForEachPixel(Shader::kElementwise, {Word(static_cast<int>(function))},
+                                        out_[0].shape, FromTo(out_[0]) << a << b),
+                           {&in_[0], &out_[0]}));
   }
   Result Pair(int multiplies) const {
-    return One(ForEachPixel(Shader::kElementwisePair, {Word(multiplies)}, out_[0].shape,
-                            Sized(Parameters() << in_[0] << in_[1] << out_[0], out_[0])));
+    return One(
+        WithStorage(ForEachPixel(Shader::kElementwisePair, {Word(multiplies)}, out_[0].shape,
+                                 Sized(Parameters() << in_[0] << in_[1] << out_[0], out_[0])),
+                    {&in_[0], &in_[1], &out_[0]}));
   }
   static Result NotHere() {
     ORB360_CHECK(false, "concatenations and slices are views and copies");
@@ -234,6 +255,15 @@ std::size_t ScratchBytes(const Operation& operation) {
   return std::holds_alternative<MedianLogOp>(operation) ? kMedianWords * sizeof(std::uint32_t) : 0;
 }
 
+bool CanUseHalves(const Operation& operation) {
+  return std::holds_alternative<ConvolutionOp>(operation) ||
+         std::holds_alternative<AddOp>(operation) || std::holds_alternative<ReluOp>(operation) ||
+         std::holds_alternative<LeakyReluOp>(operation) ||
+         std::holds_alternative<AveragePoolOp>(operation) ||
+         std::holds_alternative<UpsampleNearestOp>(operation) ||
+         std::holds_alternative<UpsampleBilinearOp>(operation);
+}
+
 std::vector<Dispatch> DispatchesOf(const Graph& graph, const FusedNode& node,
                                    const Operands& operands, VulkanDevice::Type device,
                                    Constants* constants) {
@@ -243,8 +273,10 @@ std::vector<Dispatch> DispatchesOf(const Graph& graph, const FusedNode& node,
 Dispatch CopyOf(const Place& from, const Place& to) {
   Parameters parameters;
   parameters << from << to << to.shape.height << to.shape.width << 0.0f << 0.0f;
-  return ForEachPixel(Shader::kElementwise, {Word(static_cast<int>(ElementFunction::kCopy))},
-                      to.shape, parameters);
+  return WithStorage(
+      ForEachPixel(Shader::kElementwise, {Word(static_cast<int>(ElementFunction::kCopy))}, to.shape,
+                   parameters),
+      {&from, &to});
 }
 
 }  // namespace orb360::nn::vulkan

@@ -14,10 +14,11 @@
 
 namespace orb360::nn::vulkan {
 
-/// Where a tensor lies: planes of floats without halo. In elements, from the start of the memory of
-/// a run (View in shaders/common.glsl).
+/// Where a tensor lies: planes of 32-bit or 16-bit floats without halo. In elements, from the start
+/// of the memory of a run (View in shaders/common.glsl).
 struct Place {
   Shape shape;
+  bool is_half = false;
   std::uint32_t offset = 0;
   std::uint32_t row = 0;
   std::uint32_t plane = 0;
@@ -25,6 +26,9 @@ struct Place {
 
 /// Returns the bytes of scratch memory that the shaders of a node need.
 std::size_t ScratchBytes(const Operation& operation);
+
+/// Returns whether the shaders of an operation can read and write 16-bit floats.
+bool CanUseHalves(const Operation& operation);
 
 /// What the shaders of a node work on.
 struct Operands {

@@ -41,8 +41,12 @@ LogicalDevice::LogicalDevice(std::shared_ptr<const Instance> instance, int index
   queue.queueFamilyIndex = queue_family_;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
+  VkPhysicalDevice16BitStorageFeatures storage{};
+  storage.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_16BIT_STORAGE_FEATURES;
+  storage.storageBuffer16BitAccess = description_.has_float16 ? VK_TRUE : VK_FALSE;
   VkDeviceCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
+  info.pNext = &storage;
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
   VkDevice device = VK_NULL_HANDLE;

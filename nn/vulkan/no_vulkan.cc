@@ -12,8 +12,9 @@ VulkanDevices ListVulkanDevices() {
       "it again, or use --device cpu"};
 }
 
-Device OpenDevice(const std::string& name) {
+Device OpenDevice(const std::string& name, bool uses_halves) {
   ChooseDevice(name, ListVulkanDevices());
+  ChooseHalves(name, nullptr, uses_halves);
   return {};
 }
 

@@ -66,14 +66,11 @@ std::uint64_t MemoryBytes(const Instance& instance, VkPhysicalDevice device) {
 bool HasFloat16(const Instance& instance, VkPhysicalDevice device) {
   VkPhysicalDevice16BitStorageFeatures storage{};
   storage.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_16BIT_STORAGE_FEATURES;
-  VkPhysicalDeviceShaderFloat16Int8Features arithmetic{};
-  arithmetic.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_FLOAT16_INT8_FEATURES;
-  arithmetic.pNext = &storage;
   VkPhysicalDeviceFeatures2 all{};
   all.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-  all.pNext = &arithmetic;
+  all.pNext = &storage;
   instance.functions().GetPhysicalDeviceFeatures2(device, &all);
-  return storage.storageBuffer16BitAccess == VK_TRUE && arithmetic.shaderFloat16 == VK_TRUE;
+  return storage.storageBuffer16BitAccess == VK_TRUE;
 }
 
 /// Returns what networks lack on the device; empty if nothing.

@@ -22,7 +22,6 @@ struct ConvolutionTile {
   int columns = 0;  // pixels of an invocation, `width` apart
   int vectors = 0;  // of four output channels, of an invocation
   int chunk = 0;    // input channels in shared memory at once
-  friend auto operator<=>(const ConvolutionTile&, const ConvolutionTile&) = default;
 };
 
 /// Number of tiles to choose from.

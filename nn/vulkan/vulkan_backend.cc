@@ -4,15 +4,19 @@
 #include <utility>
 #include <variant>
 
+#include "nn/vulkan/half_storage.h"
 #include "nn/vulkan/vulkan_program.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360::nn::vulkan {
 
 VulkanBackend::VulkanBackend(std::shared_ptr<const LogicalDevice> device,
-                             std::optional<VulkanDevice::Type> tiles_for)
+                             VulkanBackendOptions options)
     : device_(std::move(device)),
       pipelines_(std::make_shared<Pipelines>(device_)),
-      tiles_for_(tiles_for.value_or(device_->description().type)) {}
+      options_(options) {
+  ORB360_CHECK(!options.uses_halves || device_->description().has_float16);
+}
 
 NodeNeeds VulkanBackend::NeedsOf(const Graph&, const FusedNode& node) const {
   constexpr PortNeeds kPlanar{.layouts = PortNeeds::Layouts::kPlanar};
@@ -41,8 +45,11 @@ std::unique_ptr<const Program> VulkanBackend::MakeProgram(const Graph& graph,
                                                           std::span<const FusedNode> nodes,
                                                           Lowered lowered, int /*height*/,
                                                           int /*width*/, bool keeps_values) const {
+  // Whoever looks at tensors looks at 32-bit floats.
+  if (options_.uses_halves && !keeps_values) UseHalves(nodes, &lowered);
   return std::make_unique<VulkanProgram>(graph, nodes, std::move(lowered), keeps_values, device_,
-                                         pipelines_, tiles_for_);
+                                         pipelines_,
+                                         options_.tiles_for.value_or(device_->description().type));
 }
 
 }  // namespace orb360::nn::vulkan

@@ -11,13 +11,21 @@
 
 namespace orb360::nn::vulkan {
 
+/// How a VulkanBackend computes.
+struct VulkanBackendOptions {
+  /// The kind of device by which tiles are chosen; none: that of the device.
+  std::optional<VulkanDevice::Type> tiles_for = {};
+  /// Stores the results of most convolutions as 16-bit floats (half_storage.h).
+  bool uses_halves = false;
+};
+
 /// The backend that runs networks by Vulkan on one device: tensors are planes of floats without
 /// halo, and every node is one shader or a few.
 class VulkanBackend : public Backend {
  public:
-  /// `tiles_for` is the kind of device by which tiles are chosen; none: that of the device.
+  /// Contract: the device has what `options` asks for.
   explicit VulkanBackend(std::shared_ptr<const LogicalDevice> device,
-                         std::optional<VulkanDevice::Type> tiles_for = {});
+                         VulkanBackendOptions options = {});
 
   /// Normalized convolutions stay single: the intermediate results of a chain fit into no cache of
   /// a graphics processor.
@@ -30,7 +38,7 @@ class VulkanBackend : public Backend {
  private:
   std::shared_ptr<const LogicalDevice> device_;
   std::shared_ptr<Pipelines> pipelines_;
-  VulkanDevice::Type tiles_for_;
+  VulkanBackendOptions options_;
 };
 
 }  // namespace orb360::nn::vulkan

@@ -14,7 +14,7 @@ namespace {
 
 std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
-/// Bytes of a tensor as it lies in memory.
+/// Bytes of an input or output, which are 32-bit floats, as it lies in memory.
 std::size_t BytesOf(const Place& place) {
   return Index(place.shape.channels) * place.plane * sizeof(float);
 }
@@ -132,8 +132,9 @@ VulkanProgram::VulkanProgram(const Graph& graph, std::span<const FusedNode> node
 Place VulkanProgram::PlaceOf(int value) const {
   const BufferAssignment::Buffer& buffer = assignment_.buffers[Index(value)];
   const auto plane = static_cast<std::uint32_t>(buffer.whole.plane_stride());
-  return {lowered_.values[Index(value)].format.shape,
-          static_cast<std::uint32_t>(buffer.offset / sizeof(float)) +
+  const DataType type = lowered_.values[Index(value)].format.type;
+  return {lowered_.values[Index(value)].format.shape, type == DataType::kFloat16,
+          static_cast<std::uint32_t>(buffer.offset / SizeOf(type)) +
               static_cast<std::uint32_t>(buffer.first_channel) * plane,
           static_cast<std::uint32_t>(buffer.whole.row_stride()), plane};
 }

@@ -32,6 +32,7 @@ enum class Layout : std::uint8_t {
 enum class DataType : std::uint8_t {
   kFloat,     ///< IEEE 754 binary32.
   kBFloat16,  ///< The upper 16 bits of binary32: its exponent and 8 bits of precision.
+  kFloat16,   ///< IEEE 754 binary16. Only devices other than the CPU use it.
 };
 
 /// Returns the size of an element in bytes.

@@ -3,6 +3,9 @@
 // Halves height and width: the mean of each 2 x 2 square.
 #include "common.glsl"
 
+layout(constant_id = 2) const int X_IS_HALF = 0;
+layout(constant_id = 3) const int Y_IS_HALF = 0;
+
 layout(push_constant) uniform Parameters {
   View x;
   View y;
@@ -14,7 +17,7 @@ void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   if (at.y >= height || at.x >= width) return;
   uint first = At(x, at.z, 2 * at.y, 2 * at.x);
-  float upper = arena[first] + arena[first + 1u];
-  float lower = arena[first + x.row] + arena[first + x.row + 1u];
-  arena[At(y, at.z, at.y, at.x)] = 0.25 * (upper + lower);
+  float upper = Load(first, X_IS_HALF) + Load(first + 1u, X_IS_HALF);
+  float lower = Load(first + x.row, X_IS_HALF) + Load(first + x.row + 1u, X_IS_HALF);
+  Store(At(y, at.z, at.y, at.x), Y_IS_HALF, 0.25 * (upper + lower));
 }

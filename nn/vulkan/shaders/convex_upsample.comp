@@ -22,7 +22,7 @@ void main() {
     ivec2 from = Source(at.y + k / 3 - 1, at.x + k % 3 - 1, height, width);
     neighbours[k] = from.x < 0 ? 0.0 : arena[At(x, 0, from.x, from.y)];
   }
-  for (int part = 0; part < 4; ++part) {
+  [[unroll]] for (int part = 0; part < 4; ++part) {
     float logits[9];
     for (int k = 0; k < 9; ++k) logits[k] = arena[At(weights, 9 * part + k, at.y, at.x)];
     float largest = logits[0];

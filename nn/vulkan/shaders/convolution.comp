@@ -13,6 +13,9 @@ layout(constant_id = 5) const int COLUMNS = 1;
 layout(constant_id = 6) const int VECTORS = 1;
 layout(constant_id = 7) const int CHUNK = 1;
 layout(constant_id = 8) const int HAS_RESIDUAL = 0;
+layout(constant_id = 9) const int X_IS_HALF = 0;
+layout(constant_id = 10) const int RESIDUAL_IS_HALF = 0;
+layout(constant_id = 11) const int Y_IS_HALF = 0;
 
 layout(push_constant) uniform Parameters {
   View x;
@@ -44,7 +47,7 @@ void LoadTile(int first, ivec2 corner) {
     if (channel < in_channels) {
       ivec2 from = Source(corner.y + pixel / IN_WIDTH, corner.x + pixel % IN_WIDTH, in_height,
                           in_width);
-      if (from.x >= 0) value = arena[At(x, channel, from.x, from.y)];
+      if (from.x >= 0) value = Load(At(x, channel, from.x, from.y), X_IS_HALF);
     }
     tile[i] = value;
   }
@@ -57,7 +60,8 @@ void main() {
   int group = int(gl_WorkGroupID.z);
 
   vec4 sums[COLUMNS * VECTORS];
-  for (int i = 0; i < COLUMNS * VECTORS; ++i) sums[i] = vec4(0.0);
+  // Sums stay in registers only where the loops over them are unrolled.
+  [[unroll]] for (int i = 0; i < COLUMNS * VECTORS; ++i) sums[i] = vec4(0.0);
   uint next = weight + uint(group * in_channels * KERNEL * KERNEL * VECTORS);
   for (int first = 0; first < in_channels; first += CHUNK) {
     barrier();
@@ -67,13 +71,15 @@ void main() {
     for (int channel = 0; channel < count; ++channel) {
       for (int row = 0; row < KERNEL; ++row) {
         int from = channel * IN_PIXELS + (lane.y * STRIDE + row) * IN_WIDTH + lane.x * STRIDE;
-        for (int column = 0; column < KERNEL; ++column) {
+        [[unroll]] for (int column = 0; column < KERNEL; ++column) {
           vec4 weights[VECTORS];
-          for (int i = 0; i < VECTORS; ++i) weights[i] = vectors[next + uint(i)];
+          [[unroll]] for (int i = 0; i < VECTORS; ++i) weights[i] = vectors[next + uint(i)];
           next += uint(VECTORS);
-          for (int i = 0; i < COLUMNS; ++i) {
+          [[unroll]] for (int i = 0; i < COLUMNS; ++i) {
             float value = tile[from + column + i * GROUP_WIDTH * STRIDE];
-            for (int j = 0; j < VECTORS; ++j) sums[i * VECTORS + j] += weights[j] * value;
+            [[unroll]] for (int j = 0; j < VECTORS; ++j) {
+              sums[i * VECTORS + j] += weights[j] * value;
+            }
           }
         }
       }
@@ -84,19 +90,19 @@ void main() {
   uint bias = weight + uint(groups * in_channels * KERNEL * KERNEL * VECTORS + group * VECTORS);
   int v = first_pixel.y + lane.y;
   if (v >= out_height) return;
-  for (int i = 0; i < COLUMNS; ++i) {
+  [[unroll]] for (int i = 0; i < COLUMNS; ++i) {
     int u = first_pixel.x + lane.x + i * GROUP_WIDTH;
-    if (u >= out_width) break;
-    for (int j = 0; j < VECTORS; ++j) {
+    if (u >= out_width) continue;
+    [[unroll]] for (int j = 0; j < VECTORS; ++j) {
       vec4 result = sums[i * VECTORS + j] + vectors[bias + uint(j)];
-      for (int k = 0; k < 4; ++k) {
+      [[unroll]] for (int k = 0; k < 4; ++k) {
         int channel = (group * VECTORS + j) * 4 + k;
-        if (channel >= out_channels) break;
+        if (channel >= out_channels) continue;
         float value = result[k];
-        if (HAS_RESIDUAL != 0) value += arena[At(residual, channel, v, u)];
+        if (HAS_RESIDUAL != 0) value += Load(At(residual, channel, v, u), RESIDUAL_IS_HALF);
         // NaN fails both comparisons and stays NaN.
         if (value <= 0.0) value = slope == 0.0 ? 0.0 : value * slope;
-        arena[At(y, channel, v, u)] = value;
+        Store(At(y, channel, v, u), Y_IS_HALF, value);
       }
     }
   }

@@ -5,6 +5,8 @@
 #include "math.glsl"
 
 layout(constant_id = 2) const int FUNCTION = 0;  // vulkan::ElementFunction
+layout(constant_id = 3) const int X_IS_HALF = 0;
+layout(constant_id = 4) const int Y_IS_HALF = 0;
 
 layout(push_constant) uniform Parameters {
   View x;
@@ -41,5 +43,6 @@ float Apply(float value) {
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   if (at.y >= height || at.x >= width) return;
-  arena[At(y, at.z, at.y, at.x)] = Apply(arena[At(x, at.z, at.y, at.x)]);
+  float value = Load(At(x, at.z, at.y, at.x), X_IS_HALF);
+  Store(At(y, at.z, at.y, at.x), Y_IS_HALF, Apply(value));
 }

@@ -4,6 +4,9 @@
 #include "common.glsl"
 
 layout(constant_id = 2) const int MULTIPLIES = 0;
+layout(constant_id = 3) const int A_IS_HALF = 0;
+layout(constant_id = 4) const int B_IS_HALF = 0;
+layout(constant_id = 5) const int Y_IS_HALF = 0;
 
 layout(push_constant) uniform Parameters {
   View a;
@@ -16,7 +19,8 @@ layout(push_constant) uniform Parameters {
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   if (at.y >= height || at.x >= width) return;
-  float first = arena[At(a, at.z, at.y, at.x)];
-  float second = arena[At(b, at.z, at.y, at.x)];
-  arena[At(y, at.z, at.y, at.x)] = MULTIPLIES != 0 ? first * second : first + second;
+  float first = Load(At(a, at.z, at.y, at.x), A_IS_HALF);
+  float second = Load(At(b, at.z, at.y, at.x), B_IS_HALF);
+  float value = MULTIPLIES != 0 ? first * second : first + second;
+  Store(At(y, at.z, at.y, at.x), Y_IS_HALF, value);
 }

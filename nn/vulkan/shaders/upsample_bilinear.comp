@@ -5,6 +5,9 @@
 #include "common.glsl"
 #include "padding.glsl"
 
+layout(constant_id = 3) const int X_IS_HALF = 0;
+layout(constant_id = 4) const int Y_IS_HALF = 0;
+
 layout(push_constant) uniform Parameters {
   View x;
   View y;
@@ -14,7 +17,7 @@ layout(push_constant) uniform Parameters {
 
 float Pixel(int channel, int v, int u) {
   ivec2 from = Source(v, u, height, width);
-  return from.x < 0 ? 0.0 : arena[At(x, channel, from.x, from.y)];
+  return from.x < 0 ? 0.0 : Load(At(x, channel, from.x, from.y), X_IS_HALF);
 }
 
 void main() {
@@ -24,5 +27,5 @@ void main() {
   ivec2 far = near + (at.xy % 2) * 2 - 1;
   float left = 0.75 * Pixel(at.z, near.y, near.x) + 0.25 * Pixel(at.z, far.y, near.x);
   float right = 0.75 * Pixel(at.z, near.y, far.x) + 0.25 * Pixel(at.z, far.y, far.x);
-  arena[At(y, at.z, at.y, at.x)] = 0.75 * left + 0.25 * right;
+  Store(At(y, at.z, at.y, at.x), Y_IS_HALF, 0.75 * left + 0.25 * right);
 }

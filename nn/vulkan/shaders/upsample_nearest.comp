@@ -3,6 +3,9 @@
 // Doubles height and width by repeating pixels.
 #include "common.glsl"
 
+layout(constant_id = 2) const int X_IS_HALF = 0;
+layout(constant_id = 3) const int Y_IS_HALF = 0;
+
 layout(push_constant) uniform Parameters {
   View x;
   View y;
@@ -13,5 +16,5 @@ layout(push_constant) uniform Parameters {
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
   if (at.y >= height || at.x >= width) return;
-  arena[At(y, at.z, at.y, at.x)] = arena[At(x, at.z, at.y / 2, at.x / 2)];
+  Store(At(y, at.z, at.y, at.x), Y_IS_HALF, Load(At(x, at.z, at.y / 2, at.x / 2), X_IS_HALF));
 }

@@ -59,6 +59,18 @@ TEST(ChooseDevice, SaysWhatWasFound) {
   EXPECT_THAT(ErrorOf("vulkan", old), testing::HasSubstr("1.2 is needed"));
 }
 
+TEST(ChooseDevice, UsesHalvesWhereTheDeviceCan) {
+  VulkanDevice device;
+  EXPECT_FALSE(ChooseHalves("auto", nullptr, true));
+  EXPECT_FALSE(ChooseHalves("auto", &device, true));
+  EXPECT_THROW(ChooseHalves("vulkan", &device, true), UserError);
+  EXPECT_THROW(ChooseHalves("cpu", nullptr, true), UserError);
+  device.has_float16 = true;
+  EXPECT_TRUE(ChooseHalves("auto", &device, true));
+  EXPECT_TRUE(ChooseHalves("vulkan", &device, true));
+  EXPECT_FALSE(ChooseHalves("vulkan", &device, false));
+}
+
 TEST(ChooseDevice, RefusesOtherNames) {
   for (const char* name : {"", "gpu", "vulkan:", "vulkan:-1", "vulkan:1x", "vulkan:99999", "CPU"}) {
     EXPECT_THAT(ErrorOf(name, Machine({kDiscrete})),

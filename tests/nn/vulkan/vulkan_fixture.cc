@@ -5,7 +5,6 @@
 
 #include "nn/vulkan/choose_device.h"
 #include "nn/vulkan/physical_device.h"
-#include "nn/vulkan/vulkan_backend.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360::nn {
@@ -23,7 +22,7 @@ void VulkanTest::SetUp() {
     }
     const char* const name = std::getenv("ORB360_TEST_DEVICE");
     index_ = ChooseDevice(name != nullptr ? name : "vulkan", found).value();
-    device_ = OpenWith({});
+    device_ = OpenWith(vulkan::LogicalDevice::Replace());
   } catch (const UserError& error) {
     GTEST_SKIP() << error.what();
   }
@@ -42,9 +41,9 @@ Device VulkanTest::OpenWith(const vulkan::LogicalDevice::Replace& replace) {
   return {std::move(name), std::make_shared<vulkan::VulkanBackend>(std::move(device))};
 }
 
-Device VulkanTest::OpenWithTilesFor(VulkanDevice::Type type) {
+Device VulkanTest::OpenWith(const vulkan::VulkanBackendOptions& how) {
   return {"test", std::make_shared<vulkan::VulkanBackend>(
-                      std::make_shared<const vulkan::LogicalDevice>(instance_, index_), type)};
+                      std::make_shared<const vulkan::LogicalDevice>(instance_, index_), how)};
 }
 
 }  // namespace orb360::nn

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "nn/vulkan/logical_device.h"
+#include "nn/vulkan/vulkan_backend.h"
 #include <orb360/nn/graph/executor.h>
 
 namespace orb360::nn {
@@ -21,8 +22,8 @@ class VulkanTest : public ::testing::Test {
 
   /// Opens the device again, with functions replaced.
   Device OpenWith(const vulkan::LogicalDevice::Replace& replace);
-  /// Opens the device again, with the tiles of another kind of device.
-  Device OpenWithTilesFor(VulkanDevice::Type type);
+  /// Opens the device again.
+  Device OpenWith(const vulkan::VulkanBackendOptions& how);
 
   /// For the device that SetUp has opened.
   ExecutorOptions options() const { return {.device = device_}; }

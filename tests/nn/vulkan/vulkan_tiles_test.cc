@@ -1,5 +1,6 @@
 // Convolutions with every tile.
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <string>
@@ -39,7 +40,7 @@ Shape OutputOf(const Case& c) {
 }
 
 TEST_F(VulkanTiles, ChangeNoBitAndAgreeWithTheCpu) {
-  std::set<vulkan::ConvolutionTile> tiles;
+  std::set<std::array<int, 4>> tiles;
   for (const Case& c : kCases) {
     NetworkBuilder net(1);
     net.Input("x", c.input.channels);
@@ -53,11 +54,10 @@ TEST_F(VulkanTiles, ChangeNoBitAndAgreeWithTheCpu) {
     const std::vector<float> expected = RunOnce(Executor(graph, height, width), inputs)[0];
     std::vector<float> first;
     for (const VulkanDevice::Type type : kTypes) {
-      vulkan::ConvolutionTile tile =
+      const vulkan::ConvolutionTile tile =
           vulkan::ChooseTile(type, c.kernel, c.stride, channels, OutputOf(c));
-      tile.chunk = 0;
-      tiles.insert(tile);
-      const Device device = OpenWithTilesFor(type);
+      tiles.insert({tile.width, tile.height, tile.columns, tile.vectors});
+      const Device device = OpenWith(vulkan::VulkanBackendOptions{.tiles_for = type});
       const std::vector<float> actual =
           RunOnce(Executor(graph, height, width, {.device = device}), inputs)[0];
       if (first.empty()) first = actual;

@@ -29,7 +29,7 @@ struct VulkanDevice {
   int max_invocations = 0;             ///< Largest number of invocations in a workgroup.
   int shared_bytes = 0;                ///< Memory that a workgroup shares.
   int subgroup_size = 0;               ///< Invocations that run in lockstep.
-  bool has_float16 = false;            ///< Whether shaders can store and compute 16-bit floats.
+  bool has_float16 = false;            ///< Whether shaders can read and write 16-bit floats.
   /// Why networks cannot run on it; empty where they can.
   std::string problem;
 };
@@ -51,6 +51,10 @@ VulkanDevices ListVulkanDevices();
 /// on which networks can run, never a driver that computes on the CPU, or else the CPU; "vulkan",
 /// the first GPU or else the first device; "vulkan:N", the device of that index. Throws UserError,
 /// which says what was found, where there is no such device or networks cannot run on it.
-Device OpenDevice(const std::string& name);
+///
+/// With `uses_halves` the device keeps the results of most convolutions as 16-bit floats, which
+/// halves the traffic of its memory and is less exact; sums still have 32 bits. Throws UserError
+/// where a named device, or the CPU, cannot; "auto" uses them where it finds a GPU that can.
+Device OpenDevice(const std::string& name, bool uses_halves = false);
 
 }  // namespace orb360::nn
