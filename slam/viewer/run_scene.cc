@@ -125,6 +125,7 @@ std::string SceneJson(const RunScene& scene) {
                                {"links", links},
                                {"loops", DescribeLoops(scene)},
                                {"scale", scale},
+                               {"images", scene.images},
                                {"views", scene.views},
                                {"missing", scene.missing}};
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

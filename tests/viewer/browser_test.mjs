@@ -54,6 +54,14 @@ async function withCopy(change, body) {
   }
 }
 
+/** Changes what a run's summary states. */
+function edit(folder, change) {
+  const path = join(folder, "summary.json");
+  const summary = JSON.parse(readFileSync(path));
+  change(summary);
+  writeFileSync(path, JSON.stringify(summary));
+}
+
 function press(page, selector) {
   return page.$eval(selector, (button) => button.click());
 }
@@ -93,15 +101,21 @@ onPage("opens the panorama of a keyframe that is clicked", {}, async (page) => {
   await page.waitForSelector("#panorama:not([hidden]):not(.without-image)");
   assert.match(await page.$eval("#panorama h2", (title) => title.textContent), /^Keyframe \d+/);
   const sphere = await page.$("#panorama canvas");
+  const hasRange = () => page.evaluate(() => [...document.querySelectorAll("#panorama .segmented button")]
+    .every((button) => !button.disabled));
+  for (let i = 0; i < 10 && !(await hasRange()); ++i) {  // Not every keyframe is a view.
+    await page.keyboard.press("]");
+    await settle(page);
+  }
   const image = await sphere.screenshot({ encoding: "base64" });
-  await sphere.hover();
-  await page.waitForFunction(
-    () => /away, confidence|no range/.test(document.querySelector(".readout").textContent));
   await page.evaluate(() => [...document.querySelectorAll("#panorama .segmented button")]
     .find((button) => button.textContent === "Range").click());
   await page.waitForFunction(() => document.querySelector("#panorama .legend").textContent.includes("m"));
   await settle(page);
   assert.notEqual(await sphere.screenshot({ encoding: "base64" }), image);
+  await sphere.hover();
+  await page.waitForFunction(
+    () => /away, confidence|no range/.test(document.querySelector(".readout").textContent));
   const box = await sphere.boundingBox();
   await page.mouse.move(box.x + 200, box.y + 100);
   await page.mouse.down();
@@ -226,12 +240,9 @@ test("says that the server is gone, and goes on when it is back", async () => {
 });
 
 test("shows a run of unknown scale in units", async () => {
-  const change = (folder) => {
-    const path = join(folder, "summary.json");
-    const summary = JSON.parse(readFileSync(path));
+  const change = (folder) => edit(folder, (summary) => {
     summary.scale = { state: "unknown", value: null, sigma: null };
-    writeFileSync(path, JSON.stringify(summary));
-  };
+  });
   await withCopy(change, async (other) => {
     const page = await open(browser, other.url);
     assert.equal(await page.$eval(".chip", (chip) => chip.textContent), "scale unknown");
@@ -246,6 +257,7 @@ test("shows the path of a run without a cloud, and says what is missing", async 
     for (const name of ["cloud.ply", "cloud.octree", "views"]) {
       rmSync(join(folder, name), { recursive: true });
     }
+    edit(folder, (summary) => (summary.input = "gone.mp4"));
   };
   await withCopy(change, async (other) => {
     const page = await open(browser, other.url);
@@ -254,6 +266,21 @@ test("shows the path of a run without a cloud, and says what is missing", async 
     assert.match(await page.$eval(".notes", (notes) => notes.textContent), /--save-views/);
     await page.keyboard.press("]");
     await page.waitForSelector("#panorama.without-image");
+    assert.deepEqual(page.problems, []);
+    await page.close();
+  });
+});
+
+test("shows images of the input where the run kept none", async () => {
+  await withCopy((folder) => rmSync(join(folder, "views"), { recursive: true }), async (other) => {
+    const page = await open(browser, other.url);
+    await page.keyboard.press("]");
+    await page.waitForSelector("#panorama:not([hidden]):not(.without-image)");
+    await page.waitForFunction(
+      () => /No range/.test(document.querySelector("#panorama .notice").textContent));
+    const range = await page.evaluate(() => [...document.querySelectorAll("#panorama .segmented button")]
+      .find((button) => button.textContent === "Range").disabled);
+    assert.ok(range);
     assert.deepEqual(page.problems, []);
     await page.close();
   });

@@ -64,6 +64,7 @@ TEST(SceneJson, HasWhatThePageShows) {
                    {"scale", {{"state", "metric"}, {"sigma", 0.02}}},
                    {"loop_times", {{1.02, 0.0}}}};
   scene.scales = {{0.3, 1.01, 0.02}};
+  scene.images = {0, 6};
   scene.views = {6, 12};
   scene.missing = {"Something."};
   const nlohmann::json json = nlohmann::json::parse(SceneJson(scene));
@@ -77,6 +78,7 @@ TEST(SceneJson, HasWhatThePageShows) {
   EXPECT_THAT(json["loops"][0].get<std::vector<int>>(), ElementsAre(10, 0));
   EXPECT_EQ(json["scale"]["value"][0], 1.01);
   EXPECT_THAT(json["views"].get<std::vector<int>>(), ElementsAre(6, 12));
+  EXPECT_THAT(json["images"].get<std::vector<int>>(), ElementsAre(0, 6));
   EXPECT_EQ(json["missing"][0], "Something.");
 }
 

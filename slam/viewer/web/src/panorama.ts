@@ -77,19 +77,22 @@ export class Panorama {
     this.element.hidden = false;
     this.readout.textContent = "";
     this.range = null;
-    const view = this.viewNearest(frame);
-    if (view === null) {
+    const hasImage = this.run.images.includes(frame);
+    // The range of another frame would not fit the image of this one.
+    const view = hasImage && !this.run.views.includes(frame) ? null : this.viewNearest(frame);
+    if (view === null && !hasImage) {
       this.say(
         "This run kept no images. Run it again with --save-views to look around here.", true);
       return;
     }
     this.say("Loading the panorama …", this.view === null);
     const image = new Image();
-    image.src = this.source.viewImage(view);
+    image.src = hasImage ? this.source.inputImage(frame) : this.source.viewImage(view!);
     try {
-      const [range] = await Promise.all([this.source.viewRange(view), image.decode()]);
+      const [range] = await Promise.all([
+        view === null ? null : this.source.viewRange(view), image.decode()]);
       if (request !== this.request) return;
-      this.range = new ViewRange(range);
+      this.range = range && new ViewRange(range);
     } catch (error) {
       if (request === this.request) {
         this.say(`The panorama cannot be loaded: ${(error as Error).message}`, true);
@@ -97,12 +100,19 @@ export class Panorama {
       return;
     }
     this.say(
-      view === frame ? "" : `This keyframe has no image of its own; that of frame ${view} is shown.`,
+      view === null ? "No range of this keyframe was kept."
+        : view === frame ? ""
+        : `This keyframe has no image of its own; that of frame ${view} is shown.`,
       false);
     this.view ??= new SphereView(this.canvas);
-    this.limits = this.range.limits();
     this.view.setImage(image);
-    this.view.setDepth(this.range.texels(this.limits), this.range.width, this.range.height);
+    for (const overlay of ["range", "confidence"] as const) {
+      this.overlays.get(overlay)!.disabled = this.range === null;
+    }
+    if (this.range) {
+      this.limits = this.range.limits();
+      this.view.setDepth(this.range.texels(this.limits), this.range.width, this.range.height);
+    } else this.setOverlay("image");
     this.showLegend();
     this.events.onTurn(this.view.forward());
   }

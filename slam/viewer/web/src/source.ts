@@ -5,6 +5,8 @@ export interface Source {
   run(): Promise<Run>;
   /** Bytes `begin` to before `end` of the octree. */
   octree(begin: number, end: number): Promise<ArrayBuffer>;
+  /** JPEG of a frame of the input; an address for an image element. */
+  inputImage(frame: number): string;
   /** JPEG of a view; an address for an image element. */
   viewImage(frame: number): string;
   /** Range and confidence of a view (slam/viewer/view_files.h). */
@@ -59,6 +61,10 @@ class ServerSource implements Source {
     return bytes;
   }
 
+  inputImage(frame: number): string {
+    return `images/${frame}.jpg`;
+  }
+
   viewImage(frame: number): string {
     return `views/${frame}.jpg`;
   }
@@ -99,6 +105,10 @@ class EmbeddedSource implements Source {
   async octree(begin: number, end: number): Promise<ArrayBuffer> {
     this.bytes ??= fromBase64(embeddedText("embedded-octree"));
     return this.bytes.slice(begin, end);
+  }
+
+  inputImage(frame: number): string {
+    throw new Error(`a report has no image ${frame} of the input`);
   }
 
   viewImage(frame: number): string {
