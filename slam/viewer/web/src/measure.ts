@@ -47,7 +47,7 @@ export class Measure {
   /** The point under the cursor has changed. */
   hover(point: THREE.Vector3 | null): void {
     const last = this.last;
-    if (this.mode !== "distance" || !last || !point) {
+    if (this.mode !== "distance" || !last || !point || point.equals(last)) {
       this.hideRubber();
       return;
     }
