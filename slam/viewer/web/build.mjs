@@ -19,7 +19,9 @@ await build({
   minify: true,
   charset: "utf8",
   legalComments: "none",
-  banner: { js: `/* The page of orb360, BSD-3-Clause. It contains three.js:\n${licence.trim()}\n*/` },
+  banner: {
+    js: `/* The page of orb360, BSD-3-Clause. It contains three.js:\n${licence.trim()}\n*/`,
+  },
   logLevel: "warning",
 });
 await rename(join(out, "main.js"), join(out, "viewer.js"));

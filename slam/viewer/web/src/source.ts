@@ -1,6 +1,8 @@
 import type { Run } from "./run";
 
-/** Where the page has its data from: the server of `orb360 view`, or the file of `orb360 report`. */
+/**
+ * Where the page has its data from: the server of `orb360 view`, or the file of `orb360 report`.
+ */
 export interface Source {
   run(): Promise<Run>;
   /** Bytes `begin` to before `end` of the octree. */
@@ -19,7 +21,10 @@ export interface Source {
 
 /** What a request brought instead of data. */
 export class SourceError extends Error {
-  constructor(message: string, readonly isConnection: boolean) {
+  constructor(
+    message: string,
+    readonly isConnection: boolean,
+  ) {
     super(message);
   }
 }
