@@ -41,13 +41,14 @@ int Report(const ReportOptions& options) {
   constexpr int kRangeWidth = 512;
   ViewedRun run = OpenViewedRun(options.run, true);
   RunScene& scene = run.scene;
+  scene.images.clear();  // They would be too large.
   const size_t all_views = scene.views.size();
   scene.views = SpreadEvenly(scene.views, options.views);
   std::vector<EmbeddedView> views;
   for (const int frame : scene.views) {
     const DenseDepth depth = DepthMapStore::Open(run.views).Get(frame);
     views.push_back(
-        {frame, ViewImageBytes(depth, kImageWidth), ViewRangeBytes(depth, kRangeWidth)});
+        {frame, ImageBytes(depth.color, kImageWidth), ViewRangeBytes(depth, kRangeWidth)});
   }
   const auto note = [&](const std::string& what) {
     scene.missing.push_back(what + " `orb360 view` shows all.");

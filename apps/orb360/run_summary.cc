@@ -213,7 +213,8 @@ void PrintResult(const nlohmann::json& summary, const std::filesystem::path& fol
             << "\nwrote trajectory.txt, keyframes.txt, scale.txt, cloud.ply, reconstruction.h5, "
                "map.svg, summary.json"
             << (IsPlaced(positions) ? ", georeference.json" : "") << " and report/report.html to "
-            << folder.string() << std::endl;
+            << folder.string() << "\n`orb360 view " << folder.string()
+            << "` shows the run in a browser" << std::endl;
 }
 
 }  // namespace orb360

@@ -28,8 +28,10 @@ int View(const ViewOptions& options) {
   const ViewedRun run = OpenViewedRun(options.run, false);
   for (const std::string& missing : run.scene.missing)
     std::cout << "not there: " << missing << '\n';
+  const RunImages images{run.scene.images,
+                         [&run](int frame) { return LoadInputImage(run, frame); }};
   const HttpServer server(
-      RunResources(SceneJson(run.scene), run.octree, run.views, run.scene.views),
+      RunResources(SceneJson(run.scene), run.octree, images, run.views, run.scene.views),
       {options.address, options.port});
   std::cout << options.run << " is at " << server.url() << "\nCtrl-C ends it" << std::endl;
   constexpr std::chrono::milliseconds kStep(50);

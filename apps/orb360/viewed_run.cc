@@ -2,16 +2,20 @@
 
 #include <algorithm>
 #include <fstream>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "apps/orb360/input.h"
 #include "apps/orb360/run_octree.h"
 #include "apps/orb360/saved_views.h"
 #include "slam/io/octree/octree_file.h"
 #include "slam/io/optical_frame.h"
 #include "slam/io/sparse_model_file.h"
 #include <orb360/nn/base/check.h>
+#include <orb360/slam/io/sequence.h>
 #include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
@@ -59,13 +63,26 @@ SparseModel ModelOfTrajectories(const std::filesystem::path& folder) {
   return model;
 }
 
+/// The keyframes whose images can be read again one by one: those of a folder of images. A video
+/// would have to be decoded up to each of them.
+std::vector<int> FindImages(const nlohmann::json& summary, const SparseModel& model) {
+  std::vector<int> frames;
+  if (!std::filesystem::is_directory(summary.value("input", ""))) return frames;
+  for (const PosedFrame& frame : model.frames) {
+    if (frame.is_keyframe) frames.push_back(frame.index);
+  }
+  return frames;
+}
+
 /// The frames whose depth was saved, and why there are none.
 std::vector<int> FindViews(const std::filesystem::path& folder, const SparseModel& model,
-                           std::vector<std::string>* missing) {
+                           bool has_images, std::vector<std::string>* missing) {
   if (!std::filesystem::exists(folder / kViewsName)) {
-    missing->push_back(
-        "Images and ranges of keyframes: the run did not keep them. `orb360 run --save-views` "
-        "does.");
+    missing->push_back(has_images
+                           ? "Ranges of keyframes: the run did not keep them. `orb360 run "
+                             "--save-views` does."
+                           : "Images and ranges of keyframes: the run did not keep them. `orb360 "
+                             "run --save-views` does.");
     return {};
   }
   std::vector<int> frames = FramesWithDepth(folder / kViewsName, model);
@@ -87,7 +104,8 @@ ViewedRun OpenViewedRun(const std::filesystem::path& folder, bool is_quiet) {
   std::vector<std::string>& missing = scene.missing;
   if (std::filesystem::exists(folder / kSparseModelName)) {
     scene.model = ReadSparseModel(folder / kSparseModelName);
-    scene.views = FindViews(folder, scene.model, &missing);
+    scene.images = FindImages(scene.summary, scene.model);
+    scene.views = FindViews(folder, scene.model, !scene.images.empty(), &missing);
     run.views = folder / kViewsName;
   } else {
     scene.model = ModelOfTrajectories(folder);
@@ -111,6 +129,15 @@ ViewedRun OpenViewedRun(const std::filesystem::path& folder, bool is_quiet) {
     missing.push_back("Points: the folder has no cloud.ply with points.");
   }
   return run;
+}
+
+cv::Mat LoadInputImage(const ViewedRun& run, int frame) {
+  const std::string input = run.scene.summary.value("input", "");
+  SequenceOptions options;
+  options.only = {frame};
+  options.lens = run.scene.summary.value("lens", "");
+  if (const std::optional<Frame> read = OpenInput(input, options)->Next()) return read->image;
+  throw UserError(input + ": has no frame " + std::to_string(frame) + " any more");
 }
 
 }  // namespace orb360

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include <opencv2/core.hpp>
+
 #include "slam/viewer/run_scene.h"
 
 namespace orb360 {
@@ -17,5 +19,8 @@ struct ViewedRun {
 /// in scene.missing. Makes the octree where it is missing, and says so unless `is_quiet`. Throws
 /// UserError with one line where the folder holds no finished run, or a damaged file.
 ViewedRun OpenViewedRun(const std::filesystem::path& folder, bool is_quiet);
+
+/// Reads an image of scene.images from the input of the run, at its own size. Throws UserError.
+cv::Mat LoadInputImage(const ViewedRun& run, int frame);
 
 }  // namespace orb360

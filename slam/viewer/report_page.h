@@ -8,7 +8,7 @@ namespace orb360 {
 /// A view within a report.
 struct EmbeddedView {
   int frame = 0;      ///< Index in the input.
-  std::string image;  ///< ViewImageBytes.
+  std::string image;  ///< ImageBytes.
   std::string range;  ///< ViewRangeBytes.
 };
 

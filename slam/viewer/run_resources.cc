@@ -34,15 +34,22 @@ ResourceTable PageResources(bool is_live) {
 }
 
 ResourceTable RunResources(std::string scene_json, const std::filesystem::path& octree,
-                           const std::filesystem::path& views, const std::vector<int>& frames) {
+                           const RunImages& images, const std::filesystem::path& views,
+                           const std::vector<int>& frames) {
   ResourceTable table = PageResources(false);
   table["run.json"] = {"application/json", {}, [scene = std::move(scene_json)] { return scene; }};
   if (!octree.empty()) table["cloud.octree"] = {"application/octet-stream", octree, {}};
+  for (const int frame : images.frames) {
+    table["images/" + std::to_string(frame) + ".jpg"] = {
+        "image/jpeg", {}, [load = images.load, frame] {
+          return ImageBytes(load(frame), kMaxImageWidth);
+        }};
+  }
   const auto load = [views](int frame) { return DepthMapStore::Open(views).Get(frame); };
   for (const int frame : frames) {
     const std::string name = "views/" + std::to_string(frame);
     table[name + ".jpg"] = {
-        "image/jpeg", {}, [load, frame] { return ViewImageBytes(load(frame), kMaxImageWidth); }};
+        "image/jpeg", {}, [load, frame] { return ImageBytes(load(frame).color, kMaxImageWidth); }};
     table[name + ".range"] = {"application/octet-stream", {}, [load, frame] {
                                 return ViewRangeBytes(load(frame), kMaxRangeWidth);
                               }};

@@ -40,17 +40,35 @@ nlohmann::json DescribeFrames(const std::vector<PosedFrame>& frames) {
   return json;
 }
 
-/// The loops, by their times, which older runs state as well.
+/// The pairs of numbers in a list of the summary; what is no such pair is left out.
+std::vector<std::pair<double, double>> PairsIn(const nlohmann::json& summary, const char* key) {
+  std::vector<std::pair<double, double>> pairs;
+  const nlohmann::json list = summary.value(key, nlohmann::json::array());
+  if (!list.is_array()) return pairs;
+  for (const nlohmann::json& pair : list) {
+    if (pair.is_array() && pair.size() == 2 && pair[0].is_number() && pair[1].is_number()) {
+      pairs.emplace_back(pair[0].get<double>(), pair[1].get<double>());
+    }
+  }
+  return pairs;
+}
+
+/// The loops, by their times, which older runs state as well, and the merges of maps, by the
+/// indices of their frames.
 nlohmann::json DescribeLoops(const RunScene& scene) {
   nlohmann::json loops = nlohmann::json::array();
-  const nlohmann::json times = scene.summary.value("loop_times", nlohmann::json::array());
-  if (scene.model.frames.empty()) return loops;
-  for (const nlohmann::json& pair : times) {
-    if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number() || !pair[1].is_number()) {
-      continue;
-    }
-    loops.push_back({NearestFrame(scene.model.frames, pair[0].get<double>()),
-                     NearestFrame(scene.model.frames, pair[1].get<double>())});
+  const std::vector<PosedFrame>& frames = scene.model.frames;
+  if (frames.empty()) return loops;
+  for (const auto& [time, place] : PairsIn(scene.summary, "loop_times")) {
+    loops.push_back({NearestFrame(frames, time), NearestFrame(frames, place)});
+  }
+  const auto find = [&frames](double index) {
+    return std::ranges::find(frames, static_cast<int>(index), &PosedFrame::index) - frames.begin();
+  };
+  for (const auto& [index, place] : PairsIn(scene.summary, "merge_frames")) {
+    const auto [from, to] = std::pair(find(index), find(place));
+    const auto end = static_cast<long>(frames.size());
+    if (from < end && to < end) loops.push_back({from, to});
   }
   return loops;
 }
@@ -125,6 +143,7 @@ std::string SceneJson(const RunScene& scene) {
                                {"links", links},
                                {"loops", DescribeLoops(scene)},
                                {"scale", scale},
+                               {"images", scene.images},
                                {"views", scene.views},
                                {"missing", scene.missing}};
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);

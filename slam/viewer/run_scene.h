@@ -16,6 +16,8 @@ struct RunScene {
   nlohmann::json summary;  ///< Content of summary.json.
   SparseModel model;       ///< Without observations, no links between keyframes are shown.
   std::vector<StampedScale> scales;  ///< Content of scale.txt.
+  /// Indices of the keyframes whose images the input still has.
+  std::vector<int> images;
   std::vector<int> views;            ///< Indices of the frames whose image and range there are.
   bool has_cloud = false;            ///< Whether there is an octree.
   std::vector<std::string> missing;  ///< One sentence for each thing that cannot be shown, and why.
@@ -37,7 +39,7 @@ std::vector<KeyframeLink> LinkKeyframes(const SparseModel& model);
 ///
 /// | key | meaning |
 /// |---|---|
-/// | `folder`, `summary`, `views`, `missing` | as in RunScene |
+/// | `folder`, `summary`, `images`, `views`, `missing` | as in RunScene |
 /// | `hasCloud` | as in RunScene |
 /// | `unit` | `m`, or `units` where the scale is unknown |
 /// | `frames` | `index`, `time` (s), `map`, `position` (3 numbers a frame), `orientation` (4: x y z

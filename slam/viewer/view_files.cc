@@ -49,12 +49,11 @@ std::string ViewRangeBytes(const DenseDepth& depth, int max_width) {
   return bytes + confidences;
 }
 
-std::string ViewImageBytes(const DenseDepth& depth, int max_width) {
-  const int step = StepFor(depth.color.cols, max_width);
-  if (step == 1) return EncodeImage(".jpg", depth.color);
+std::string ImageBytes(const cv::Mat& image, int max_width) {
+  const int step = StepFor(image.cols, max_width);
+  if (step == 1) return EncodeImage(".jpg", image);
   cv::Mat small;
-  cv::resize(depth.color, small, {depth.color.cols / step, depth.color.rows / step}, 0, 0,
-             cv::INTER_AREA);
+  cv::resize(image, small, {image.cols / step, image.rows / step}, 0, 0, cv::INTER_AREA);
   return EncodeImage(".jpg", small);
 }
 

@@ -13,7 +13,7 @@ namespace orb360 {
 /// every n-th row.
 std::string ViewRangeBytes(const DenseDepth& depth, int max_width);
 
-/// The image of a view as JPEG, at most `max_width` pixels wide.
-std::string ViewImageBytes(const DenseDepth& depth, int max_width);
+/// An image (CV_8UC3, BGR) as JPEG, at most `max_width` pixels wide.
+std::string ImageBytes(const cv::Mat& image, int max_width);
 
 }  // namespace orb360

@@ -1,5 +1,5 @@
-"""Renders a drive, runs on it, and looks at it in a browser (browser_test.mjs). Ends with 77 (skipped)
-where there is none."""
+"""Renders a drive, runs on it, and looks at it in a browser (browser_test.mjs,
+browser_states_test.mjs). Ends with 77 (skipped) where there is none."""
 
 import os
 import shutil
@@ -27,7 +27,8 @@ def main() -> int:
                    **quiet)
     environment = {**os.environ, "ORB360_RUN": str(out / "run"), "ORB360_TOWN": str(out / "town"),
                    "ORB360_REPORT": str(report), "ORB360_CHROMIUM": chromium}
-    tests = subprocess.run(["node", "--test", "--test-concurrency=1", "browser_test.mjs"],
+    tests = subprocess.run(["node", "--test", "--test-concurrency=1", "browser_test.mjs",
+                            "browser_states_test.mjs"],
                            cwd=BUILD / "viewer_tests", env=environment, check=False)
     return 1 if tests.returncode != 0 else 0
 

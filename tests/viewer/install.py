@@ -42,8 +42,7 @@ def main() -> int:
     build = Path(os.environ["ORB360_BINARY_DIR"])
     packages = ["package.json", "package-lock.json"]
     return (install(WEB, [*packages, "tsconfig.json", "build.mjs", "src"], build / "viewer_web")
-            or install(HERE, [*packages, "browser_test.mjs", "measure.mjs", "page.mjs",
-                        "read_octree.mjs", "units_test.mjs"],
+            or install(HERE, [*packages, *(path.name for path in HERE.glob("*.mjs"))],
                        build / "viewer_tests"))
 
 

@@ -1,4 +1,5 @@
-// Times and memory of the page for a run: node measure.mjs RUN [POINTS [NEARER]], in build/viewer_tests.
+// Times and memory of the page for a run: node measure.mjs RUN [POINTS [NEARER]], in
+// build/viewer_tests.
 // POINTS: how many may be shown at once. NEARER: how often plus is pressed from the first view.
 import { readFileSync, readdirSync } from "node:fs";
 import { launch, serve, shownPoints } from "./page.mjs";
@@ -15,15 +16,17 @@ await page.goto(server.url);
 await page.waitForFunction(() => Number(document.querySelector("#view")?.dataset.points) > 0);
 console.log(`first points drawn after ${seconds()} s`);
 await page.evaluate((budget) => {
-  const slider = [...document.querySelectorAll(".slider input")].find(
-    (input) => input.parentElement.textContent.startsWith("Points at once"));
+  const slider = [...document.querySelectorAll(".slider input")].find((input) =>
+    input.parentElement.textContent.startsWith("Points at once"),
+  );
   slider.value = String(Math.log10(budget) + 0.01);
   slider.dispatchEvent(new Event("input"));
 }, Number(points));
 await page.focus("#view");
 for (let i = 0; i < Number(nearer); ++i) await page.keyboard.press("+");
-await page.waitForFunction(
-  () => document.querySelector("#view").dataset.loading === "false", { timeout: 600000 });
+await page.waitForFunction(() => document.querySelector("#view").dataset.loading === "false", {
+  timeout: 600000,
+});
 console.log(`${await shownPoints(page)} points drawn after ${seconds()} s`);
 const { JSHeapUsedSize } = await page.metrics();
 console.log(`JavaScript heap ${(JSHeapUsedSize / 2 ** 20).toFixed(0)} MiB`);
@@ -40,7 +43,9 @@ for (const pid of readdirSync("/proc").filter((name) => /^\d+$/.test(name))) {
     if (!type || !command.includes("puppeteer")) continue;
     const resident = Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, "utf8"))[1]);
     if (resident > 150000) console.log(`${type[1]} ${(resident / 1024).toFixed(0)} MiB resident`);
-  } catch { /* It has ended. */ }
+  } catch {
+    /* It has ended. */
+  }
 }
 await browser.close();
 await server.stop();

@@ -39,12 +39,25 @@ export async function serve(run, port = 0) {
 
 /** Starts a run that is shown, and pauses it at once. */
 export async function serveLive(input, out) {
-  const { ended, url } = await start(
-    ["run", input, "--out", out, "--weights", "none", "--mask", "none", "--view=0"]);
+  const { ended, url } = await start([
+    "run",
+    input,
+    "--out",
+    out,
+    "--weights",
+    "none",
+    "--mask",
+    "none",
+    "--view=0",
+  ]);
   const { host, origin } = new URL(url);
-  const status = await new Promise((resolve) => request(
-    `${url}pause`, { method: "POST", headers: { Host: host, Origin: origin, "Content-Length": 0 } },
-    (response) => resolve(response.resume().statusCode)).end());
+  const status = await new Promise((resolve) =>
+    request(
+      `${url}pause`,
+      { method: "POST", headers: { Host: host, Origin: origin, "Content-Length": 0 } },
+      (response) => resolve(response.resume().statusCode),
+    ).end(),
+  );
   if (status !== 200) throw new Error(`pause was answered with ${status}`);
   return { ended, url };
 }
@@ -53,8 +66,14 @@ export function launch() {
   return puppeteer.launch({
     executablePath: process.env.ORB360_CHROMIUM,
     headless: true,
-    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
-      "--enable-unsafe-swiftshader", "--hide-scrollbars", "--allow-file-access-from-files"],
+    args: [
+      "--no-sandbox",
+      "--use-gl=angle",
+      "--use-angle=swiftshader",
+      "--enable-unsafe-swiftshader",
+      "--hide-scrollbars",
+      "--allow-file-access-from-files",
+    ],
   });
 }
 
@@ -81,16 +100,19 @@ export async function open(browser, url, { width = 1200, height = 800, scheme = 
 
 /** Waits until nothing more is loaded and what is there was drawn. */
 export async function settle(page) {
-  await page.evaluate(() => new Promise((resolve) => {
-    const canvas = document.getElementById("view");
-    let quiet = 0;
-    const look = () => {
-      quiet = canvas.dataset.loading === "true" ? 0 : quiet + 1;
-      if (quiet > 12) resolve();
-      else setTimeout(() => requestAnimationFrame(look), 25);
-    };
-    look();
-  }));
+  await page.evaluate(
+    () =>
+      new Promise((resolve) => {
+        const canvas = document.getElementById("view");
+        let quiet = 0;
+        const look = () => {
+          quiet = canvas.dataset.loading === "true" ? 0 : quiet + 1;
+          if (quiet > 12) resolve();
+          else setTimeout(() => requestAnimationFrame(look), 25);
+        };
+        look();
+      }),
+  );
 }
 
 export function shownPoints(page) {
@@ -131,7 +153,8 @@ export async function coverage(page) {
   const { rgba } = await pixels(page, await viewClip(page));
   const background = await page.evaluate(() => {
     const hex = getComputedStyle(document.documentElement)
-      .getPropertyValue("--canvas-background").trim();
+      .getPropertyValue("--canvas-background")
+      .trim();
     return [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
   });
   let covered = 0;

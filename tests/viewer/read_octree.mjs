@@ -7,10 +7,14 @@ import { join } from "node:path";
 const [file, web] = process.argv.slice(2);
 const esbuild = createRequire(join(web, "package.json"))("esbuild");
 const { outputFiles } = await esbuild.build({
-  entryPoints: [join(web, "src/octree_file.ts")], bundle: true, format: "esm", write: false,
+  entryPoints: [join(web, "src/octree_file.ts")],
+  bundle: true,
+  format: "esm",
+  write: false,
 });
 const reader = await import(
-  "data:text/javascript;base64," + Buffer.from(outputFiles[0].contents).toString("base64"));
+  "data:text/javascript;base64," + Buffer.from(outputFiles[0].contents).toString("base64")
+);
 
 const all = readFileSync(file);
 const slice = (begin, end) => all.buffer.slice(all.byteOffset + begin, all.byteOffset + end);
@@ -25,7 +29,8 @@ try {
     const { positions, colors } = reader.readPoints(bytes, node);
     for (let i = 0; i < node.pointCount; ++i) {
       const place = [0, 1, 2].map(
-        (axis) => node.min[axis] + ((positions[4 * i + axis] + 0.5) * node.side) / 65536);
+        (axis) => node.min[axis] + ((positions[4 * i + axis] + 0.5) * node.side) / 65536,
+      );
       lines.push([...place, ...colors.subarray(4 * i, 4 * i + 4), node.side / 65536].join(" "));
     }
   }

@@ -11,13 +11,17 @@ const esbuild = createRequire(`${web}package.json`)("esbuild");
 async function load(text) {
   const { outputFiles } = await esbuild.build({
     stdin: { contents: text, resolveDir: web, loader: "ts" },
-    bundle: true, format: "esm", write: false,
+    bundle: true,
+    format: "esm",
+    write: false,
   });
   return import(
-    "data:text/javascript;base64," + Buffer.from(outputFiles[0].contents).toString("base64"));
+    "data:text/javascript;base64," + Buffer.from(outputFiles[0].contents).toString("base64")
+  );
 }
 
-const { format, chooseNodes, THREE, ViewRange, colorAt, ticksBetween, readLivePoints } = await load(`
+const { format, chooseNodes, THREE, ViewRange, colorAt, ticksBetween, readLivePoints } =
+  await load(`
   export * as format from "./src/format";
   export * as THREE from "three";
   export { chooseNodes } from "./src/node_choice";
@@ -63,16 +67,24 @@ function choose(nodes, eye, target, { budget = 1e9, isLoaded = () => true } = {}
   camera.lookAt(...target);
   camera.updateMatrixWorld();
   return chooseNodes(nodes, {
-    camera, pixelsPerRadian: 900, clip: null, budget, cellsPerSide: 64, isLoaded,
+    camera,
+    pixelsPerRadian: 900,
+    clip: null,
+    budget,
+    cellsPerSide: 64,
+    isLoaded,
   });
 }
 
 test("nodes near the camera are shown finer than distant ones", () => {
   const nodes = completeOctree(100, 4);
   const { shown } = choose(nodes, [-1, 50, 50], [100, 50, 50]);
-  const distanceOf = (node) => Math.hypot(
-    ...node.min.map((min, axis) => Math.max(min - [-1, 50, 50][axis], 0,
-      [-1, 50, 50][axis] - min - node.side)));
+  const distanceOf = (node) =>
+    Math.hypot(
+      ...node.min.map((min, axis) =>
+        Math.max(min - [-1, 50, 50][axis], 0, [-1, 50, 50][axis] - min - node.side),
+      ),
+    );
   const deepest = shown.map((place) => nodes[place]).filter((node) => node.level === 4);
   assert.ok(deepest.length > 0);
   // 64 cells of a node of level 3, 12.5 wide, are 1.3 pixels of 1/900 rad apart at 135.
@@ -85,9 +97,11 @@ test("nodes out of view are not shown, and children only with their parents", ()
   assert.deepEqual(choose(nodes, [-10, 50, 50], [-100, 50, 50]).shown, [0]);
   const { shown } = choose(nodes, [150, 50, 50], [50, 50, 50]);
   const set = new Set(shown);
-  nodes.forEach((node, place) => node.children.forEach((child) => {
-    if (set.has(child)) assert.ok(set.has(place));
-  }));
+  nodes.forEach((node, place) =>
+    node.children.forEach((child) => {
+      if (set.has(child)) assert.ok(set.has(place));
+    }),
+  );
 });
 
 test("the budget of points holds, and what is missing is asked for by importance", () => {
@@ -148,5 +162,8 @@ test("colours of maps grow brighter from end to end", () => {
 
 test("charts have round ticks within their limits", () => {
   assert.deepEqual(ticksBetween(0, 10), [0, 5, 10]);
-  assert.deepEqual(ticksBetween(0.98, 1.02).map((tick) => tick.toFixed(2)), ["0.98", "1.00", "1.02"]);
+  assert.deepEqual(
+    ticksBetween(0.98, 1.02).map((tick) => tick.toFixed(2)),
+    ["0.98", "1.00", "1.02"],
+  );
 });

@@ -62,8 +62,10 @@ TEST(SceneJson, HasWhatThePageShows) {
   scene.model = Model(12);
   scene.summary = {{"input", "walk.mp4"},
                    {"scale", {{"state", "metric"}, {"sigma", 0.02}}},
-                   {"loop_times", {{1.02, 0.0}}}};
+                   {"loop_times", {{1.02, 0.0}}},
+                   {"merge_frames", {{22, 6}, {20, -5}}}};
   scene.scales = {{0.3, 1.01, 0.02}};
+  scene.images = {0, 6};
   scene.views = {6, 12};
   scene.missing = {"Something."};
   const nlohmann::json json = nlohmann::json::parse(SceneJson(scene));
@@ -75,8 +77,12 @@ TEST(SceneJson, HasWhatThePageShows) {
   EXPECT_EQ(json["frames"]["position"][3 * 4], 2.0);
   EXPECT_THAT(json["keyframes"].get<std::vector<int>>(), ElementsAre(0, 3, 6, 9));
   EXPECT_THAT(json["loops"][0].get<std::vector<int>>(), ElementsAre(10, 0));
+  // The merge with a frame that is there.
+  ASSERT_EQ(json["loops"].size(), 2U);
+  EXPECT_THAT(json["loops"][1].get<std::vector<int>>(), ElementsAre(11, 3));
   EXPECT_EQ(json["scale"]["value"][0], 1.01);
   EXPECT_THAT(json["views"].get<std::vector<int>>(), ElementsAre(6, 12));
+  EXPECT_THAT(json["images"].get<std::vector<int>>(), ElementsAre(0, 6));
   EXPECT_EQ(json["missing"][0], "Something.");
 }
 

@@ -58,7 +58,7 @@ TEST(ViewFiles, AreThinnedToTheWidthAskedFor) {
 }
 
 TEST(ViewFiles, HaveImagesThatOthersRead) {
-  const std::string bytes = ViewImageBytes(Depth(100, 50), 50);
+  const std::string bytes = ImageBytes(Depth(100, 50).color, 50);
   const cv::Mat image =
       cv::imdecode(std::vector<char>(bytes.begin(), bytes.end()), cv::IMREAD_COLOR);
   ASSERT_EQ(image.size(), cv::Size(50, 25));

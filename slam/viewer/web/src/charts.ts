@@ -2,7 +2,10 @@ import { h, svg } from "./dom";
 import type { Run } from "./run";
 
 const STAGES: Record<string, string> = {
-  frame: "Whole frame", extraction: "Features", tracking: "Tracking", adoption: "Waiting for mapping",
+  frame: "Whole frame",
+  extraction: "Features",
+  tracking: "Tracking",
+  adoption: "Waiting for mapping",
 };
 
 /** Time of a frame by stage: the median as a bar, up to the 95th percentile as a thin one. */
@@ -14,15 +17,24 @@ export function stageChart(run: Run): HTMLElement | null {
   const rows = times.map(([stage, { median, p95 }]) => {
     const width = (value: number): string => `width: ${((100 * value) / longest).toFixed(1)}%`;
     return h(
-      "div", { class: "bar-row" },
+      "div",
+      { class: "bar-row" },
       h("span", { class: "bar-name" }, STAGES[stage] ?? stage),
       h("span", { class: "bar-value" }, `${median.toFixed(1)} · ${p95.toFixed(1)} ms`),
-      h("span", { class: "bar", "aria-hidden": "true" },
-        h("i", { class: "p95", style: width(p95) }), h("i", { class: "median", style: width(median) })),
+      h(
+        "span",
+        { class: "bar", "aria-hidden": "true" },
+        h("i", { class: "p95", style: width(p95) }),
+        h("i", { class: "median", style: width(median) }),
+      ),
     );
   });
-  return h("div", { class: "chart" }, ...rows,
-    h("p", { class: "caption" }, "Median · 95th percentile of the frames. Stages may overlap."));
+  return h(
+    "div",
+    { class: "chart" },
+    ...rows,
+    h("p", { class: "caption" }, "Median · 95th percentile of the frames. Stages may overlap."),
+  );
 }
 
 /** Round numbers that divide an interval into three or four parts. */
@@ -32,7 +44,8 @@ export function ticksBetween(low: number, high: number): number[] {
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((digit) => digit * power).find((size) => size >= rough)!;
   const ticks: number[] = [];
-  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) ticks.push(i * step + 0);
+  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i)
+    ticks.push(i * step + 0);
   return ticks;
 }
 
@@ -54,18 +67,42 @@ export function scaleChart(run: Run): HTMLElement | null {
   const line = order.map((i) => at((j) => value[j], i)).join(" ");
   const decimals = high - low < 0.05 ? 3 : 2;
   const grid = ticksBetween(low, high).flatMap((tick) => [
-    svg("line", { class: tick === 1 ? "grid one" : "grid", x1: left, x2: width, y1: y(tick), y2: y(tick) }),
+    svg("line", {
+      class: tick === 1 ? "grid one" : "grid",
+      x1: left,
+      x2: width,
+      y1: y(tick),
+      y2: y(tick),
+    }),
     svg("text", { x: left - 5, y: y(tick) + 3.5, "text-anchor": "end" }, tick.toFixed(decimals)),
   ]);
   const times = ticksBetween(time[0], time[time.length - 1]).map((tick) =>
-    svg("text", { x: x(tick), y: height - 4, "text-anchor": "middle" }, `${tick.toFixed(tick % 1 ? 1 : 0)} s`));
+    svg(
+      "text",
+      { x: x(tick), y: height - 4, "text-anchor": "middle" },
+      `${tick.toFixed(tick % 1 ? 1 : 0)} s`,
+    ),
+  );
   const spread = `${low.toFixed(3)} to ${high.toFixed(3)}`;
   return h(
-    "div", { class: "chart" },
-    svg("svg", { viewBox: `0 0 ${width} ${height}`, role: "img",
-      "aria-label": `Metres in a unit along the path, with standard deviation: ${spread}` },
-      ...grid, ...times,
+    "div",
+    { class: "chart" },
+    svg(
+      "svg",
+      {
+        viewBox: `0 0 ${width} ${height}`,
+        role: "img",
+        "aria-label": `Metres in a unit along the path, with standard deviation: ${spread}`,
+      },
+      ...grid,
+      ...times,
       svg("polygon", { class: "band", points: [...upper, ...lower].join(" ") }),
-      svg("polyline", { class: "line", points: line })) as unknown as Node,
-    h("p", { class: "caption" }, "Estimated metres in a unit of the map along the path, ± one standard deviation. 1 is a map that is right."));
+      svg("polyline", { class: "line", points: line }),
+    ) as unknown as Node,
+    h(
+      "p",
+      { class: "caption" },
+      "Estimated metres in a unit of the map along the path, ± one standard deviation. 1 is a map that is right.",
+    ),
+  );
 }

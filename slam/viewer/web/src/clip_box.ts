@@ -17,8 +17,10 @@ export class ClipBox {
   private readonly outputs: HTMLOutputElement[] = [];
 
   constructor(
-    private readonly whole: THREE.Box3, private readonly cloud: PointCloud,
-    private readonly unit: "m" | "units", private readonly onChange: () => void,
+    private readonly whole: THREE.Box3,
+    private readonly cloud: PointCloud,
+    private readonly unit: "m" | "units",
+    private readonly onChange: () => void,
   ) {
     this.box = whole.clone();
     this.element = h("div", { class: "clip" });
@@ -49,7 +51,10 @@ export class ClipBox {
   private makeAxis(axis: number): HTMLElement {
     const slider = (name: string, value: number): HTMLInputElement =>
       h("input", {
-        type: "range", min: 0, max: STEPS, value,
+        type: "range",
+        min: 0,
+        max: STEPS,
+        value,
         "aria-label": `${name} limit of ${AXES[axis]}`,
         oninput: (event: Event) => this.moved(axis, event.target as HTMLInputElement),
       });
@@ -58,8 +63,11 @@ export class ClipBox {
     const output = h("output", {});
     this.outputs.push(output);
     return h(
-      "fieldset", { class: "dual" },
-      h("legend", {}, AXES[axis]), output, h("div", { class: "dual-track" }, ...pair),
+      "fieldset",
+      { class: "dual" },
+      h("legend", {}, AXES[axis]),
+      output,
+      h("div", { class: "dual-track" }, ...pair),
     );
   }
 
@@ -81,7 +89,8 @@ export class ClipBox {
         this.whole.min.getComponent(axis) + fraction * size.getComponent(axis);
       this.box.min.setComponent(axis, at(low));
       this.box.max.setComponent(axis, at(high));
-      this.outputs[axis].textContent = `${length(at(low), this.unit)} to ${length(at(high), this.unit)}`;
+      this.outputs[axis].textContent =
+        `${length(at(low), this.unit)} to ${length(at(high), this.unit)}`;
     }
     const uniforms = this.cloud.material.uniforms;
     uniforms.isClipped.value = this.isOn;
@@ -94,7 +103,8 @@ export class ClipBox {
 
 function edgesOf(box: THREE.Box3): number[] {
   const corner = (bits: number): number[] => [
-    bits & 1 ? box.max.x : box.min.x, bits & 2 ? box.max.y : box.min.y,
+    bits & 1 ? box.max.x : box.min.x,
+    bits & 2 ? box.max.y : box.min.y,
     bits & 4 ? box.max.z : box.min.z,
   ];
   const edges: number[] = [];

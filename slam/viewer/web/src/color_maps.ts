@@ -24,7 +24,11 @@ export function colorAt(name: ColorMapName, place: number): [number, number, num
   const at = Math.min(Math.max(place, 0), 1) * (stops.length - 1);
   const i = Math.min(Math.floor(at), stops.length - 2);
   const [a, b] = [stops[i], stops[i + 1]];
-  return [0, 1, 2].map((c) => Math.round(a[c] + (b[c] - a[c]) * (at - i))) as [number, number, number];
+  return [0, 1, 2].map((c) => Math.round(a[c] + (b[c] - a[c]) * (at - i))) as [
+    number,
+    number,
+    number,
+  ];
 }
 
 /** 256 colours, RGBA. */
@@ -35,5 +39,7 @@ export function colorTable(name: ColorMapName): Uint8Array {
 }
 
 export function cssGradient(name: ColorMapName): string {
-  return `linear-gradient(to right, ${stopsOf(name).map((c) => `rgb(${c.join(",")})`).join(", ")})`;
+  return `linear-gradient(to right, ${stopsOf(name)
+    .map((c) => `rgb(${c.join(",")})`)
+    .join(", ")})`;
 }

@@ -52,9 +52,17 @@ const PATHS: Record<string, string> = {
 export function icon(name: keyof typeof PATHS): SVGElement {
   return svg(
     "svg",
-    { viewBox: "0 0 24 24", width: 20, height: 20, fill: "none", stroke: "currentColor",
-      "stroke-width": 1.8, "stroke-linecap": "round", "stroke-linejoin": "round",
-      "aria-hidden": "true" },
+    {
+      viewBox: "0 0 24 24",
+      width: 20,
+      height: 20,
+      fill: "none",
+      stroke: "currentColor",
+      "stroke-width": 1.8,
+      "stroke-linecap": "round",
+      "stroke-linejoin": "round",
+      "aria-hidden": "true",
+    },
     svg("path", { d: PATHS[name] }),
   );
 }

@@ -54,7 +54,9 @@ export class EyeDome {
       glslVersion: THREE.GLSL3,
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT.replaceAll("gl_FragColor", "shown").replace(
-        "void main", "out vec4 shown;\nvoid main"),
+        "void main",
+        "out vec4 shown;\nvoid main",
+      ),
       uniforms: {
         colors: { value: this.target.texture },
         depths: { value: this.target.depthTexture },
@@ -76,7 +78,9 @@ export class EyeDome {
   }
 
   render(
-    renderer: THREE.WebGLRenderer, scene: THREE.Scene, camera: THREE.PerspectiveCamera,
+    renderer: THREE.WebGLRenderer,
+    scene: THREE.Scene,
+    camera: THREE.PerspectiveCamera,
     background: THREE.Color,
   ): void {
     renderer.setRenderTarget(this.target);

@@ -22,8 +22,11 @@ export function boxOfCloud(cloud: PointCloud): THREE.Box3 {
   const box = new THREE.Box3();
   const p = new THREE.Vector3();
   for (let i = 0; i < root.node.pointCount; ++i) {
-    p.set(root.points.positions[4 * i], root.points.positions[4 * i + 1],
-      root.points.positions[4 * i + 2]).multiplyScalar(scale);
+    p.set(
+      root.points.positions[4 * i],
+      root.points.positions[4 * i + 1],
+      root.points.positions[4 * i + 2],
+    ).multiplyScalar(scale);
     box.expandByPoint(p.add(new THREE.Vector3(...root.node.min)));
   }
   return box.expandByScalar(cloud.header.side / cloud.header.cellsPerSide);

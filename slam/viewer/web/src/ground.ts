@@ -11,7 +11,8 @@ export interface GroundBelow {
 
 /**
  * The ground below a place, as far as the run knows it: under the keyframe that is nearest
- * horizontally, lower by the height of the camera. None in a run that is not levelled or has no scale.
+ * horizontally, lower by the height of the camera. None in a run that is not levelled or has no
+ * scale.
  */
 export function groundBelow(run: Run, place: THREE.Vector3): GroundBelow | null {
   const height = cameraHeight(run);

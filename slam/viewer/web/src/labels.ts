@@ -13,7 +13,10 @@ export interface Label {
 export class Labels {
   private readonly items = new Set<{ element: HTMLElement; position: THREE.Vector3 }>();
 
-  constructor(private readonly layer: HTMLElement, private readonly viewport: Viewport) {}
+  constructor(
+    private readonly layer: HTMLElement,
+    private readonly viewport: Viewport,
+  ) {}
 
   add(text: string, position: THREE.Vector3, kind = ""): Label {
     const element = h("div", { class: `label ${kind}` }, text);

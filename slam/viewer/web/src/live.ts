@@ -13,7 +13,9 @@ const BEHIND = 22;
 const ABOVE = 14;
 
 const STATES: Record<LiveState["state"], string> = {
-  initializing: "looking for a first motion", tracking: "tracking", lost: "lost",
+  initializing: "looking for a first motion",
+  tracking: "tracking",
+  lost: "lost",
 };
 
 /** The page of a run that goes on. */
@@ -21,12 +23,17 @@ export class LiveViewer {
   private readonly viewport: Viewport;
   private readonly layer = new LiveLayer();
   private readonly image = h("canvas", {
-    role: "img", "aria-label": "Present image with its features: those that agree with the map are filled",
+    role: "img",
+    "aria-label": "Present image with its features: those that agree with the map are filled",
   });
   private readonly strip = h("div", { class: "live-image", hidden: true }, this.image);
   private readonly facts = h("dl", { class: "tiles" });
   private readonly follow = h("input", { type: "checkbox", checked: true });
-  private readonly pause = h("button", { type: "button", onclick: () => this.togglePause() }, "Pause");
+  private readonly pause = h(
+    "button",
+    { type: "button", onclick: () => this.togglePause() },
+    "Pause",
+  );
   private readonly buttons: HTMLButtonElement[];
   private revision = 0;
   private shownMap = -1;
@@ -42,7 +49,10 @@ export class LiveViewer {
     };
     this.layer.resize(page.stage.clientWidth, page.stage.clientHeight);
     this.viewport.setExtent(200);
-    this.viewport.setPose({ eye: new THREE.Vector3(-BEHIND, 0, ABOVE), target: new THREE.Vector3() });
+    this.viewport.setPose({
+      eye: new THREE.Vector3(-BEHIND, 0, ABOVE),
+      target: new THREE.Vector3(),
+    });
     this.viewport.controls.addEventListener("start", () => (this.follow.checked = false));
     followTheme((colors) => {
       this.viewport.background.set(colors.background);
@@ -61,11 +71,19 @@ export class LiveViewer {
     document.title = "Live · orb360";
     page.title.textContent = "live";
     page.progress.hidden = true;
-    page.center.replaceChildren(centerMessage("Waiting for the first frame", "The run has just begun."));
+    page.center.replaceChildren(
+      centerMessage("Waiting for the first frame", "The run has just begun."),
+    );
     page.stage.append(this.strip);
     page.panelBody.append(
-      section("Run", true, h("div", { class: "live-buttons" }, ...this.buttons), this.facts,
-        h("label", { class: "check" }, this.follow, h("span", {}, "Follow the camera"))));
+      section(
+        "Run",
+        true,
+        h("div", { class: "live-buttons" }, ...this.buttons),
+        this.facts,
+        h("label", { class: "check" }, this.follow, h("span", {}, "Follow the camera")),
+      ),
+    );
   }
 
   private async ask(action: "pause" | "resume" | "step" | "finish"): Promise<void> {
@@ -127,9 +145,13 @@ export class LiveViewer {
   private followCamera(pose: number[]): void {
     const target = new THREE.Vector3(pose[0], pose[1], pose[2]);
     const forward = new THREE.Vector3(0, 0, 1).applyQuaternion(
-      new THREE.Quaternion(pose[3], pose[4], pose[5], pose[6]));
+      new THREE.Quaternion(pose[3], pose[4], pose[5], pose[6]),
+    );
     forward.setZ(0).normalize();
-    const eye = target.clone().addScaledVector(forward, -BEHIND).add(new THREE.Vector3(0, 0, ABOVE));
+    const eye = target
+      .clone()
+      .addScaledVector(forward, -BEHIND)
+      .add(new THREE.Vector3(0, 0, ABOVE));
     this.viewport.setPose({ eye, target });
   }
 
@@ -143,18 +165,26 @@ export class LiveViewer {
     const tile = (value: string, name: string): HTMLElement =>
       h("div", { class: "tile" }, h("dt", {}, name), h("dd", {}, value));
     this.facts.replaceChildren(
-      tile(grouped(state.frame), "frame"), tile(`${state.time.toFixed(1)} s`, "time in the input"),
-      tile(grouped(state.keyframes.length), "keyframes"), tile(grouped(state.landmarks), "landmarks"),
+      tile(grouped(state.frame), "frame"),
+      tile(`${state.time.toFixed(1)} s`, "time in the input"),
+      tile(grouped(state.keyframes.length), "keyframes"),
+      tile(grouped(state.landmarks), "landmarks"),
       tile(`${grouped(matched)} of ${grouped(state.features.length / 3)}`, "features matched"),
       tile(grouped(state.loops.length), "loops closed"),
-      tile(state.cameraHeight === null ? "unknown" : length(state.cameraHeight, "m"), "camera height"));
+      tile(
+        state.cameraHeight === null ? "unknown" : length(state.cameraHeight, "m"),
+        "camera height",
+      ),
+    );
     this.pause.textContent = state.isPaused ? "Go on" : "Pause";
     const { chip } = this.page;
     chip.hidden = false;
     chip.textContent = state.isPaused ? "paused" : STATES[state.state];
     chip.className = `chip ${state.state === "tracking" && !state.isPaused ? "metric" : "rough"}`;
-    chip.title = state.cameraHeight === null
-      ? "The ground is not known yet: lengths have no unit." : "Lengths are in metres.";
+    chip.title =
+      state.cameraHeight === null
+        ? "The ground is not known yet: lengths have no unit."
+        : "Lengths are in metres.";
   }
 
   private showImage(state: LiveState, image: ImageBitmap): void {
@@ -171,9 +201,15 @@ export class LiveViewer {
     const radius = Math.max(2, width / 400);
     for (let i = 0; i < state.features.length; i += 3) {
       context.beginPath();
-      context.arc((state.features[i] * width) / 1000, (state.features[i + 1] * height) / 1000, radius, 0,
-        2 * Math.PI);
-      context.fillStyle = context.strokeStyle = state.features[i + 2] === 1 ? "#4be08a" : "#ffffff90";
+      context.arc(
+        (state.features[i] * width) / 1000,
+        (state.features[i + 1] * height) / 1000,
+        radius,
+        0,
+        2 * Math.PI,
+      );
+      context.fillStyle = context.strokeStyle =
+        state.features[i + 2] === 1 ? "#4be08a" : "#ffffff90";
       if (state.features[i + 2] === 1) context.fill();
       else context.stroke();
     }

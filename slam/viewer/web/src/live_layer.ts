@@ -26,21 +26,29 @@ export class LiveLayer {
   private readonly marks: THREE.Points<THREE.BufferGeometry, THREE.PointsMaterial>;
   private readonly landmarks = new THREE.Group();
   private readonly pointMaterial = new THREE.PointsMaterial({
-    size: POINT_PIXELS, sizeAttenuation: false, vertexColors: true,
+    size: POINT_PIXELS,
+    sizeAttenuation: false,
+    vertexColors: true,
   });
-  private readonly objects = new Map<number, THREE.Points>();  // landmarks by keyframe
+  private readonly objects = new Map<number, THREE.Points>(); // landmarks by keyframe
 
   constructor() {
     const material = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.28 });
     this.links = new THREE.LineSegments(new THREE.BufferGeometry(), material);
     this.marks = new THREE.Points(
       new THREE.BufferGeometry(),
-      new THREE.PointsMaterial({ size: MARK_PIXELS, sizeAttenuation: false }));
+      new THREE.PointsMaterial({ size: MARK_PIXELS, sizeAttenuation: false }),
+    );
     for (const object of [this.links, this.marks]) object.frustumCulled = false;
     this.camera.drawOnTop();
     this.group.add(
-      this.landmarks, this.links, this.path.object, this.loops.object, this.marks,
-      this.camera.object);
+      this.landmarks,
+      this.links,
+      this.path.object,
+      this.loops.object,
+      this.marks,
+      this.camera.object,
+    );
   }
 
   /** Poses have changed: everything moves with its keyframe. */
@@ -56,9 +64,17 @@ export class LiveLayer {
     this.path.setSegments(path);
     const between = (a: number[] | undefined, b: number[] | undefined): number[] =>
       a && b ? [...a.slice(0, 3), ...b.slice(0, 3)] : [];
-    this.loops.setSegments(state.loops.flatMap(([a, b]) => between(ofFrame.get(a), ofFrame.get(b))));
-    setPositions(this.links, state.links.flatMap(([a, b]) => between(poses.get(a), poses.get(b))));
-    setPositions(this.marks, state.keyframes.flatMap((keyframe) => keyframe.slice(2, 5)));
+    this.loops.setSegments(
+      state.loops.flatMap(([a, b]) => between(ofFrame.get(a), ofFrame.get(b))),
+    );
+    setPositions(
+      this.links,
+      state.links.flatMap(([a, b]) => between(poses.get(a), poses.get(b))),
+    );
+    setPositions(
+      this.marks,
+      state.keyframes.flatMap((keyframe) => keyframe.slice(2, 5)),
+    );
     this.camera.setSegments(state.pose ? cameraShape(matrixOf(state.pose)) : []);
     for (const [id, object] of this.objects) {
       const pose = poses.get(id);
@@ -80,7 +96,9 @@ export class LiveLayer {
     this.landmarks.clear();
     for (const [id, list] of numbers) {
       const position = list.flatMap((i) => [...points.position.subarray(3 * i, 3 * i + 3)]);
-      const color = Uint8Array.from(list.flatMap((i) => [...points.color.subarray(3 * i, 3 * i + 3)]));
+      const color = Uint8Array.from(
+        list.flatMap((i) => [...points.color.subarray(3 * i, 3 * i + 3)]),
+      );
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute("position", new THREE.Float32BufferAttribute(position, 3));
       geometry.setAttribute("color", new THREE.BufferAttribute(color, 3, true));

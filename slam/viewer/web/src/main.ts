@@ -22,15 +22,21 @@ async function start(): Promise<void> {
   }
   const help = makeHelp();
   const source = openSource();
-  page.center.replaceChildren(centerMessage("Loading the run", "Poses, graph and the coarsest points come first."));
+  page.center.replaceChildren(
+    centerMessage("Loading the run", "Poses, graph and the coarsest points come first."),
+  );
   let run: Run | null = null;
   let viewer: Viewer | null = null;
   const fail = (error: Error): void => {
     setState("failed");
     page.progress.hidden = true;
-    page.center.replaceChildren(centerMessage(
-      "The run cannot be shown", error.message,
-      h("button", { type: "button", onclick: () => location.reload() }, "Try again")));
+    page.center.replaceChildren(
+      centerMessage(
+        "The run cannot be shown",
+        error.message,
+        h("button", { type: "button", onclick: () => location.reload() }, "Try again"),
+      ),
+    );
   };
   const say = (text: string | null): void => {
     page.banner.hidden = text === null;
@@ -41,7 +47,9 @@ async function start(): Promise<void> {
     source,
     () => {
       document.body.dataset.connection = "lost";
-      say("orb360 does not answer any more. What is loaded stays; the page goes on when it is back.");
+      say(
+        "orb360 does not answer any more. What is loaded stays; the page goes on when it is back.",
+      );
     },
     () => void found(),
   );
@@ -73,7 +81,8 @@ async function start(): Promise<void> {
   try {
     run = await source.run();
     viewer = new Viewer(run, source, page, {
-      onFailure: lostRequest, onHelp: () => help.showModal(),
+      onFailure: lostRequest,
+      onHelp: () => help.showModal(),
     });
     page.center.replaceChildren();
     await viewer.loadCloud();

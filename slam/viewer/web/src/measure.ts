@@ -20,7 +20,9 @@ export class Measure {
   private last: THREE.Vector3 | null = null;
 
   constructor(
-    private readonly run: Run, private readonly texts: Labels, private readonly onChange: () => void,
+    private readonly run: Run,
+    private readonly texts: Labels,
+    private readonly onChange: () => void,
   ) {
     this.lines.drawOnTop();
     this.rubber.drawOnTop();
@@ -47,7 +49,7 @@ export class Measure {
   /** The point under the cursor has changed. */
   hover(point: THREE.Vector3 | null): void {
     const last = this.last;
-    if (this.mode !== "distance" || !last || !point) {
+    if (this.mode !== "distance" || !last || !point || point.equals(last)) {
       this.hideRubber();
       return;
     }
@@ -95,7 +97,12 @@ export class Measure {
     return uncertainLength(value, this.run.unit, scaleSigma(this.run));
   }
 
-  private addSegment(from: THREE.Vector3, to: THREE.Vector3, text: string, at: THREE.Vector3): void {
+  private addSegment(
+    from: THREE.Vector3,
+    to: THREE.Vector3,
+    text: string,
+    at: THREE.Vector3,
+  ): void {
     this.segments.push(...from.toArray(), ...to.toArray());
     this.lines.setSegments(this.segments);
     this.labels.push(this.texts.add(text, at));

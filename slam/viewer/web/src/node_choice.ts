@@ -44,7 +44,7 @@ class Queue {
     const last = this.items.pop()!;
     if (this.items.length === 0) return top;
     this.items[0] = last;
-    for (let i = 0; ; ) {
+    for (let i = 0; ;) {
       let largest = i;
       for (const child of [2 * i + 1, 2 * i + 2]) {
         if (child < this.items.length && this.items[child].weight > this.items[largest].weight) {
@@ -59,13 +59,16 @@ class Queue {
 }
 
 /**
- * Goes from the root to the nodes that are largest on the screen, until the budget of points is used.
- * A node is shown only with its parent, so that what is missing makes the picture coarser, not wrong.
+ * Goes from the root to the nodes that are largest on the screen, until the budget of points is
+ * used.
+ * A node is shown only with its parent, so that what is missing makes the picture coarser, not
+ * wrong.
  */
 export function chooseNodes(nodes: OctreeNode[], view: Viewpoint): Choice {
   const frustum = new THREE.Frustum().setFromProjectionMatrix(
     new THREE.Matrix4().multiplyMatrices(
-      view.camera.projectionMatrix, view.camera.matrixWorldInverse,
+      view.camera.projectionMatrix,
+      view.camera.matrixWorldInverse,
     ),
   );
   const box = new THREE.Box3();

@@ -98,7 +98,9 @@ export function readIndex(bytes: ArrayBuffer, header: OctreeHeader): OctreeNode[
     const level = view.getUint8(at + 28);
     const side = header.side / 2 ** level;
     const cell: [number, number, number] = [
-      view.getUint32(at + 16, true), view.getUint32(at + 20, true), view.getUint32(at + 24, true),
+      view.getUint32(at + 16, true),
+      view.getUint32(at + 20, true),
+      view.getUint32(at + 24, true),
     ];
     cells.push(cell);
     places.set(`${level} ${cell[0]} ${cell[1]} ${cell[2]}`, i);

@@ -37,17 +37,25 @@ function fillBar(run: Run, page: Layout): void {
 
 function layerToggles(run: Run, layer: TrajectoryLayer, onChange: () => void): HTMLElement {
   const toggle = (name: string, key: string, object: THREE.Object3D, count: number): HTMLElement =>
-    h("label", { class: "check" },
+    h(
+      "label",
+      { class: "check" },
       h("input", {
-        type: "checkbox", checked: object.visible && count > 0, disabled: count === 0,
+        type: "checkbox",
+        checked: object.visible && count > 0,
+        disabled: count === 0,
         onchange: (event: Event) => {
           object.visible = (event.target as HTMLInputElement).checked;
           onChange();
         },
       }),
-      h("i", { class: `swatch ${key}` }), h("span", {}, name), h("small", {}, grouped(count)));
+      h("i", { class: `swatch ${key}` }),
+      h("span", {}, name),
+      h("small", {}, grouped(count)),
+    );
   return h(
-    "div", { class: "checks" },
+    "div",
+    { class: "checks" },
     toggle("Path", "path", layer.path.object, run.frames.index.length),
     toggle("Keyframes", "keyframe", layer.keyframes, run.keyframes.length),
     toggle("Keyframe graph", "link", layer.links, run.links.length / 3),
@@ -57,7 +65,10 @@ function layerToggles(run: Run, layer: TrajectoryLayer, onChange: () => void): H
 
 /** Fills bar and panel with what a run states. */
 export function fillPanel(
-  run: Run, page: Layout, layer: TrajectoryLayer, onChange: () => void,
+  run: Run,
+  page: Layout,
+  layer: TrajectoryLayer,
+  onChange: () => void,
 ): void {
   fillBar(run, page);
   const scale = section("Scale", true, h("p", {}, scaleState(run).sentence), scaleChart(run));
@@ -79,7 +90,11 @@ export function fillPanel(
 
 /** Adds what belongs to the cloud at the top of the panel. */
 export function addCloudSections(
-  run: Run, page: Layout, cloud: PointCloud, clipBox: ClipBox, viewport: Viewport,
+  run: Run,
+  page: Layout,
+  cloud: PointCloud,
+  clipBox: ClipBox,
+  viewport: Viewport,
 ): void {
   const points = section("Points", true, new PointControls(run, cloud, viewport).element);
   const size = length(cloud.header.side, run.unit);

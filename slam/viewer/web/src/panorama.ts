@@ -23,7 +23,8 @@ export interface PanoramaEvents {
 export class Panorama {
   readonly element: HTMLElement;
   private readonly canvas = h("canvas", {
-    tabindex: 0, role: "img",
+    tabindex: 0,
+    role: "img",
     "aria-label": "Panorama of the keyframe. Arrow keys look around, plus and minus zoom.",
   });
   private readonly title = h("h2", {});
@@ -37,27 +38,47 @@ export class Panorama {
   private request = 0;
 
   constructor(
-    private readonly run: Run, private readonly source: Source, private readonly events: PanoramaEvents,
+    private readonly run: Run,
+    private readonly source: Source,
+    private readonly events: PanoramaEvents,
   ) {
     const segmented = h("div", { class: "segmented", role: "group", "aria-label": "Overlay" });
     for (const overlay of ["image", "range", "confidence"] as const) {
       const button = h(
-        "button", { type: "button", "aria-pressed": String(overlay === "image"), onclick: () => this.setOverlay(overlay) },
+        "button",
+        {
+          type: "button",
+          "aria-pressed": String(overlay === "image"),
+          onclick: () => this.setOverlay(overlay),
+        },
         overlay[0].toUpperCase() + overlay.slice(1),
       );
       this.overlays.set(overlay, button);
       segmented.append(button);
     }
-    const button = (name: Parameters<typeof icon>[0], text: string, action: () => void): HTMLElement =>
-      h("button", { type: "button", class: "icon", title: text, "aria-label": text, onclick: action },
-        icon(name));
+    const button = (
+      name: Parameters<typeof icon>[0],
+      text: string,
+      action: () => void,
+    ): HTMLElement =>
+      h(
+        "button",
+        { type: "button", class: "icon", title: text, "aria-label": text, onclick: action },
+        icon(name),
+      );
     this.element = h(
-      "section", { id: "panorama", hidden: true, "aria-label": "Keyframe" },
-      h("header", {}, this.title, h("span", { class: "spacer" }),
+      "section",
+      { id: "panorama", hidden: true, "aria-label": "Keyframe" },
+      h(
+        "header",
+        {},
+        this.title,
+        h("span", { class: "spacer" }),
         button("previous", "Previous keyframe ([)", () => events.onStep(-1)),
         button("next", "Next keyframe (])", () => events.onStep(1)),
         button("go", "Stand there", () => events.onGo()),
-        button("close", "Close (Esc)", () => events.onClose())),
+        button("close", "Close (Esc)", () => events.onClose()),
+      ),
       h("div", { class: "sphere" }, this.canvas, this.notice),
       h("footer", {}, segmented, this.legend, this.readout),
     );
@@ -77,19 +98,26 @@ export class Panorama {
     this.element.hidden = false;
     this.readout.textContent = "";
     this.range = null;
-    const view = this.viewNearest(frame);
-    if (view === null) {
+    const hasImage = this.run.images.includes(frame);
+    // The range of another frame would not fit the image of this one.
+    const view = hasImage && !this.run.views.includes(frame) ? null : this.viewNearest(frame);
+    if (view === null && !hasImage) {
       this.say(
-        "This run kept no images. Run it again with --save-views to look around here.", true);
+        "This run kept no images. Run it again with --save-views to look around here.",
+        true,
+      );
       return;
     }
     this.say("Loading the panorama …", this.view === null);
     const image = new Image();
-    image.src = this.source.viewImage(view);
+    image.src = hasImage ? this.source.inputImage(frame) : this.source.viewImage(view!);
     try {
-      const [range] = await Promise.all([this.source.viewRange(view), image.decode()]);
+      const [range] = await Promise.all([
+        view === null ? null : this.source.viewRange(view),
+        image.decode(),
+      ]);
       if (request !== this.request) return;
-      this.range = new ViewRange(range);
+      this.range = range && new ViewRange(range);
     } catch (error) {
       if (request === this.request) {
         this.say(`The panorama cannot be loaded: ${(error as Error).message}`, true);
@@ -97,12 +125,22 @@ export class Panorama {
       return;
     }
     this.say(
-      view === frame ? "" : `This keyframe has no image of its own; that of frame ${view} is shown.`,
-      false);
+      view === null
+        ? "No range of this keyframe was kept."
+        : view === frame
+          ? ""
+          : `This keyframe has no image of its own; that of frame ${view} is shown.`,
+      false,
+    );
     this.view ??= new SphereView(this.canvas);
-    this.limits = this.range.limits();
     this.view.setImage(image);
-    this.view.setDepth(this.range.texels(this.limits), this.range.width, this.range.height);
+    for (const overlay of ["range", "confidence"] as const) {
+      this.overlays.get(overlay)!.disabled = this.range === null;
+    }
+    if (this.range) {
+      this.limits = this.range.limits();
+      this.view.setDepth(this.range.texels(this.limits), this.range.width, this.range.height);
+    } else this.setOverlay("image");
     this.showLegend();
     this.events.onTurn(this.view.forward());
   }
@@ -144,12 +182,16 @@ export class Panorama {
     if (overlay === "range") {
       const [near, far] = this.limits.map((range) => length(range, this.run.unit));
       this.legend.append(
-        h("span", {}, far), h("i", { style: `background: ${cssGradient("viridis")}` }),
-        h("span", {}, near));
+        h("span", {}, far),
+        h("i", { style: `background: ${cssGradient("viridis")}` }),
+        h("span", {}, near),
+      );
     } else if (overlay === "confidence") {
       this.legend.append(
-        h("span", {}, "0"), h("i", { style: `background: ${cssGradient("cividis")}` }),
-        h("span", {}, "1"));
+        h("span", {}, "0"),
+        h("i", { style: `background: ${cssGradient("cividis")}` }),
+        h("span", {}, "1"),
+      );
     }
   }
 
@@ -196,10 +238,14 @@ export class Panorama {
     const release = (event: PointerEvent): void => void pointers.delete(event.pointerId);
     this.canvas.addEventListener("pointerup", release);
     this.canvas.addEventListener("pointercancel", release);
-    this.canvas.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      this.view?.zoom(Math.exp(0.001 * event.deltaY));
-    }, { passive: false });
+    this.canvas.addEventListener(
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        this.view?.zoom(Math.exp(0.001 * event.deltaY));
+      },
+      { passive: false },
+    );
     this.canvas.addEventListener("keydown", (event) => this.pressed(event));
   }
 
@@ -207,7 +253,10 @@ export class Panorama {
     if (!this.view) return;
     const step = this.canvas.clientHeight * (KEY_DEGREES / this.view.fieldOfView);
     const moves: Record<string, [number, number]> = {
-      ArrowLeft: [step, 0], ArrowRight: [-step, 0], ArrowUp: [0, step], ArrowDown: [0, -step],
+      ArrowLeft: [step, 0],
+      ArrowRight: [-step, 0],
+      ArrowUp: [0, step],
+      ArrowDown: [0, -step],
     };
     if (event.key in moves) this.view.drag(...moves[event.key]);
     else if (event.key === "+" || event.key === "=") this.view.zoom(0.85);

@@ -15,7 +15,10 @@ interface Candidate extends PickedPoint {
 
 /** Looks through a node for the nearest point within an angle of the ray. */
 function pickInNode(
-  entry: LoadedNode, ray: THREE.Ray, tangent: number, clip: THREE.Box3 | null,
+  entry: LoadedNode,
+  ray: THREE.Ray,
+  tangent: number,
+  clip: THREE.Box3 | null,
 ): Candidate | null {
   const { node, points } = entry;
   const scale = node.side / 65536;
@@ -27,7 +30,9 @@ function pickInNode(
       node.min[1] + scale * (points.positions[4 * i + 1] + 0.5),
       node.min[2] + scale * (points.positions[4 * i + 2] + 0.5),
     );
-    const along = (p.x - ray.origin.x) * ray.direction.x + (p.y - ray.origin.y) * ray.direction.y +
+    const along =
+      (p.x - ray.origin.x) * ray.direction.x +
+      (p.y - ray.origin.y) * ray.direction.y +
       (p.z - ray.origin.z) * ray.direction.z;
     if (along <= 0 || (best && along >= best.distance)) continue;
     const limit = along * tangent;
@@ -40,7 +45,11 @@ function pickInNode(
 
 /** The nearest shown point at a place on the canvas, CSS pixels. */
 export function pickPoint(
-  viewport: Viewport, cloud: PointCloud, x: number, y: number, radius: number,
+  viewport: Viewport,
+  cloud: PointCloud,
+  x: number,
+  y: number,
+  radius: number,
 ): PickedPoint | null {
   const { ray, radiansPerPixel } = viewport.ray(x, y);
   const box = new THREE.Box3();
@@ -64,7 +73,11 @@ export function pickPoint(
 
 /** The mark nearest to a place on the canvas, by its number; null where none is within `radius`. */
 export function pickMark(
-  viewport: Viewport, positions: THREE.Vector3[], x: number, y: number, radius: number,
+  viewport: Viewport,
+  positions: THREE.Vector3[],
+  x: number,
+  y: number,
+  radius: number,
 ): number | null {
   let best: number | null = null;
   let bestDistance = radius;

@@ -1,7 +1,13 @@
 import * as THREE from "three";
 import {
-  HEADER_BYTES, nodeBytes, readHeader, readIndex, readPoints,
-  type NodePoints, type OctreeHeader, type OctreeNode,
+  HEADER_BYTES,
+  nodeBytes,
+  readHeader,
+  readIndex,
+  readPoints,
+  type NodePoints,
+  type OctreeHeader,
+  type OctreeNode,
 } from "./octree_file";
 import { chooseNodes, type Choice } from "./node_choice";
 import { makePointMaterial, makeVisibleTexture, VISIBLE_WIDTH } from "./point_material";
@@ -19,7 +25,9 @@ export interface LoadedNode {
   lastShown: number;
 }
 
-/** The cloud of a run: shows the nodes of its octree that matter in a view and loads those missing. */
+/**
+ * The cloud of a run: shows the nodes of its octree that matter in a view and loads those missing.
+ */
 export class PointCloud {
   readonly group = new THREE.Group();
   readonly material = makePointMaterial();
@@ -50,7 +58,9 @@ export class PointCloud {
 
   /** Reads header, index and root. */
   static async open(
-    source: Source, onChange: () => void, onError: (error: Error) => void,
+    source: Source,
+    onChange: () => void,
+    onError: (error: Error) => void,
   ): Promise<PointCloud> {
     const header = readHeader(await source.octree(0, HEADER_BYTES));
     const index = await source.octree(header.indexOffset, header.fileSize);
@@ -74,7 +84,9 @@ export class PointCloud {
     const pixelsPerRadian = heightInPixels / (2 * Math.tan((camera.fov * Math.PI) / 360));
     this.material.uniforms.pixelsPerRadian.value = pixelsPerRadian;
     const choice: Choice = chooseNodes(this.nodes, {
-      camera, pixelsPerRadian, clip,
+      camera,
+      pixelsPerRadian,
+      clip,
       budget: this.pointBudget,
       cellsPerSide: this.header.cellsPerSide,
       isLoaded: (place) => this.loaded.has(place),
@@ -113,9 +125,10 @@ export class PointCloud {
     const node = this.nodes[place];
     this.loading.add(place);
     try {
-      const bytes = node.pointCount > 0
-        ? await this.source.octree(node.offset, node.offset + nodeBytes(node))
-        : new ArrayBuffer(0);
+      const bytes =
+        node.pointCount > 0
+          ? await this.source.octree(node.offset, node.offset + nodeBytes(node))
+          : new ArrayBuffer(0);
       this.add(place, readPoints(bytes, node));
     } finally {
       this.loading.delete(place);
@@ -129,7 +142,7 @@ export class PointCloud {
     const node = this.nodes[place];
     const geometry = new THREE.BufferGeometry();
     const steps = new THREE.BufferAttribute(points.positions, 4);
-    steps.gpuType = THREE.IntType;  // no conversion to float: the shader reads integers
+    steps.gpuType = THREE.IntType; // no conversion to float: the shader reads integers
     geometry.setAttribute("steps", steps);
     geometry.setAttribute("tint", new THREE.BufferAttribute(points.colors, 4, true));
     geometry.setDrawRange(0, node.pointCount);
@@ -164,7 +177,9 @@ export class PointCloud {
     }
   }
 
-  /** Writes, in breadth-first order, masks of shown and hidden children and the place of the first. */
+  /**
+   * Writes, in breadth-first order, masks of shown and hidden children and the place of the first.
+   */
   private writeVisibleTexture(): void {
     const texture = this.material.uniforms.visibleNodes.value as THREE.DataTexture;
     const data = texture.image.data as unknown as Uint32Array;

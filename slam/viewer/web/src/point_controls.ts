@@ -39,13 +39,17 @@ export class PointControls {
   private readonly textures = new Map<ColorMapName, THREE.DataTexture>();
 
   constructor(
-    private readonly run: Run, private readonly cloud: PointCloud, private readonly viewport: Viewport,
+    private readonly run: Run,
+    private readonly cloud: PointCloud,
+    private readonly viewport: Viewport,
   ) {
     const isOnGround = cameraHeight(run) !== null && run.summary.levelled === true;
     this.colorings = [
       { name: "Image", by: ColorBy.Image },
       {
-        name: "Height", by: ColorBy.Height, map: "viridis",
+        name: "Height",
+        by: ColorBy.Height,
+        map: "viridis",
         caption: isOnGround
           ? "Height over the ground below the first frame."
           : "Height over the first camera, along the z axis of the run.",
@@ -53,13 +57,18 @@ export class PointControls {
     ];
     if (cloud.header.hasConfidences) {
       this.colorings.push({
-        name: "Confidence", by: ColorBy.Confidence, map: "cividis",
-        caption: "1 is certain. A point of confidence c is expected 1/c − 1 voxels from the surface.",
+        name: "Confidence",
+        by: ColorBy.Confidence,
+        map: "cividis",
+        caption:
+          "1 is certain. A point of confidence c is expected 1/c − 1 voxels from the surface.",
       });
     }
     if (cloud.header.hasConfidences && run.summary.cloud?.voxel_size) {
       this.colorings.push({
-        name: "Error", by: ColorBy.Error, map: "magma",
+        name: "Error",
+        by: ColorBy.Error,
+        map: "magma",
         caption: "Expected distance of a point from the surface.",
       });
     }
@@ -70,7 +79,14 @@ export class PointControls {
     if (voxel) uniforms.leafSpacing.value = VOXELS_OF_POINT * voxel;
     else uniforms.maxSize.value = LANDMARK_PIXELS * Math.min(devicePixelRatio, 2);
     uniforms.ground.value = isOnGround ? -cameraHeight(run)! : 0;
-    this.element = h("div", {}, this.makeColorings(), this.legend, this.caption, ...this.makeSliders());
+    this.element = h(
+      "div",
+      {},
+      this.makeColorings(),
+      this.legend,
+      this.caption,
+      ...this.makeSliders(),
+    );
     this.choose(0);
   }
 
@@ -118,7 +134,9 @@ export class PointControls {
     const [low, high] = limits;
     this.legend.replaceChildren(
       h("i", { style: `background: ${cssGradient(coloring.map)}` }),
-      h("span", {}, text(low)), h("span", {}, text((low + high) / 2)), h("span", {}, text(high)),
+      h("span", {}, text(low)),
+      h("span", {}, text((low + high) / 2)),
+      h("span", {}, text(high)),
     );
   }
 
@@ -134,12 +152,21 @@ export class PointControls {
 
   private makeSliders(): HTMLElement[] {
     const slider = (
-      name: string, min: number, max: number, value: number, step: number,
-      show: (value: number) => string, apply: (value: number) => void,
+      name: string,
+      min: number,
+      max: number,
+      value: number,
+      step: number,
+      show: (value: number) => string,
+      apply: (value: number) => void,
     ): HTMLElement => {
       const output = h("output", {}, show(value));
       const input = h("input", {
-        type: "range", min, max, step, value,
+        type: "range",
+        min,
+        max,
+        step,
+        value,
         oninput: (event: Event) => {
           const chosen = Number((event.target as HTMLInputElement).value);
           output.textContent = show(chosen);
@@ -153,16 +180,44 @@ export class PointControls {
     const most = Math.log10(Math.max(Math.min(total, 10_000_000), 20_000));
     const initial = Math.min(most, Math.log10(this.cloud.pointBudget));
     const uniforms = this.cloud.material.uniforms;
-    const confidence = slider("Least confidence", 0, 1, 0, 0.01,
-      (v) => (v === 0 ? "all points" : v.toFixed(2)), (v) => (uniforms.leastConfidence.value = v));
+    const confidence = slider(
+      "Least confidence",
+      0,
+      1,
+      0,
+      0.01,
+      (v) => (v === 0 ? "all points" : v.toFixed(2)),
+      (v) => (uniforms.leastConfidence.value = v),
+    );
     return [
       ...(this.cloud.header.hasConfidences ? [confidence] : []),
-      slider("Points at once", 4, most, initial, 0.01, (v) => short(10 ** v),
-        (v) => (this.cloud.pointBudget = 10 ** v)),
-      slider("Point size", 0.4, 3, uniforms.pointScale.value, 0.05, (v) => `${v.toFixed(2)} ×`,
-        (v) => (uniforms.pointScale.value = v)),
-      slider("Eye-dome lighting", 0, 2, this.viewport.eyeDome.strength, 0.05,
-        (v) => (v === 0 ? "off" : v.toFixed(2)), (v) => (this.viewport.eyeDome.strength = v)),
+      slider(
+        "Points at once",
+        4,
+        most,
+        initial,
+        0.01,
+        (v) => short(10 ** v),
+        (v) => (this.cloud.pointBudget = 10 ** v),
+      ),
+      slider(
+        "Point size",
+        0.4,
+        3,
+        uniforms.pointScale.value,
+        0.05,
+        (v) => `${v.toFixed(2)} ×`,
+        (v) => (uniforms.pointScale.value = v),
+      ),
+      slider(
+        "Eye-dome lighting",
+        0,
+        2,
+        this.viewport.eyeDome.strength,
+        0.05,
+        (v) => (v === 0 ? "off" : v.toFixed(2)),
+        (v) => (this.viewport.eyeDome.strength = v),
+      ),
     ];
   }
 }

@@ -123,8 +123,11 @@ export function makePointMaterial(): PointMaterial {
 /** The texture that tells the shader which nodes are shown, in breadth-first order. */
 export function makeVisibleTexture(rows: number): THREE.DataTexture {
   const texture = new THREE.DataTexture(
-    new Uint32Array(2 * VISIBLE_WIDTH * rows), VISIBLE_WIDTH, rows,
-    THREE.RGIntegerFormat, THREE.UnsignedIntType,
+    new Uint32Array(2 * VISIBLE_WIDTH * rows),
+    VISIBLE_WIDTH,
+    rows,
+    THREE.RGIntegerFormat,
+    THREE.UnsignedIntType,
   );
   texture.internalFormat = "RG32UI";
   return texture;

@@ -12,7 +12,7 @@ export interface PointerEvents {
 /** Tells clicks from drags. */
 export function listenToPointer(element: HTMLElement, events: PointerEvents): void {
   let down: { x: number; y: number } | null = null;
-  let latest: { x: number; y: number } | null = null;  // not yet looked at
+  let latest: { x: number; y: number } | null = null; // not yet looked at
   const placeOf = (event: MouseEvent): { x: number; y: number } => {
     const box = element.getBoundingClientRect();
     return { x: event.clientX - box.left, y: event.clientY - box.top };

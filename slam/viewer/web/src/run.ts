@@ -15,6 +15,8 @@ export interface Run {
   links: number[];
   loops: [number, number][];
   scale: { time: number[]; value: number[]; sigma: number[] };
+  /** Frames whose image the input still has, and those whose image and range the run kept. */
+  images: number[];
   views: number[];
   missing: string[];
 }

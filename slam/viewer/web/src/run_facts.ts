@@ -11,18 +11,22 @@ export function scaleState(run: Run): { state: string; chip: string; sentence: s
     return {
       state: "unknown",
       chip: "scale unknown",
-      sentence: "Nothing tells the scale of this run well enough. Lengths are in units of the map, " +
+      sentence:
+        "Nothing tells the scale of this run well enough. Lengths are in units of the map, " +
         "which are not metres.",
     };
   }
   const from = (scale?.sources ?? []).join(" and ");
-  const height = scale?.camera_height == null ? "" :
-    ` ${scale.assumed_height ? "A camera height of" : "The camera height is"} ` +
-    `${scale.camera_height.toFixed(2)} m${scale.assumed_height ? " was assumed" : ""}.`;
+  const height =
+    scale?.camera_height == null
+      ? ""
+      : ` ${scale.assumed_height ? "A camera height of" : "The camera height is"} ` +
+        `${scale.camera_height.toFixed(2)} m${scale.assumed_height ? " was assumed" : ""}.`;
   return {
     state,
     chip: `${state} ± ${percent(sigma)}`,
-    sentence: `Metres have a standard deviation of ${percent(sigma)}` +
+    sentence:
+      `Metres have a standard deviation of ${percent(sigma)}` +
       `${from ? `, from ${from}` : ""}.${height}`,
   };
 }
@@ -38,7 +42,8 @@ export function factTiles(run: Run): HTMLElement {
   const add = (value: string | null, name: string): void => {
     if (value !== null) tiles.push(tile(value, name));
   };
-  const number = (value: number | undefined): string | null => (value === undefined ? null : grouped(value));
+  const number = (value: number | undefined): string | null =>
+    value === undefined ? null : grouped(value);
   if (s.frames) add(percent((s.tracked ?? 0) / s.frames), `of ${grouped(s.frames)} frames tracked`);
   if (run.frames.index.length > 1) add(length(pathLength(run), run.unit), "path");
   add(number(s.keyframes), "keyframes");
@@ -61,7 +66,8 @@ export function notes(run: Run): HTMLElement | null {
   if (run.summary.positions?.failure) warnings.push(`Positions: ${run.summary.positions.failure}`);
   if (warnings.length + run.missing.length === 0) return null;
   return h(
-    "ul", { class: "notes" },
+    "ul",
+    { class: "notes" },
     ...warnings.map((text) => h("li", { class: "warning" }, text)),
     ...run.missing.map((text) => h("li", {}, text)),
   );

@@ -1,10 +1,14 @@
 import type { Run } from "./run";
 
-/** Where the page has its data from: the server of `orb360 view`, or the file of `orb360 report`. */
+/**
+ * Where the page has its data from: the server of `orb360 view`, or the file of `orb360 report`.
+ */
 export interface Source {
   run(): Promise<Run>;
   /** Bytes `begin` to before `end` of the octree. */
   octree(begin: number, end: number): Promise<ArrayBuffer>;
+  /** JPEG of a frame of the input; an address for an image element. */
+  inputImage(frame: number): string;
   /** JPEG of a view; an address for an image element. */
   viewImage(frame: number): string;
   /** Range and confidence of a view (slam/viewer/view_files.h). */
@@ -17,7 +21,10 @@ export interface Source {
 
 /** What a request brought instead of data. */
 export class SourceError extends Error {
-  constructor(message: string, readonly isConnection: boolean) {
+  constructor(
+    message: string,
+    readonly isConnection: boolean,
+  ) {
     super(message);
   }
 }
@@ -57,6 +64,10 @@ class ServerSource implements Source {
       throw new SourceError("the octree has changed; load the page again", false);
     }
     return bytes;
+  }
+
+  inputImage(frame: number): string {
+    return `images/${frame}.jpg`;
   }
 
   viewImage(frame: number): string {
@@ -99,6 +110,10 @@ class EmbeddedSource implements Source {
   async octree(begin: number, end: number): Promise<ArrayBuffer> {
     this.bytes ??= fromBase64(embeddedText("embedded-octree"));
     return this.bytes.slice(begin, end);
+  }
+
+  inputImage(frame: number): string {
+    throw new Error(`a report has no image ${frame} of the input`);
   }
 
   viewImage(frame: number): string {

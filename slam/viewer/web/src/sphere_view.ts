@@ -118,8 +118,12 @@ export class SphereView {
     const { clientWidth, clientHeight } = this.canvas;
     const tangents = this.tangents();
     return new THREE.Vector3(
-      ((2 * x) / clientWidth - 1) * tangents.x, (1 - (2 * y) / clientHeight) * tangents.y, -1,
-    ).normalize().applyMatrix3(this.cameraFromView());
+      ((2 * x) / clientWidth - 1) * tangents.x,
+      (1 - (2 * y) / clientHeight) * tangents.y,
+      -1,
+    )
+      .normalize()
+      .applyMatrix3(this.cameraFromView());
   }
 
   /** Direction in the middle of the canvas. */
@@ -138,7 +142,10 @@ export class SphereView {
 
   private tangents(): THREE.Vector2 {
     const y = Math.tan((this.fieldOfView * Math.PI) / 360);
-    return new THREE.Vector2((y * this.canvas.clientWidth) / Math.max(1, this.canvas.clientHeight), y);
+    return new THREE.Vector2(
+      (y * this.canvas.clientWidth) / Math.max(1, this.canvas.clientHeight),
+      y,
+    );
   }
 
   /** From the view (x right, y up, z backwards) to the optical camera frame. */

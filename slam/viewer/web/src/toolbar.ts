@@ -17,21 +17,43 @@ export interface Toolbar {
 }
 
 /** The buttons over the view. */
-export function makeToolbar(
-  element: HTMLElement, events: ToolbarEvents,
-): Toolbar {
+export function makeToolbar(element: HTMLElement, events: ToolbarEvents): Toolbar {
   const button = (
-    name: Parameters<typeof icon>[0], text: string, key: string, action: () => void, canToggle = false,
+    name: Parameters<typeof icon>[0],
+    text: string,
+    key: string,
+    action: () => void,
+    canToggle = false,
   ): HTMLButtonElement =>
-    h("button", {
-      type: "button", class: "icon", title: key ? `${text} (${key})` : text, "aria-label": text,
-      "aria-pressed": canToggle ? "false" : null, onclick: action,
-    }, icon(name));
+    h(
+      "button",
+      {
+        type: "button",
+        class: "icon",
+        title: key ? `${text} (${key})` : text,
+        "aria-label": text,
+        "aria-pressed": canToggle ? "false" : null,
+        onclick: action,
+      },
+      icon(name),
+    );
   let mode: MeasureMode | null = null;
   let isClipped = false;
   const modes: Record<MeasureMode, HTMLButtonElement> = {
-    distance: button("measure", "Measure distances", "M", () => toolbar.toggleMode("distance"), true),
-    height: button("height", "Heights over the ground", "G", () => toolbar.toggleMode("height"), true),
+    distance: button(
+      "measure",
+      "Measure distances",
+      "M",
+      () => toolbar.toggleMode("distance"),
+      true,
+    ),
+    height: button(
+      "height",
+      "Heights over the ground",
+      "G",
+      () => toolbar.toggleMode("height"),
+      true,
+    ),
   };
   const clip = button("clip", "Clip box", "C", () => toolbar.toggleClip(), true);
   const hint = h("span", { class: "hint", hidden: true });
@@ -42,8 +64,8 @@ export function makeToolbar(
         node.setAttribute("aria-pressed", String(name === mode));
       }
       hint.hidden = mode === null;
-      hint.textContent = mode === "distance"
-        ? "Click points; double click ends a line" : "Click a point";
+      hint.textContent =
+        mode === "distance" ? "Click points; double click ends a line" : "Click a point";
       events.onMode(mode);
     },
     toggleClip() {
@@ -56,11 +78,15 @@ export function makeToolbar(
     button("home", "Whole run", "H", events.onHome),
     button("top", "From above", "T", events.onTop),
     h("i", { class: "divider" }),
-    h("span", { class: "for-cloud" },
-      modes.distance, modes.height,
+    h(
+      "span",
+      { class: "for-cloud" },
+      modes.distance,
+      modes.height,
       button("trash", "Remove measurements", "", events.onClear),
       h("i", { class: "divider" }),
-      clip),
+      clip,
+    ),
     button("help", "Keys and gestures", "?", events.onHelp),
     hint,
   );

@@ -87,7 +87,11 @@ export class TrajectoryLayer {
     this.keyframes = this.makeMarks();
     this.heading.drawOnTop();
     this.group.add(
-      this.links, this.path.object, this.loops.object, this.keyframes, this.heading.object,
+      this.links,
+      this.path.object,
+      this.loops.object,
+      this.keyframes,
+      this.heading.object,
     );
   }
 
@@ -169,7 +173,9 @@ export class TrajectoryLayer {
     const coordinates = keyframes.flatMap((frame) => positionOf(this.run, frame));
     geometry.setAttribute("position", new THREE.Float32BufferAttribute(coordinates, 3));
     geometry.setAttribute(
-      "isSelected", new THREE.Float32BufferAttribute(new Float32Array(keyframes.length), 1));
+      "isSelected",
+      new THREE.Float32BufferAttribute(new Float32Array(keyframes.length), 1),
+    );
     const material = new THREE.ShaderMaterial({
       glslVersion: THREE.GLSL3,
       vertexShader: MARK_VERTEX,

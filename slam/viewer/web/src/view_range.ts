@@ -11,7 +11,8 @@ export class ViewRange {
     this.width = view.getUint32(0, true);
     this.height = view.getUint32(4, true);
     const count = this.width * this.height;
-    if (bytes.byteLength !== 8 + 3 * count) throw new Error("the ranges of this view are truncated");
+    if (bytes.byteLength !== 8 + 3 * count)
+      throw new Error("the ranges of this view are truncated");
     this.codes = new Uint16Array(bytes, 8, count);
     this.confidences = new Uint8Array(bytes, 8 + 2 * count, count);
   }
@@ -27,11 +28,14 @@ export class ViewRange {
   limits(): [number, number] {
     const known = this.codes.filter((code) => code > 0).sort();
     if (known.length === 0) return [1, 10];
-    const at = (fraction: number): number => rangeOf(known[Math.floor(fraction * (known.length - 1))]);
+    const at = (fraction: number): number =>
+      rangeOf(known[Math.floor(fraction * (known.length - 1))]);
     return [at(0.02), at(0.98)];
   }
 
-  /** For the graphics card, RG: place of the range's logarithm in `limits`, 0 for none; confidence. */
+  /**
+   * For the graphics card, RG: place of the range's logarithm in `limits`, 0 for none; confidence.
+   */
   texels(limits: [number, number]): Uint8Array {
     const [low, high] = limits.map((range) => codeOf(range));
     const texels = new Uint8Array(2 * this.codes.length);

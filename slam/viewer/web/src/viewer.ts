@@ -19,7 +19,9 @@ import { Viewport } from "./viewport";
 
 const PICK_PIXELS = 8;
 const MARK_PIXELS = 12;
-/** From where a keyframe is looked at while the user goes from one to the next, units of the world. */
+/**
+ * From where a keyframe is looked at while the user goes from one to the next, units of the world.
+ */
 const FOLLOW_DISTANCE = 25;
 
 export interface ViewerEvents {
@@ -42,7 +44,9 @@ export class Viewer {
   private readonly marks: THREE.Vector3[];
 
   constructor(
-    private readonly run: Run, private readonly source: Source, private readonly page: Layout,
+    private readonly run: Run,
+    private readonly source: Source,
+    private readonly page: Layout,
     private readonly events: ViewerEvents,
   ) {
     this.viewport = new Viewport(page.canvas);
@@ -95,16 +99,23 @@ export class Viewer {
       return;
     }
     const cloud = await PointCloud.open(
-      this.source, () => this.viewport.invalidate(), this.events.onFailure);
+      this.source,
+      () => this.viewport.invalidate(),
+      this.events.onFailure,
+    );
     this.cloud = cloud;
     const { min, side } = cloud.header;
     const box = boxOfCloud(cloud);
     const whole = new THREE.Box3(
-      new THREE.Vector3(...min), new THREE.Vector3(min[0] + side, min[1] + side, min[2] + side));
+      new THREE.Vector3(...min),
+      new THREE.Vector3(min[0] + side, min[1] + side, min[2] + side),
+    );
     this.viewport.setExtent(
-      whole.union(this.box()).getSize(new THREE.Vector3()).length() / Math.sqrt(3));
+      whole.union(this.box()).getSize(new THREE.Vector3()).length() / Math.sqrt(3),
+    );
     this.viewport.setCloud(cloud);
-    if (this.run.frames.index.length === 0) this.viewport.setPose(obliquePose(this.box(), this.viewport.camera));
+    if (this.run.frames.index.length === 0)
+      this.viewport.setPose(obliquePose(this.box(), this.viewport.camera));
     this.clipBox = new ClipBox(box, cloud, this.run.unit, () => this.clipChanged());
     this.clipBox.setColor(canvasColors().box);
     this.viewport.overlay.add(this.clipBox.lines.object);
@@ -121,16 +132,26 @@ export class Viewer {
   key(event: KeyboardEvent): boolean {
     const turn = 0.12;
     const actions: Record<string, () => void> = {
-      ArrowLeft: () => this.viewport.orbit(-turn, 0), ArrowRight: () => this.viewport.orbit(turn, 0),
-      ArrowUp: () => this.viewport.orbit(0, -turn), ArrowDown: () => this.viewport.orbit(0, turn),
-      w: () => this.viewport.pan(0, 0.1), s: () => this.viewport.pan(0, -0.1),
-      a: () => this.viewport.pan(-0.1, 0), d: () => this.viewport.pan(0.1, 0),
-      "+": () => this.viewport.zoom(0.8), "=": () => this.viewport.zoom(0.8),
+      ArrowLeft: () => this.viewport.orbit(-turn, 0),
+      ArrowRight: () => this.viewport.orbit(turn, 0),
+      ArrowUp: () => this.viewport.orbit(0, -turn),
+      ArrowDown: () => this.viewport.orbit(0, turn),
+      w: () => this.viewport.pan(0, 0.1),
+      s: () => this.viewport.pan(0, -0.1),
+      a: () => this.viewport.pan(-0.1, 0),
+      d: () => this.viewport.pan(0.1, 0),
+      "+": () => this.viewport.zoom(0.8),
+      "=": () => this.viewport.zoom(0.8),
       "-": () => this.viewport.zoom(1.25),
-      h: () => this.viewport.flyTo(obliquePose(this.box(), this.viewport.camera)), t: () => this.viewport.flyTo(topPose(this.box(), this.viewport.camera)),
-      m: () => this.toolbar.toggleMode("distance"), g: () => this.toolbar.toggleMode("height"),
-      c: () => this.toolbar.toggleClip(), p: () => togglePanel(),
-      "[": () => this.step(-1), "]": () => this.step(1), Escape: () => this.escape(),
+      h: () => this.viewport.flyTo(obliquePose(this.box(), this.viewport.camera)),
+      t: () => this.viewport.flyTo(topPose(this.box(), this.viewport.camera)),
+      m: () => this.toolbar.toggleMode("distance"),
+      g: () => this.toolbar.toggleMode("height"),
+      c: () => this.toolbar.toggleClip(),
+      p: () => togglePanel(),
+      "[": () => this.step(-1),
+      "]": () => this.step(1),
+      Escape: () => this.escape(),
     };
     const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     action?.();
@@ -169,7 +190,9 @@ export class Viewer {
     const isBeside = this.page.stage.clientWidth > 2 * offsetWidth;
     const isOpen = this.panorama.isOpen;
     this.viewport.setShift(
-      isOpen && isBeside ? offsetWidth / 2 : 0, isOpen && !isBeside ? offsetHeight / 2 : 0);
+      isOpen && isBeside ? offsetWidth / 2 : 0,
+      isOpen && !isBeside ? offsetHeight / 2 : 0,
+    );
   }
 
   private escape(): void {
@@ -211,7 +234,8 @@ export class Viewer {
     const eye = this.marks[this.selected].clone();
     const forward = this.layer.forwardOf(this.selected);
     this.viewport.flyTo({
-      eye: eye.clone().addScaledVector(forward, -0.02), target: eye.addScaledVector(forward, 2),
+      eye: eye.clone().addScaledVector(forward, -0.02),
+      target: eye.addScaledVector(forward, 2),
     });
   }
 
@@ -237,7 +261,8 @@ export class Viewer {
       this.measure.hover(this.pick(x, y)?.position ?? null);
       return;
     }
-    const isMark = this.layer.keyframes.visible &&
+    const isMark =
+      this.layer.keyframes.visible &&
       pickMark(this.viewport, this.marks, x, y, MARK_PIXELS) !== null;
     this.page.canvas.classList.toggle("pointing", isMark);
   }
@@ -282,7 +307,10 @@ export class Viewer {
     this.page.center.replaceChildren(
       this.run.frames.index.length > 0
         ? centerMessage("No points", "This run has a path but no cloud.")
-        : centerMessage("Nothing to show", "No frame of this run has a pose. The camera has to move and to see some texture."),
+        : centerMessage(
+            "Nothing to show",
+            "No frame of this run has a pose. The camera has to move and to see some texture.",
+          ),
     );
     this.page.progress.hidden = true;
     this.viewport.invalidate();

@@ -3,7 +3,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { EyeDome } from "./eye_dome";
 import type { PointCloud } from "./point_cloud";
 
-const FIELD_OF_VIEW = 60;  // degrees, vertical
+const FIELD_OF_VIEW = 60; // degrees, vertical
 const FLIGHT_MS = 450;
 
 /** A place and what is looked at from there. */
@@ -35,7 +35,9 @@ export class Viewport {
   constructor(readonly canvas: HTMLCanvasElement) {
     THREE.ColorManagement.enabled = false;
     this.renderer = new THREE.WebGLRenderer({
-      canvas, antialias: true, powerPreference: "high-performance",
+      canvas,
+      antialias: true,
+      powerPreference: "high-performance",
     });
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     this.renderer.autoClear = false;
@@ -97,7 +99,8 @@ export class Viewport {
   orbit(azimuth: number, polar: number): void {
     const offset = this.camera.position.clone().sub(this.controls.target);
     const spherical = new THREE.Spherical().setFromVector3(
-      new THREE.Vector3(offset.x, offset.z, -offset.y));
+      new THREE.Vector3(offset.x, offset.z, -offset.y),
+    );
     spherical.theta += azimuth;
     spherical.phi = Math.min(Math.max(spherical.phi + polar, 0.02), 0.98 * Math.PI);
     const turned = new THREE.Vector3().setFromSpherical(spherical);
@@ -110,12 +113,15 @@ export class Viewport {
     const offset = this.controls.target.clone().sub(this.camera.position);
     const distance = offset.length();
     const ahead = new THREE.Vector3(offset.x, offset.y, 0);
-    if (ahead.lengthSq() < 1e-12) ahead.set(0, 1, 0).applyQuaternion(this.camera.quaternion).setZ(0);
+    if (ahead.lengthSq() < 1e-12)
+      ahead.set(0, 1, 0).applyQuaternion(this.camera.quaternion).setZ(0);
     ahead.normalize();
     const move = new THREE.Vector3(ahead.y, -ahead.x, 0)
-      .multiplyScalar(right * distance).addScaledVector(ahead, forward * distance);
+      .multiplyScalar(right * distance)
+      .addScaledVector(ahead, forward * distance);
     this.setPose({
-      eye: this.camera.position.clone().add(move), target: this.controls.target.clone().add(move),
+      eye: this.camera.position.clone().add(move),
+      target: this.controls.target.clone().add(move),
     });
   }
 
