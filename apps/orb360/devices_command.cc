@@ -84,6 +84,9 @@ nlohmann::json Measure(const nn::Graph& graph, const DevicesOptions& options,
     return {{"milliseconds", MeasureMs(graph, {options.size[1], options.size[0]}, how)}};
   } catch (const nn::DeviceError& error) {
     return {{"milliseconds", nullptr}, {"problem", error.what()}};
+  } catch (const UserError& error) {
+    if (name == "cpu") throw;  // It is the network that cannot be used.
+    return {{"milliseconds", nullptr}, {"problem", error.what()}};
   }
 }
 

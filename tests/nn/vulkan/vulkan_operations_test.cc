@@ -1,11 +1,15 @@
 // Every operation on a Vulkan device, against PyTorch's results and against double precision.
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
 #include <gtest/gtest.h>
 
 #include "tests/nn/graph/network_builder.h"
+#include "tests/nn/graph/network_run.h"
 #include "tests/nn/graph/node_check.h"
 #include "tests/nn/graph/random_network.h"
 #include "tests/nn/graph/reference_check.h"
@@ -108,6 +112,49 @@ TEST_F(VulkanOperations, FindTheMedianOfAnyNumberOfPoints) {
       odd.values[i] = static_cast<float>(extremes[i % std::size(extremes)]);
     }
     ExpectEveryNodeRight(graph, {odd, RandomImage({1, height, width}, 0.1f, 1, 3)}, options());
+  }
+}
+
+TEST_F(VulkanOperations, AreFunctionsWithinAFewUnitsInTheLastPlace) {
+  NetworkBuilder net(1);
+  net.Input("x", 1);
+  using Function = double (*)(double);
+  const std::pair<const char*, Function> functions[] = {
+      {"exp", [](double x) { return std::exp(x); }},
+      {"log", [](double x) { return std::log(x); }},
+      {"tanh", [](double x) { return std::tanh(x); }},
+      {"sigmoid", [](double x) { return 1 / (1 + std::exp(-x)); }},
+      {"softplus", [](double x) { return std::max(x, 0.0) + std::log1p(std::exp(-std::abs(x))); }}};
+  for (const auto& [name, function] : functions) net.Output(net.Node(name, name, {"x"}), name);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  PlainImage x({1, 60, 101});
+  const PlainImage wide = RandomImage(x.shape, -88, 88, 1);
+  const PlainImage narrow = RandomImage(x.shape, -1.5f, 1.5f, 2);
+  for (std::size_t i = 0; i < x.values.size(); ++i) {
+    x.values[i] = i % 2 == 0 ? wide.values[i] : narrow.values[i];
+  }
+  const double special[] = {
+      0,    1,     1 - 0x1p-24, 1 + 0x1p-23, 0x1p-30,
+      1e38, 1e-38, kInfinity,   -kInfinity,  std::numeric_limits<double>::quiet_NaN()};
+  for (std::size_t i = 0; i < std::size(special); ++i) {
+    x.values[i] = static_cast<float>(special[i]);
+  }
+  const auto results = RunOnce(Executor(net.Build(), 60, 101, options()), {x});
+  for (std::size_t f = 0; f < std::size(functions); ++f) {
+    for (std::size_t i = 0; i < x.values.size(); ++i) {
+      const double expected = functions[f].second(x.values[i]);
+      const double actual = results[f][i];
+      if (std::isnan(expected) || std::isinf(expected)) {
+        EXPECT_TRUE(std::isnan(expected) ? std::isnan(actual) : actual == expected)
+            << functions[f].first << '(' << x.values[i] << ") is " << actual;
+        continue;
+      }
+      // Half a unit of 2^-24 for each of some operations. Below the smallest normal number a device
+      // may give zero.
+      const double allowed = 5 * 0x1p-23 * std::abs(expected) + 0x1p-126;
+      ASSERT_LE(std::abs(actual - expected), allowed)
+          << functions[f].first << '(' << x.values[i] << ") is " << actual;
+    }
   }
 }
 

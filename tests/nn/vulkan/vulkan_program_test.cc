@@ -215,8 +215,8 @@ TEST_P(VulkanReleasedNetworkSlow, CompletesAPanoramaAsTheCpuAndTheSameEveryTime)
   std::vector<float> confidence(chance.values.size());
   for (std::size_t i = 0; i < depth.size(); ++i) {
     if (chance.values[i] > 0.01) continue;
-    const auto row = static_cast<float>(i / 1024);
-    depth[i] = 2 + row / 100 + 100 * static_cast<float>(chance.values[i]);
+    const std::size_t row = i / 1024;
+    depth[i] = 2 + 0.01f * static_cast<float>(row) + 100 * static_cast<float>(chance.values[i]);
     confidence[i] = 1 - 50 * static_cast<float>(chance.values[i]);
   }
   const auto complete = [&](const ExecutorOptions& how) {
