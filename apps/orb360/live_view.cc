@@ -15,7 +15,7 @@ namespace orb360 {
 LiveView::LiveView(const std::string& address, int port) {
   ResourceTable table = PageResources(true);
   table.merge(feed_.Resources());
-  server_ = std::make_unique<HttpServer>(std::move(table), HttpAddress{address, port});
+  server_ = std::make_unique<HttpServer>(std::move(table), HttpAddress{address, port, "--view=N"});
   std::cout << "this run is at " << server_->url() << std::endl;
 }
 #else
@@ -32,6 +32,8 @@ LiveView::~LiveView() = default;
 void LiveView::Watch(System* system) {
   system->Watch([this](const PresentState& state) { feed_.Take(state); });
 }
+
+void LiveView::End() { feed_.End(); }
 
 bool LiveView::WaitForTurn() {
   return feed_.WaitForTurn([] { return CaughtInterrupt() != 0; });

@@ -23,6 +23,8 @@ class LiveView {
   void Watch(System* system);
   /// Waits while the user has paused the run. False where the user has ended it.
   bool WaitForTurn();
+  /// The last frame was tracked: there is nothing left to pause.
+  void End();
 
  private:
   LiveFeed feed_;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/orb360/commands.h"
+#include "apps/orb360/interrupt.h"
 #include "apps/orb360/viewed_run.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/depth_map_store.h"
@@ -36,9 +37,10 @@ std::vector<int> SpreadEvenly(const std::vector<int>& frames, int count) {
   return chosen;
 }
 
-int Report(const ReportOptions& options) {
+int Report(const ReportOptions& options) try {
   constexpr int kImageWidth = 1024;  // pixels
   constexpr int kRangeWidth = 512;
+  CatchInterrupts();
   ViewedRun run = OpenViewedRun(options.run, true);
   RunScene& scene = run.scene;
   scene.images.clear();  // They would be too large.
@@ -46,6 +48,7 @@ int Report(const ReportOptions& options) {
   scene.views = SpreadEvenly(scene.views, options.views);
   std::vector<EmbeddedView> views;
   for (const int frame : scene.views) {
+    ThrowIfInterrupted();
     const DenseDepth depth = DepthMapStore::Open(run.views).Get(frame);
     views.push_back(
         {frame, ImageBytes(depth.color, kImageWidth), ViewRangeBytes(depth, kRangeWidth)});
@@ -73,15 +76,22 @@ int Report(const ReportOptions& options) {
            std::to_string(whole.header().point_count) + " points.");
     }
     octree = ThinOctree(whole, max_points);
+    ThrowIfInterrupted();
   }
   const std::filesystem::path out = options.out.empty()
                                         ? std::filesystem::path(options.run) / "report.html"
                                         : std::filesystem::path(options.out);
   const std::string page = ReportPage(SceneJson(scene), octree, views);
+  if (static_cast<double>(page.size()) > 1e6 * options.max_mb) {
+    throw UserError("--max-size: " + std::to_string(std::lround(options.max_mb)) +
+                    " MB have no room for the images; give more, or fewer --views");
+  }
   WriteFileAtomically(out, page);
   std::cout << "wrote " << out.string() << ", "
             << std::lround(static_cast<double>(page.size()) / 1e5) / 10.0 << " MB" << std::endl;
   return EXIT_SUCCESS;
+} catch (const Interrupted&) {
+  return 128 + CaughtInterrupt();  // as shells report it
 }
 
 }  // namespace

@@ -238,6 +238,7 @@ int Run(const RunOptions& options) {
   const auto start = Clock::now();
   ProcessFrames(sequence.get(), &system, &output, live ? &*live : nullptr, options.is_quiet,
                 &record);
+  if (live) live->End();
   const auto last_frame = Clock::now();
   const Reconstruction reconstruction = system.Finish(positions ? positions->local : Positions());
   record.finishing_seconds = SecondsSince(last_frame);

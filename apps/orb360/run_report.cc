@@ -9,6 +9,7 @@
 #include "slam/evaluation/html_report.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/output_file.h"
+#include "slam/viewer/run_scene.h"
 
 namespace orb360 {
 namespace {
@@ -41,11 +42,6 @@ double PathLength(const std::vector<FramePose>& frames) {
             .norm();
   }
   return length;
-}
-
-/// Whether lengths are stated in metres.
-bool HasMetres(const nlohmann::json& summary) {
-  return summary.contains("scale") && summary["scale"].value("state", "unknown") != "unknown";
 }
 
 std::vector<HtmlReport::Tile> MakeTiles(const Reconstruction& reconstruction,

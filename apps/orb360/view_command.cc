@@ -10,6 +10,7 @@
 #include "slam/viewer/run_resources.h"
 #ifdef ORB360_HAS_LIBWEBSOCKETS
 #include "slam/viewer/http_server.h"
+#include "slam/viewer/listen_address.h"
 #endif
 #include <orb360/nn/base/check.h>
 
@@ -22,8 +23,9 @@ struct ViewOptions {
   int port = 8360;
 };
 
-int View(const ViewOptions& options) {
+int View(const ViewOptions& options) try {
 #ifdef ORB360_HAS_LIBWEBSOCKETS
+  RequireFree(options.address, options.port, "--port N");  // before minutes of work
   CatchInterrupts();
   const ViewedRun run = OpenViewedRun(options.run, false);
   for (const std::string& missing : run.scene.missing)
@@ -43,6 +45,8 @@ int View(const ViewOptions& options) {
                   "libwebsockets-dev and build with -DORB360_WITH_LIBWEBSOCKETS=ON, or use `orb360 "
                   "report`");
 #endif
+} catch (const Interrupted&) {
+  return 128 + CaughtInterrupt();  // as shells report it
 }
 
 }  // namespace

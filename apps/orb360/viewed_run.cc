@@ -13,6 +13,7 @@
 #include "apps/orb360/saved_views.h"
 #include "slam/io/octree/octree_file.h"
 #include "slam/io/optical_frame.h"
+#include "slam/io/ply.h"
 #include "slam/io/sparse_model_file.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/slam/io/sequence.h>
@@ -34,7 +35,11 @@ nlohmann::json ReadSummaryJson(const std::filesystem::path& folder) {
   }
   try {
     nlohmann::json summary = nlohmann::json::parse(file);
-    if (summary.is_object()) return summary;
+    // What is read below and by the page's scene throws here if it has another type.
+    summary.value("input", "");
+    summary.value("lens", "");
+    HasMetres(summary);
+    return summary;
   } catch (const nlohmann::json::exception&) {  // The message below says what to do.
   }
   throw UserError(path.string() + ": is damaged; run `orb360 run` again");
@@ -85,7 +90,13 @@ std::vector<int> FindViews(const std::filesystem::path& folder, const SparseMode
                              "run --save-views` does.");
     return {};
   }
-  std::vector<int> frames = FramesWithDepth(folder / kViewsName, model);
+  std::vector<int> frames;
+  try {
+    frames = FramesWithDepth(folder / kViewsName, model);
+  } catch (const UserError& error) {
+    missing->push_back(std::string("Images and ranges of keyframes: ") + error.what() + ".");
+    return {};
+  }
   if (frames.empty()) {
     missing->push_back(
         "Images and ranges of keyframes: those in `views` belong to an earlier run. Run it again "
@@ -108,7 +119,11 @@ ViewedRun OpenViewedRun(const std::filesystem::path& folder, bool is_quiet) {
     scene.views = FindViews(folder, scene.model, !scene.images.empty(), &missing);
     run.views = folder / kViewsName;
   } else {
-    scene.model = ModelOfTrajectories(folder);
+    try {
+      scene.model = ModelOfTrajectories(folder);
+    } catch (const UserError& error) {
+      missing.push_back(std::string("Trajectory: ") + error.what() + ".");
+    }
     missing.push_back(
         "Keyframe graph, images and ranges: an older orb360 made this run, without "
         "reconstruction.h5. Run it again to see them.");
@@ -116,7 +131,7 @@ ViewedRun OpenViewedRun(const std::filesystem::path& folder, bool is_quiet) {
   if (scene.model.frames.empty()) missing.push_back("Trajectory: no frame of this run has a pose.");
   if (std::filesystem::exists(folder / "scale.txt"))
     scene.scales = ReadScales(folder / "scale.txt");
-  if (const auto octree = ProvideOctree(folder, is_quiet)) {
+  if (const auto octree = ProvideOctree(folder, is_quiet, &missing)) {
     const OctreeFile checked(*octree);
     if ((checked.header().attributes & kOctreeConfidences) == 0) {
       missing.push_back(
@@ -125,8 +140,7 @@ ViewedRun OpenViewedRun(const std::filesystem::path& folder, bool is_quiet) {
     }
     run.octree = *octree;
     scene.has_cloud = true;
-  } else {
-    missing.push_back("Points: the folder has no cloud.ply with points.");
+    scene.voxel_size = VoxelSizeOf(folder / "cloud.ply");
   }
   return run;
 }

@@ -17,7 +17,8 @@ struct ViewedRun {
 
 /// Reads the folder of a run. What it lacks, as one of an older version may, is left out and named
 /// in scene.missing. Makes the octree where it is missing, and says so unless `is_quiet`. Throws
-/// UserError with one line where the folder holds no finished run, or a damaged file.
+/// UserError with one line where the folder holds no finished run, or its summary, reconstruction,
+/// scale or cloud is damaged, and Interrupted after an interrupt.
 ViewedRun OpenViewedRun(const std::filesystem::path& folder, bool is_quiet);
 
 /// Reads an image of scene.images from the input of the run, at its own size. Throws UserError.

@@ -28,6 +28,8 @@ constexpr std::string_view kSurfaceProperties =
     "property float nx\nproperty float ny\nproperty float nz\n"
     "property uchar red\nproperty uchar green\nproperty uchar blue\n"
     "property float confidence\nend_header\n";
+constexpr std::string_view kVoxelComment =
+    "comment confidence c: 1/c - 1 is the error to be expected, in voxels of ";
 constexpr size_t kSurfaceBytes = 7 * sizeof(float) + 3;
 /// Size of the header's beginning. It has room for the comment and any number of points, so that
 /// all headers have the same length.
@@ -113,7 +115,7 @@ SurfacePlyWriter::SurfacePlyWriter(const std::filesystem::path& path, double vox
 }
 
 std::string SurfacePlyWriter::Header() const {
-  std::string comment = "comment confidence c: 1/c - 1 is the error to be expected, in voxels of ";
+  std::string comment(kVoxelComment);
   comment += ToText(static_cast<float>(voxel_size_));
   std::string element = "\nelement vertex ";
   element += std::to_string(num_points_);
@@ -152,6 +154,17 @@ bool IsSurfacePly(const std::filesystem::path& path) {
   std::string begin(kSurfaceBeginBytes + kSurfaceProperties.size(), '\0');
   file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
   return file && begin.ends_with(kSurfaceProperties);
+}
+
+std::optional<double> VoxelSizeOf(const std::filesystem::path& path) {
+  if (!IsSurfacePly(path)) return std::nullopt;
+  std::ifstream file(path, std::ios::binary);
+  std::string begin(kSurfaceBeginBytes, '\0');
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  const size_t at = begin.find(kVoxelComment);
+  if (at == std::string::npos) return std::nullopt;
+  const std::string text = begin.substr(at + kVoxelComment.size());
+  return ParseNumber<double>(text.substr(0, text.find_first_of(" \n")));
 }
 
 std::vector<SurfacePoint> ReadSurfacePly(const std::filesystem::path& path) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -55,6 +56,10 @@ class SurfacePlyWriter {
 
 /// Returns true if the file begins with the header of SurfacePlyWriter.
 bool IsSurfacePly(const std::filesystem::path& path);
+
+/// Returns the voxel size, world units, that the header of SurfacePlyWriter states; none for any
+/// other file.
+std::optional<double> VoxelSizeOf(const std::filesystem::path& path);
 
 /// Reads a file that SurfacePlyWriter wrote. Throws UserError for any other file.
 std::vector<SurfacePoint> ReadSurfacePly(const std::filesystem::path& path);

@@ -118,7 +118,7 @@ int WritePiece(lws* connection, Session* session) {
 class HttpServer::Impl {
  public:
   Impl(ResourceTable resources, const HttpAddress& address) : resources_(std::move(resources)) {
-    RequireFree(address.address, address.port);
+    RequireFree(address.address, address.port, address.port_option);
     lws_set_log_level(0, nullptr);
     address_ = address.address == "localhost" ? "127.0.0.1" : address.address;
     const bool is_ipv6 = address_.find(':') != std::string::npos;
@@ -143,7 +143,7 @@ class HttpServer::Impl {
     if (vhost == nullptr) {
       if (context_ != nullptr) lws_context_destroy(context_);
       throw UserError(HostAndPort(address_, address.port) +
-                      ": cannot be listened at; choose another port with --port");
+                      ": cannot be listened at; choose another port with " + address.port_option);
     }
     port_ = lws_get_vhost_listen_port(vhost);
     rules_ = MakeAccessRules(address_, port_);

@@ -12,7 +12,7 @@
 
 namespace orb360 {
 
-void RequireFree(const std::string& address, int port) {
+void RequireFree(const std::string& address, int port, const std::string& port_option) {
   const std::string port_text = std::to_string(port);
   addrinfo hints{};
   hints.ai_flags = AI_NUMERICHOST | AI_PASSIVE;
@@ -34,12 +34,12 @@ void RequireFree(const std::string& address, int port) {
   close(descriptor);
   if (error == 0) return;
   if (error == EADDRINUSE) {
-    throw UserError("port " + port_text +
-                    " is taken by another program; choose another with --port, or --port 0 for any "
-                    "that is free");
+    throw UserError("port " + port_text + " is taken; choose another with " + port_option +
+                    ", where 0 is any that is free");
   }
   if (error == EACCES) {
-    throw UserError("port " + port_text + " is reserved; choose one from 1024 on with --port");
+    throw UserError("port " + port_text + " is reserved; choose one from 1024 on with " +
+                    port_option);
   }
   throw UserError("--view-address: " + address + " is no address of this machine (" +
                   std::strerror(error) + ")");

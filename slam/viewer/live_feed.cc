@@ -3,15 +3,12 @@
 #include <chrono>
 #include <utility>
 
-#include <opencv2/imgproc.hpp>
-
-#include "slam/io/image_file.h"
 #include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
 namespace {
 
-constexpr int kMaxWidth = 1280;  // of images for the page, pixels
+constexpr int kMapInterval = 20;  // least time from copy to copy of the map, in terms of its own
 
 /// Each corner once, although it is a feature of several levels of the pyramid.
 std::vector<LiveSnapshot::Feature> CopyFeatures(const PresentState& state) {
@@ -28,14 +25,6 @@ std::vector<LiveSnapshot::Feature> CopyFeatures(const PresentState& state) {
   return features;
 }
 
-std::string EncodeForPage(const cv::Mat& image) {
-  if (image.empty()) return {};
-  if (image.cols <= kMaxWidth) return EncodeImage(".jpg", image);
-  cv::Mat small;
-  cv::resize(image, small, {kMaxWidth, image.rows * kMaxWidth / image.cols}, 0, 0, cv::INTER_AREA);
-  return EncodeImage(".jpg", small);
-}
-
 }  // namespace
 
 void LiveFeed::Take(const PresentState& state) {
@@ -45,77 +34,98 @@ void LiveFeed::Take(const PresentState& state) {
   }
   // The map is at home after few frames only, so a copy without one waits for the next.
   if (!is_wanted_) return;
-  LiveSnapshot snapshot;
-  snapshot.frame = state.frame.index;
-  snapshot.timestamp = state.frame.timestamp;
-  snapshot.state = state.state;
-  snapshot.map_number = state.map_number;
-  snapshot.image = state.frame.image.clone();
-  snapshot.features = CopyFeatures(state);
-  snapshot.map_from_camera = state.map_from_camera;
-  snapshot.ground = state.ground;
-  snapshot.loops.assign(state.loops.begin(), state.loops.end());
+  const std::shared_ptr<const LiveSnapshot> before = Latest();
+  auto snapshot = std::make_shared<LiveSnapshot>();
+  snapshot->frame = state.frame.index;
+  snapshot->timestamp = state.frame.timestamp;
+  snapshot->state = state.state;
+  snapshot->map_number = state.map_number;
+  snapshot->image = state.frame.image.clone();
+  snapshot->features = CopyFeatures(state);
+  snapshot->map_from_camera = state.map_from_camera;
+  snapshot->ground = state.ground;
+  snapshot->loops.assign(state.loops.begin(), state.loops.end());
   if (first_pose_) {
-    snapshot.world_from_map = FileWorldFromMap(
+    snapshot->world_from_map = FileWorldFromMap(
         *first_pose_, state.ground ? std::optional(state.ground->up) : std::nullopt);
   }
-  if (state.map != nullptr) snapshot.map = CopyMap(*state.map);
-  const std::lock_guard lock(mutex_);
-  const int revision = latest_ ? latest_->revision : 0;
-  snapshot.revision = revision;
-  if (state.map != nullptr) {
-    snapshot.revision = revision + 1;
-    is_wanted_ = false;
-  } else if (latest_) {
-    snapshot.map = std::move(latest_->map);
+  snapshot->map = before->map;
+  snapshot->revision = before->revision;
+  const Clock::time_point begin = now_();
+  if (state.map != nullptr && begin >= next_map_) {
+    snapshot->map = std::make_shared<LiveSnapshot::MapPart>(CopyMap(*state.map));
+    ++snapshot->revision;
+    const Clock::time_point end = now_();
+    next_map_ = end + kMapInterval * (end - begin);
   }
+  // Where the map is not at home, the next frame is copied as well.
+  if (state.map != nullptr) is_wanted_ = false;
+  const std::lock_guard lock(mutex_);
   latest_ = std::move(snapshot);
 }
 
 bool LiveFeed::WaitForTurn(const std::function<bool()>& is_ended) {
   constexpr std::chrono::milliseconds kStep(50);  // after which `is_ended` is asked again
   std::unique_lock lock(mutex_);
-  while (is_paused_ && steps_ == 0 && !is_finishing_ && !is_ended()) changed_.wait_for(lock, kStep);
+  while (control_.is_paused && steps_ == 0 && !control_.is_finishing && !is_ended()) {
+    control_.is_waiting = true;
+    changed_.wait_for(lock, kStep);
+  }
+  control_.is_waiting = false;
   if (steps_ > 0) --steps_;
-  return !is_finishing_;
+  return !control_.is_finishing;
+}
+
+void LiveFeed::End() {
+  const std::lock_guard lock(mutex_);
+  control_.is_finishing = true;
+}
+
+std::shared_ptr<const LiveSnapshot> LiveFeed::Latest() const {
+  const std::lock_guard lock(mutex_);
+  return latest_;
 }
 
 ResourceTable LiveFeed::Resources() {
-  const auto copy = [this] {
-    const std::lock_guard lock(mutex_);
-    return latest_.value_or(LiveSnapshot());
-  };
   const auto action = [this](auto change) {
     return [this, change] {
+      is_wanted_ = true;  // by the time that the change shows
       {
         const std::lock_guard lock(mutex_);
         change();
       }
-      is_wanted_ = true;
       changed_.notify_all();
       return std::string("done\n");
     };
   };
   ResourceTable table;
-  table["live.json"] = {"application/json", {}, [this, copy] {
-                          const LiveSnapshot snapshot = copy();
+  table["live.json"] = {"application/json", {}, [this] {
+                          std::shared_ptr<const LiveSnapshot> snapshot;
+                          LiveControl control;
+                          {
+                            const std::lock_guard lock(mutex_);
+                            snapshot = latest_;
+                            control = control_;
+                            // A step that the run has not yet begun is no waiting.
+                            control.is_waiting = control.is_waiting && steps_ == 0;
+                          }
                           is_wanted_ = true;
-                          const std::lock_guard lock(mutex_);
-                          return LiveJson(snapshot, is_paused_);
+                          return LiveJson(*snapshot, control);
                         }};
-  table["live.points"] = {"application/octet-stream", {}, [copy] { return LivePoints(copy()); }};
-  table["live.jpg"] = {"image/jpeg", {}, [copy] { return EncodeForPage(copy().image); }};
+  const std::string bytes = "application/octet-stream";
+  table["live.points"] = {bytes, {}, [this] { return LivePoints(*Latest()); }};
+  table["live.image"] = {bytes, {}, [this] { return LiveImage(*Latest()); }};
   const std::string text = "text/plain; charset=utf-8";
-  table["pause"] = {text, {}, action([this] { is_paused_ = true; }), true};
-  table["resume"] = {text, {}, action([this] { is_paused_ = false; }), true};
+  table["pause"] = {text, {}, action([this] { control_.is_paused = true; }), true};
+  table["resume"] = {text, {}, action([this] { control_.is_paused = false; }), true};
   table["step"] = {text,
                    {},
                    action([this] {
-                     is_paused_ = true;
+                     control_.is_paused = true;
                      ++steps_;
                    }),
                    true};
-  table["finish"] = {text, {}, action([this] { is_finishing_ = true; }), true};
+  table["finish"] = {text, {}, action([this] { control_.is_finishing = true; }), true};
   return table;
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "slam/viewer/live_snapshot.h"
 #include "slam/viewer/resource.h"
@@ -13,31 +16,42 @@ namespace orb360 {
 
 /// Stands between a run, on its own thread, and the pages that show it, on that of a server. A page
 /// asks for what it shows; the run copies its state when one has asked since the last copy, and
-/// never waits for a page. What happens between two copies is not shown.
+/// never waits for a page: copies are made into values for a page outside the mutex. Copies of the
+/// map, which grow with it, take at most a twentieth of the run's time. What happens between two
+/// copies is not shown.
 class LiveFeed {
  public:
+  using Clock = std::chrono::steady_clock;
+  /// `now` tells the time.
+  explicit LiveFeed(std::function<Clock::time_point()> now = &Clock::now) : now_(std::move(now)) {}
+
   // --- called by the run ---
   /// Copies a state if a page wants it (System::Watch).
   void Take(const PresentState& state);
   /// Waits while a page has paused the run, unless `is_ended` returns true. False where the run is
   /// to end early.
   bool WaitForTurn(const std::function<bool()>& is_ended);
+  /// No further frame comes; what is left of the run may take minutes.
+  void End();
 
   // --- called by the server ---
-  /// `live.json`, `live.points`, `live.jpg`, and the actions `pause`, `resume`, `step`, `finish`.
+  /// `live.json`, `live.points`, `live.image`, and the actions `pause`, `resume`, `step`, `finish`.
   /// They refer to this object.
   ResourceTable Resources();
 
  private:
+  std::shared_ptr<const LiveSnapshot> Latest() const;
+
   std::atomic<bool> is_wanted_ = true;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   // Guarded by the mutex:
-  std::optional<LiveSnapshot> latest_;
-  bool is_paused_ = false;
-  bool is_finishing_ = false;
+  std::shared_ptr<const LiveSnapshot> latest_ = std::make_shared<LiveSnapshot>();
+  LiveControl control_;
   int steps_ = 0;  ///< Frames that may pass although the run is paused.
   // Used by the run only:
+  std::function<Clock::time_point()> now_;
+  Clock::time_point next_map_;        ///< The map is not copied again before.
   std::optional<Rigid3> first_pose_;  ///< Of the present map.
   int map_number_ = -1;               ///< The map of first_pose_.
 };

@@ -3,15 +3,18 @@
 #include <cmath>
 
 #include <nlohmann/json.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "slam/io/byte_number.h"
+#include "slam/io/image_file.h"
 #include "slam/io/optical_frame.h"
 #include "slam/map/covisibility.h"
 
 namespace orb360 {
 namespace {
 
-constexpr int kMinShared = 15;  // landmarks, as in the finished keyframe graph
+constexpr int kMinShared = 15;   // landmarks, as in the finished keyframe graph
+constexpr int kMaxWidth = 1280;  // of images for the page, pixels
 
 const char* NameOf(TrackingState state) {
   switch (state) {
@@ -37,6 +40,14 @@ nlohmann::json PoseJson(const Rigid3& world_from_camera) {
   return json;
 }
 
+std::string EncodeForPage(const cv::Mat& image) {
+  if (image.empty()) return {};
+  if (image.cols <= kMaxWidth) return EncodeImage(".jpg", image);
+  cv::Mat small;
+  cv::resize(image, small, {kMaxWidth, image.rows * kMaxWidth / image.cols}, 0, 0, cv::INTER_AREA);
+  return EncodeImage(".jpg", small);
+}
+
 }  // namespace
 
 LiveSnapshot::MapPart CopyMap(const Map& map) {
@@ -60,16 +71,10 @@ LiveSnapshot::MapPart CopyMap(const Map& map) {
   return part;
 }
 
-std::string LiveJson(const LiveSnapshot& snapshot, bool is_paused) {
-  nlohmann::json features = nlohmann::json::array();
+std::string LiveJson(const LiveSnapshot& snapshot, const LiveControl& control) {
   const cv::Size size = snapshot.image.size();
-  for (const LiveSnapshot::Feature& feature : snapshot.features) {
-    features.push_back(std::lround(1000 * feature.pixel.x() / static_cast<float>(size.width)));
-    features.push_back(std::lround(1000 * feature.pixel.y() / static_cast<float>(size.height)));
-    features.push_back(feature.is_matched ? 1 : 0);
-  }
   nlohmann::json keyframes = nlohmann::json::array();
-  for (const LiveSnapshot::Keyframe& keyframe : snapshot.map.keyframes) {
+  for (const LiveSnapshot::Keyframe& keyframe : snapshot.map->keyframes) {
     nlohmann::json entry = {keyframe.id, keyframe.frame};
     for (nlohmann::json& value : PoseJson(snapshot.world_from_map * keyframe.map_from_camera)) {
       entry.push_back(value);
@@ -80,18 +85,18 @@ std::string LiveJson(const LiveSnapshot& snapshot, bool is_paused) {
   for (const ClosedLoop& loop : snapshot.loops) loops.push_back({loop.frame, loop.place});
   nlohmann::json json = {{"frame", snapshot.frame},
                          {"time", snapshot.timestamp},
-                         {"state", NameOf(snapshot.state)},
-                         {"isPaused", is_paused},
+                         {"state", control.is_finishing ? "finishing" : NameOf(snapshot.state)},
+                         {"isPaused", control.is_paused},
+                         {"isWaiting", control.is_waiting},
                          {"map", snapshot.map_number},
                          {"revision", snapshot.revision},
                          {"size", {size.width, size.height}},
-                         {"features", features},
                          {"pose", nullptr},
                          {"keyframes", keyframes},
-                         {"links", snapshot.map.links},
+                         {"links", snapshot.map->links},
                          {"loops", loops},
                          {"cameraHeight", nullptr},
-                         {"landmarks", snapshot.map.landmarks.size()}};
+                         {"landmarks", snapshot.map->landmarks.size()}};
   if (snapshot.map_from_camera) {
     json["pose"] = PoseJson(snapshot.world_from_map * *snapshot.map_from_camera);
   }
@@ -99,12 +104,28 @@ std::string LiveJson(const LiveSnapshot& snapshot, bool is_paused) {
   return json.dump();
 }
 
+std::string LiveImage(const LiveSnapshot& snapshot) {
+  constexpr float kSteps = 10000;
+  const auto code = [](float pixel, int size) {
+    return static_cast<std::uint16_t>(std::lround(kSteps * pixel / static_cast<float>(size)));
+  };
+  std::string bytes;
+  AppendLittleEndian(static_cast<std::uint32_t>(snapshot.frame), &bytes);
+  AppendLittleEndian(static_cast<std::uint32_t>(snapshot.features.size()), &bytes);
+  for (const LiveSnapshot::Feature& feature : snapshot.features) {
+    AppendLittleEndian(code(feature.pixel.x(), snapshot.image.cols), &bytes);
+    AppendLittleEndian(code(feature.pixel.y(), snapshot.image.rows), &bytes);
+    AppendLittleEndian(static_cast<std::uint16_t>(feature.is_matched ? 1 : 0), &bytes);
+  }
+  return bytes + EncodeForPage(snapshot.image);
+}
+
 std::string LivePoints(const LiveSnapshot& snapshot) {
   std::string bytes;
   AppendLittleEndian(static_cast<std::uint32_t>(snapshot.revision), &bytes);
-  AppendLittleEndian(static_cast<std::uint32_t>(snapshot.map.landmarks.size()), &bytes);
+  AppendLittleEndian(static_cast<std::uint32_t>(snapshot.map->landmarks.size()), &bytes);
   const Eigen::Quaternionf optical_from_camera = CameraFromOptical().conjugate().cast<float>();
-  for (const LiveSnapshot::Landmark& landmark : snapshot.map.landmarks) {
+  for (const LiveSnapshot::Landmark& landmark : snapshot.map->landmarks) {
     AppendLittleEndian(static_cast<std::int32_t>(landmark.keyframe), &bytes);
     for (const float value : Eigen::Vector3f(optical_from_camera * landmark.position)) {
       AppendLittleEndian(value, &bytes);

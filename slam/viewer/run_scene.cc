@@ -73,12 +73,12 @@ nlohmann::json DescribeLoops(const RunScene& scene) {
   return loops;
 }
 
+}  // namespace
+
 bool HasMetres(const nlohmann::json& summary) {
   const nlohmann::json scale = summary.value("scale", nlohmann::json::object());
   return scale.is_object() && scale.value("state", "unknown") != "unknown";
 }
-
-}  // namespace
 
 std::vector<KeyframeLink> LinkKeyframes(const SparseModel& model) {
   std::vector<const PosedFrame*> keyframes;
@@ -134,10 +134,12 @@ std::string SceneJson(const RunScene& scene) {
     scale["value"].push_back(Rounded(stamped.value));
     scale["sigma"].push_back(Rounded(stamped.sigma));
   }
+  const nlohmann::json voxel_size = scene.voxel_size ? nlohmann::json(*scene.voxel_size) : nullptr;
   const nlohmann::json json = {{"folder", scene.folder},
                                {"summary", scene.summary},
                                {"unit", HasMetres(scene.summary) ? "m" : "units"},
                                {"hasCloud", scene.has_cloud},
+                               {"voxelSize", voxel_size},
                                {"frames", DescribeFrames(scene.model.frames)},
                                {"keyframes", keyframes},
                                {"links", links},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,12 @@ struct RunScene {
   std::vector<int> images;
   std::vector<int> views;            ///< Indices of the frames whose image and range there are.
   bool has_cloud = false;            ///< Whether there is an octree.
+  std::optional<double> voxel_size;  ///< Of a dense cloud, units; summary.json may be older.
   std::vector<std::string> missing;  ///< One sentence for each thing that cannot be shown, and why.
 };
+
+/// Whether the lengths of a run are metres, by its summary.json.
+bool HasMetres(const nlohmann::json& summary);
 
 /// Two keyframes that observe the same landmarks.
 struct KeyframeLink {
@@ -42,11 +47,12 @@ std::vector<KeyframeLink> LinkKeyframes(const SparseModel& model);
 /// | `folder`, `summary`, `images`, `views`, `missing` | as in RunScene |
 /// | `hasCloud` | as in RunScene |
 /// | `unit` | `m`, or `units` where the scale is unknown |
-/// | `frames` | `index`, `time` (s), `map`, `position` (3 numbers a frame), `orientation` (4: x y z
-/// w) | | `keyframes` | places of the keyframes among the frames | | `links` | 3 numbers a link:
-/// places among the keyframes, and landmarks in common | | `loops` | pairs of places among the
-/// frames: the one that came back, and where | | `scale` | `time`, `value`, `sigma` along the path
-/// |
+/// | `voxelSize` | as in RunScene, or null |
+/// | `frames` | `index`, `time` (s), `map`, `position` (3 numbers each), `orientation` (x y z w) |
+/// | `keyframes` | places of the keyframes among the frames |
+/// | `links` | 3 numbers each: places of two among the keyframes, number of landmarks in common |
+/// | `loops` | pairs of places among the frames: the one that came back, and where |
+/// | `scale` | `time`, `value`, `sigma` along the path |
 std::string SceneJson(const RunScene& scene);
 
 }  // namespace orb360

@@ -177,6 +177,15 @@ test("shows, steps and finishes a run that goes on", async () => {
     );
   }
   assert.equal(await page.$eval(".chip", (chip) => chip.textContent), "paused");
+  assert.equal(
+    await page.$eval("#view", (canvas) => canvas.dataset.imageFrame),
+    String(await frameNow()),
+  );
+  const isFollowing = () => page.$eval(".check input", (input) => input.checked);
+  assert.ok(await isFollowing());
+  await page.focus("#view");
+  await page.keyboard.press("ArrowLeft");
+  assert.ok(!(await isFollowing()), "keys move the camera, which then follows no more");
   await click("Go on");
   await page.waitForFunction(
     () =>

@@ -20,15 +20,36 @@ async function load(text) {
   );
 }
 
-const { format, chooseNodes, THREE, ViewRange, colorAt, ticksBetween, readLivePoints } =
-  await load(`
+// What modules look for in a page when they are loaded.
+globalThis.document = { getElementById: () => null };
+
+const {
+  format,
+  chooseNodes,
+  THREE,
+  ViewRange,
+  colorAt,
+  ticksBetween,
+  readLivePoints,
+  readLiveImage,
+  FailedNodes,
+  Measure,
+  pickPoint,
+  Connection,
+  timeout,
+} = await load(`
   export * as format from "./src/format";
   export * as THREE from "three";
   export { chooseNodes } from "./src/node_choice";
   export { ViewRange } from "./src/view_range";
   export { colorAt } from "./src/color_maps";
   export { ticksBetween } from "./src/charts";
-  export { readLivePoints } from "./src/live_source";
+  export { readLivePoints, readLiveImage } from "./src/live_source";
+  export { FailedNodes } from "./src/failed_nodes";
+  export { Measure } from "./src/measure";
+  export { pickPoint } from "./src/pick";
+  export { Connection } from "./src/connection";
+  export { timeout } from "./src/timeout";
 `);
 
 test("lengths have a unit, and the uncertainty that the scale gives them", () => {
@@ -149,6 +170,105 @@ test("landmarks of a live run are read as they are written", () => {
   assert.deepEqual([...points.position], [0.5, -0.25, 2]);
   assert.deepEqual([...points.color], [10, 20, 30]);
   assert.throws(() => readLivePoints(bytes.slice(0, 20)), /truncated/);
+});
+
+test("the image of a live run comes with the features of its own frame", () => {
+  const bytes = new ArrayBuffer(8 + 12 + 3);
+  const view = new DataView(bytes);
+  view.setUint32(0, 41, true);
+  view.setUint32(4, 2, true);
+  [2500, 2000, 0, 5000, 10000, 1].forEach((v, i) => view.setUint16(8 + 2 * i, v, true));
+  new Uint8Array(bytes).set([1, 2, 3], 20);
+  const image = readLiveImage(bytes);
+  assert.equal(image.frame, 41);
+  assert.deepEqual([...image.features], [...Float32Array.of(0.25, 0.2, 0, 0.5, 1, 1)]);
+  assert.deepEqual([...new Uint8Array(image.jpeg)], [1, 2, 3]);
+  assert.throws(() => readLiveImage(bytes.slice(0, 19)), /truncated/);
+});
+
+test("nodes that the connection failed are asked for again, ever later", (t) => {
+  t.mock.timers.enable({ apis: ["setTimeout"] });
+  let numFreed = 0;
+  const failed = new FailedNodes(() => ++numFreed);
+  failed.add(7, true);
+  failed.add(8, false);
+  assert.ok(failed.has(7) && failed.has(8));
+  t.mock.timers.tick(1000);
+  assert.ok(!failed.has(7) && failed.has(8), "damaged nodes are not asked for again");
+  assert.equal(numFreed, 1);
+  failed.add(7, true);
+  t.mock.timers.tick(1000);
+  assert.ok(failed.has(7), "the second time it takes longer");
+  t.mock.timers.tick(1000);
+  assert.ok(!failed.has(7));
+  failed.loaded(7);
+  failed.add(7, true);
+  t.mock.timers.tick(1000);
+  assert.ok(!failed.has(7), "success forgets earlier failures");
+  failed.clear();
+  assert.ok(!failed.has(8));
+});
+
+test("requests end after their time, and one question after the server is asked at once", async (t) => {
+  t.mock.timers.enable({ apis: ["setTimeout", "setInterval"] });
+  const signal = timeout(500);
+  t.mock.timers.tick(499);
+  assert.ok(!signal.aborted);
+  t.mock.timers.tick(1);
+  assert.ok(signal.aborted);
+  const answers = [];
+  const source = { isEmbedded: false, isAlive: () => new Promise((answer) => answers.push(answer)) };
+  const events = [];
+  const connection = new Connection(
+    source,
+    () => events.push("lost"),
+    () => events.push("found"),
+  );
+  t.mock.timers.tick(20_000);
+  const check = connection.check();
+  assert.equal(answers.length, 1);
+  answers[0](false);
+  await check;
+  const next = connection.check();
+  assert.equal(answers.length, 2);
+  answers[1](true);
+  await next;
+  assert.deepEqual(events, ["lost", "found"]);
+});
+
+test("a double click ends a line and does not measure from a point to itself", () => {
+  const texts = [];
+  const labels = { add: (text) => (texts.push(text), { setText() {}, setPosition() {}, remove() {} }) };
+  const measure = new Measure({ unit: "units", summary: {} }, labels, () => {});
+  measure.setMode("distance");
+  const at = (x) => new THREE.Vector3(x, 0, 0);
+  measure.add(at(0));
+  measure.add(at(2));
+  measure.add(at(2));
+  measure.endLine();
+  assert.deepEqual(texts, ["", "2.00 units"]);
+  measure.add(at(2)); // Another line may begin where one has ended.
+  measure.add(at(5));
+  assert.deepEqual(texts.slice(2), ["", "3.00 units"]);
+});
+
+test("points that the least confidence hides are not picked", () => {
+  // Two points on the ray, the nearer with a confidence of 0.2.
+  const entry = {
+    node: { min: [0, 0, 0], side: 65536, pointCount: 2 },
+    points: {
+      positions: Uint16Array.of(100, 0, 0, 0, 200, 0, 0, 0),
+      colors: Uint8Array.of(0, 0, 0, 51, 0, 0, 0, 255),
+    },
+  };
+  const cloud = { shownNodes: [entry], material: { uniforms: { leastConfidence: { value: 0 } } } };
+  const ray = new THREE.Ray(new THREE.Vector3(0, 0.5, 0.5), new THREE.Vector3(1, 0, 0));
+  const viewport = { ray: () => ({ ray, radiansPerPixel: 1e-3 }), clip: null };
+  assert.equal(pickPoint(viewport, cloud, 0, 0, 8).position.x, 100.5);
+  cloud.material.uniforms.leastConfidence.value = 0.2; // It is shown at its own confidence.
+  assert.equal(pickPoint(viewport, cloud, 0, 0, 8).position.x, 100.5);
+  cloud.material.uniforms.leastConfidence.value = 0.25;
+  assert.equal(pickPoint(viewport, cloud, 0, 0, 8).position.x, 200.5);
 });
 
 test("colours of maps grow brighter from end to end", () => {

@@ -31,10 +31,11 @@ struct Cube {
   std::uint64_t count = 0;
 };
 
-Cube MeasureCube(const std::filesystem::path& cloud) {
+Cube MeasureCube(const std::filesystem::path& cloud, const std::function<void()>& check) {
   Cube cube;
   Eigen::Vector3d max = -cube.min;
   ReadCloudPoints(cloud, [&](const SurfacePoint& point) {
+    check();
     if (!point.position.allFinite()) {
       throw UserError(cloud.string() + ": point " + std::to_string(cube.count) +
                       " has no finite position; `orb360 run` makes the cloud anew");
@@ -96,12 +97,17 @@ bool Precedes(const OctreeNode& a, const OctreeNode& b) {
 
 std::uint64_t WriteOctree(const std::filesystem::path& path, const std::filesystem::path& cloud,
                           const OctreeOptions& options) {
-  const Cube cube = MeasureCube(cloud);
+  std::uint32_t num_checked = 0;
+  const auto check = [&] {
+    if (++num_checked % 65536 == 0 && options.check) options.check();
+  };
+  const Cube cube = MeasureCube(cloud, check);
   std::filesystem::path folder = path;
   folder += ".sort";
   PointSorter sorter(folder, options.max_in_memory);
   std::uint32_t num_read = 0;
   ReadCloudPoints(cloud, [&](const SurfacePoint& point) {
+    check();
     SortedPoint sorted;
     sorted.code = MortonCode(point.position.cast<double>(), cube.min, cube.side);
     sorted.index = num_read++;
@@ -139,7 +145,10 @@ std::uint64_t WriteOctree(const std::filesystem::path& path, const std::filesyst
     offset += bytes.size();
     index.push_back(entry);
   });
-  sorter.Merge([&](const SortedPoint& point) { levels.Add(point); });
+  sorter.Merge([&](const SortedPoint& point) {
+    check();
+    levels.Add(point);
+  });
   levels.Finish();
 
   std::ranges::sort(index, Precedes);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 
 namespace orb360 {
 
@@ -9,6 +10,8 @@ struct OctreeOptions {
   /// Points sorted in memory at once, 32 bytes each: 96 MB. The bytes of the file do not depend on
   /// it.
   std::size_t max_in_memory = 3'000'000;
+  /// Called every 65,536 points of each pass. What it throws ends the work, which leaves no file.
+  std::function<void()> check;
 };
 
 /// Writes the octree (docs/formats/octree.md) of a cloud that ReadCloudPoints reads, which may be

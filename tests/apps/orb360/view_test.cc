@@ -4,8 +4,11 @@
 #include <string>
 #include <vector>
 
+#include <unistd.h>
+
 #include "slam/io/octree/octree_file.h"
 #include "slam/io/ply.h"
+#include "slam/io/sparse_model_file.h"
 #include "tests/apps/orb360/run_fixture.h"
 
 namespace orb360 {
@@ -127,12 +130,67 @@ TEST_F(ViewTest, RefusesFoldersWithoutARunAndDamagedFiles) {
   std::filesystem::remove(File("cloud.octree"));
   WriteText(File("cloud.ply"), "ply\nnothing");
   ExpectRefusal("view", "cloud.ply");
+  WriteText(File("summary.json"), R"({"scale": {"state": 5}})");
+  ExpectRefusal("view", "summary.json: is damaged");
+  WriteText(File("summary.json"), R"({"input": 7})");
+  ExpectRefusal("report", "summary.json: is damaged");
   WriteText(File("summary.json"), "{\"input\": ");
   ExpectRefusal("view", "summary.json: is damaged");
   std::filesystem::remove(File("summary.json"));
   ExpectRefusal("report", "holds no finished run");
   std::filesystem::remove_all(Run());
   ExpectRefusal("view", "is no folder");
+}
+
+TEST_F(ViewTest, ShowsWhatItCanWhereViewsOrTrajectoryCannotBeUsed) {
+  WriteText(File("trajectory.txt"), "0.1 no pose\n");
+  const ProgramResult older = Viewing(Run()).Stop();
+  EXPECT_EQ(older.status, 0) << older.err;
+  EXPECT_THAT(older.out, HasSubstr("not there: Trajectory: " + File("trajectory.txt")));
+  SparseModel model;
+  model.width = 100;
+  model.height = 50;
+  WriteSparseModel(File("reconstruction.h5"), model);
+  std::filesystem::create_directory(File("views"));
+  for (const char* content : {"", R"({"version": 99})"}) {
+    if (*content != '\0') WriteText(File("views/views.json"), content);
+    const ProgramResult result = Viewing(Run()).Stop();
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("not there: Images and ranges of keyframes: " +
+                                      File("views/views.json")));
+  }
+}
+
+TEST_F(ViewTest, ShowsAReadOnlyFolderWithoutItsPoints) {
+  std::filesystem::permissions(folder_ / "", std::filesystem::perms(0755));
+  std::filesystem::permissions(Run(), std::filesystem::perms(0555));
+  // Permissions do not hold for root: its children are somebody else.
+  const uid_t user = geteuid();
+  constexpr uid_t kNobody = 65534;
+  if (user == 0) ASSERT_EQ(seteuid(kNobody), 0);
+  Viewing viewing(Run());
+  const ProgramResult result = viewing.Stop();
+  if (user == 0) ASSERT_EQ(seteuid(user), 0);
+  std::filesystem::permissions(Run(), std::filesystem::perms(0755));
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("not there: Points: the folder cannot be written to"));
+  EXPECT_FALSE(std::filesystem::exists(File("cloud.octree")));
+}
+
+TEST_F(ViewTest, LeavesNothingWhenInterruptedWhileItMakesTheOctree) {
+  std::vector<ColoredPoint> points(4'000'000);
+  for (int i = 0; i < 4'000'000; ++i)
+    points[i].position = {static_cast<float>(i % 2000), i / 2e3f, 2};
+  WritePly(File("cloud.ply"), points);
+  Program program({"view", Run(), "--port", "0"});
+  ASSERT_TRUE(program.WaitForOutput("levels of detail"));
+  program.Signal(SIGINT);
+  const ProgramResult result = program.Wait();
+  EXPECT_EQ(result.status, 128 + SIGINT);
+  EXPECT_THAT(result.out, testing::Not(HasSubstr("http")));
+  for (const auto& entry : std::filesystem::directory_iterator(Run())) {
+    EXPECT_THAT(entry.path().filename().string(), testing::Not(HasSubstr("octree")));
+  }
 }
 
 TEST_F(ViewTest, HasATokenWhenOpenedBeyondThisMachine) {

@@ -60,6 +60,13 @@ TEST(Ply, RefusesOtherFiles) {
   }
 }
 
+TEST(SurfacePly, AloneStatesAVoxelSize) {
+  const TempFolder folder;
+  WritePly(folder / "landmarks.ply", std::vector<ColoredPoint>(3));
+  EXPECT_EQ(VoxelSizeOf(folder / "landmarks.ply"), std::nullopt);
+  EXPECT_EQ(VoxelSizeOf(folder / "absent.ply"), std::nullopt);
+}
+
 TEST(SurfacePly, WritesTheBytesThatTheFormatAsksFor) {
   const TempFolder folder;
   SurfacePlyWriter writer(folder / "a.ply", 0.05);
@@ -69,6 +76,7 @@ TEST(SurfacePly, WritesTheBytesThatTheFormatAsksFor) {
   const std::string bytes = ReadText(folder / "a.ply");
   EXPECT_THAT(bytes, testing::StartsWith("ply\nformat binary_little_endian 1.0\ncomment "));
   EXPECT_THAT(bytes, testing::HasSubstr("voxels of 0.05"));
+  EXPECT_FLOAT_EQ(static_cast<float>(VoxelSizeOf(folder / "a.ply").value_or(0)), 0.05f);
   EXPECT_THAT(bytes,
               testing::EndsWith("\nelement vertex 1\n"
                                 "property float x\nproperty float y\nproperty float z\n"

@@ -255,6 +255,8 @@ TEST_F(HttpServerTest, SaysThatAPortIsTakenAndAnAddressIsNotOfThisMachine) {
   EXPECT_THAT(message({"127.0.0.1", port_}),
               testing::AllOf(HasSubstr("port " + std::to_string(port_) + " is taken"),
                              HasSubstr("--port")));
+  EXPECT_THAT(message({"127.0.0.1", port_, "--view=N"}),
+              testing::AllOf(HasSubstr("--view=N"), testing::Not(HasSubstr("--port"))));
   EXPECT_THAT(message({"203.0.113.5", 0}), HasSubstr("is no address of this machine"));
   EXPECT_THAT(message({"my-computer", 0}), HasSubstr("is no numeric address"));
 }

@@ -46,7 +46,9 @@ class LiveFeedTest : public testing::Test {
   Features features_;
   std::vector<LandmarkId> landmarks_ = {kNoId, kNoId, 4};
   Rigid3 map_from_camera_;
-  LiveFeed feed_;
+  LiveFeed::Clock::time_point now_;
+  std::chrono::seconds per_look_{0};  // that pass with each look at the clock
+  LiveFeed feed_{[this] { return now_ += per_look_; }};
   ResourceTable table_ = feed_.Resources();
 };
 
@@ -58,10 +60,16 @@ TEST_F(LiveFeedTest, ShowsTheFrameWithItsFeatures) {
   EXPECT_EQ(json["time"], 0.35);
   EXPECT_EQ(json["state"], "tracking");
   EXPECT_THAT(json["size"].get<std::vector<int>>(), testing::ElementsAre(100, 50));
-  EXPECT_THAT(json["features"].get<std::vector<int>>(),
-              testing::ElementsAre(250, 200, 0, 500, 200, 1));
   EXPECT_EQ(json["isPaused"], false);
-  EXPECT_THAT(table_.at("live.jpg").make(), testing::StartsWith("\xff\xd8"));
+  const std::string image = table_.at("live.image").make();
+  EXPECT_EQ(ReadNumber<std::uint32_t>(image, 0, std::endian::little), 7U);
+  ASSERT_EQ(ReadNumber<std::uint32_t>(image, 4, std::endian::little), 2U);
+  std::vector<int> features;
+  for (size_t at = 8; at < 20; at += 2) {
+    features.push_back(*ReadNumber<std::uint16_t>(image, at, std::endian::little));
+  }
+  EXPECT_THAT(features, testing::ElementsAre(2500, 2000, 0, 5000, 2000, 1));
+  EXPECT_THAT(image.substr(20), testing::StartsWith("\xff\xd8"));
 }
 
 TEST_F(LiveFeedTest, BeginsTheWorldAtTheFirstCamera) {
@@ -88,12 +96,38 @@ TEST_F(LiveFeedTest, CopiesTheMapOnlyForThosePagesThatAsk) {
   EXPECT_EQ(json["frame"], 8) << "later frames were not asked for";
 }
 
+TEST_F(LiveFeedTest, CopiesTheMapInATwentiethOfTheTime) {
+  per_look_ = std::chrono::seconds(1);  // A copy takes one second.
+  Map map;
+  PresentState state = State();
+  state.map = &map;
+  int num_frames = 0;
+  for (int revision = 0; revision < 4; ++num_frames) {
+    frame_.index = num_frames;
+    feed_.Take(state);
+    const nlohmann::json json = Json();
+    EXPECT_EQ(json["frame"], num_frames) << "frames are shown although the map is not copied";
+    revision = json["revision"];
+  }
+  EXPECT_EQ(num_frames, 3 * 20 + 1);
+}
+
+TEST_F(LiveFeedTest, IsFinishingWhenNoFurtherFrameComes) {
+  feed_.Take(State());
+  EXPECT_EQ(Json()["state"], "tracking");
+  feed_.End();
+  EXPECT_EQ(Json()["state"], "finishing");
+  table_.at("pause").make();
+  EXPECT_FALSE(feed_.WaitForTurn([] { return false; })) << "there is nothing left to wait for";
+}
+
 TEST_F(LiveFeedTest, PausesStepsAndEndsTheRun) {
   const auto never = [] { return false; };
   EXPECT_TRUE(feed_.WaitForTurn(never));
   table_.at("pause").make();
   std::atomic<int> num_turns = 0;
   std::atomic<bool> has_ended = false;
+  EXPECT_EQ(Json()["isWaiting"], false);
   std::thread run([&] {
     while (feed_.WaitForTurn(never)) ++num_turns;
     has_ended = true;
@@ -104,6 +138,7 @@ TEST_F(LiveFeedTest, PausesStepsAndEndsTheRun) {
     }
     return condition();
   };
+  EXPECT_TRUE(wait_for([&] { return Json()["isWaiting"] == true; }));
   EXPECT_EQ(num_turns, 0);
   for (int step = 1; step <= 3; ++step) {
     table_.at("step").make();
@@ -133,7 +168,9 @@ TEST(LivePoints, AreInTheFramesOfTheirKeyframes) {
   LiveSnapshot snapshot;
   snapshot.revision = 3;
   // Ahead, right and up in the camera frame of memory.
-  snapshot.map.landmarks = {{5, Eigen::Vector3f(-2, 0.5f, 0.25f), {10, 20, 30}}};
+  LiveSnapshot::MapPart map;
+  map.landmarks = {{5, Eigen::Vector3f(-2, 0.5f, 0.25f), {10, 20, 30}}};
+  snapshot.map = std::make_shared<LiveSnapshot::MapPart>(map);
   const std::string bytes = LivePoints(snapshot);
   ASSERT_EQ(bytes.size(), 28U);
   EXPECT_EQ(ReadNumber<std::uint32_t>(bytes, 0, std::endian::little), 3U);

@@ -67,6 +67,7 @@ TEST(SceneJson, HasWhatThePageShows) {
   scene.scales = {{0.3, 1.01, 0.02}};
   scene.images = {0, 6};
   scene.views = {6, 12};
+  scene.voxel_size = 0.04;
   scene.missing = {"Something."};
   const nlohmann::json json = nlohmann::json::parse(SceneJson(scene));
   EXPECT_EQ(json["unit"], "m");
@@ -83,6 +84,7 @@ TEST(SceneJson, HasWhatThePageShows) {
   EXPECT_EQ(json["scale"]["value"][0], 1.01);
   EXPECT_THAT(json["views"].get<std::vector<int>>(), ElementsAre(6, 12));
   EXPECT_THAT(json["images"].get<std::vector<int>>(), ElementsAre(0, 6));
+  EXPECT_EQ(json["voxelSize"], 0.04);
   EXPECT_EQ(json["missing"][0], "Something.");
 }
 
@@ -92,6 +94,7 @@ TEST(SceneJson, HasUnitsWhereTheScaleIsUnknownAndWhereNothingIsStated) {
   EXPECT_EQ(nlohmann::json::parse(SceneJson(scene))["unit"], "units");
   scene.summary = nlohmann::json::object();
   EXPECT_EQ(nlohmann::json::parse(SceneJson(scene))["unit"], "units");
+  EXPECT_TRUE(nlohmann::json::parse(SceneJson(scene))["voxelSize"].is_null());
 }
 
 TEST(SceneJson, SurvivesNamesThatAreNotText) {

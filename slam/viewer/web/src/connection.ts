@@ -5,6 +5,7 @@ const POLL_MS = 2000;
 /** Watches whether the server answers. */
 export class Connection {
   private isLost = false;
+  private present: Promise<void> | null = null; // the check under way
 
   constructor(
     private readonly source: Source,
@@ -18,6 +19,11 @@ export class Connection {
   /** Asks now; after a request that failed. */
   async check(): Promise<void> {
     if (this.source.isEmbedded) return;
+    this.present ??= this.ask().finally(() => (this.present = null));
+    return this.present;
+  }
+
+  private async ask(): Promise<void> {
     const isAlive = await this.source.isAlive();
     if (isAlive && this.isLost) {
       this.isLost = false;

@@ -3,9 +3,17 @@ import { announce, h } from "./dom";
 import { grouped, length } from "./format";
 import { centerMessage, section, type Layout } from "./layout";
 import { LiveLayer } from "./live_layer";
-import { control, liveImage, livePoints, liveState, type LiveState } from "./live_source";
+import {
+  control,
+  liveImage,
+  livePoints,
+  liveState,
+  type LiveImage,
+  type LiveState,
+} from "./live_source";
 import { followTheme } from "./theme";
 import { Viewport } from "./viewport";
+import { viewportKeys } from "./viewport_keys";
 
 const POLL_MS = 200;
 /** How far behind the camera the view follows it, units of the world. */
@@ -16,7 +24,11 @@ const STATES: Record<LiveState["state"], string> = {
   initializing: "looking for a first motion",
   tracking: "tracking",
   lost: "lost",
+  finishing: "finishing: map and cloud",
 };
+
+/** Least extent that is shown, units of the world. */
+const MIN_EXTENT = 200;
 
 /** The page of a run that goes on. */
 export class LiveViewer {
@@ -38,6 +50,8 @@ export class LiveViewer {
   private revision = 0;
   private shownMap = -1;
   private last: LiveState | null = null;
+  private shownFrame = -1; // of the image
+  private matched = ""; // features, as text
   private hasEnded = false;
 
   constructor(private readonly page: Layout) {
@@ -47,8 +61,12 @@ export class LiveViewer {
       this.layer.resize(width, height);
       this.makeRoom();
     };
+    page.canvas.setAttribute(
+      "aria-label",
+      "3D view of the run. Arrow keys turn, W A S D move, plus and minus zoom.",
+    );
     this.layer.resize(page.stage.clientWidth, page.stage.clientHeight);
-    this.viewport.setExtent(200);
+    this.viewport.setExtent(MIN_EXTENT);
     this.viewport.setPose({
       eye: new THREE.Vector3(-BEHIND, 0, ABOVE),
       target: new THREE.Vector3(),
@@ -64,6 +82,17 @@ export class LiveViewer {
     this.buttons = [this.pause, action("step", "One frame"), action("finish", "Finish early")];
     this.fillPage();
     void this.poll();
+  }
+
+  /** Handles a key; true if it had a meaning. */
+  key(event: KeyboardEvent): boolean {
+    const action = viewportKeys(this.viewport)[
+      event.key.length === 1 ? event.key.toLowerCase() : event.key
+    ];
+    if (!action) return false;
+    this.follow.checked = false;
+    action();
+    return true;
   }
 
   private fillPage(): void {
@@ -89,6 +118,7 @@ export class LiveViewer {
   private async ask(action: "pause" | "resume" | "step" | "finish"): Promise<void> {
     try {
       await control(action);
+      this.say(null);
       announce(action);
     } catch (error) {
       this.say((error as Error).message);
@@ -107,7 +137,8 @@ export class LiveViewer {
   private async poll(): Promise<void> {
     try {
       await this.update(await liveState());
-      this.say(null);
+      // What an action has brought stays until the next.
+      if (this.hasEnded) this.say(null);
       document.body.dataset.connection = "connected";
       this.hasEnded = false;
     } catch {
@@ -121,8 +152,9 @@ export class LiveViewer {
   }
 
   private async update(state: LiveState): Promise<void> {
+    for (const button of this.buttons) button.disabled = state.state === "finishing";
     if (state.size[0] === 0) return;
-    const isNewFrame = state.frame !== this.last?.frame;
+    if (state.state !== this.last?.state) announce(STATES[state.state]);
     this.last = state;
     document.body.dataset.state = "ready";
     this.page.center.replaceChildren();
@@ -134,12 +166,24 @@ export class LiveViewer {
     }
     this.layer.setState(state);
     if (this.follow.checked && state.pose) this.followCamera(state.pose);
+    this.fitExtent(state);
+    if (state.frame !== this.shownFrame) await this.showImage(await liveImage());
     this.showFacts(state);
-    if (isNewFrame) this.showImage(state, await liveImage());
     this.page.canvas.dataset.keyframes = String(state.keyframes.length);
     this.page.canvas.dataset.landmarks = String(state.landmarks);
     this.page.canvas.dataset.frame = String(state.frame);
     this.viewport.invalidate();
+  }
+
+  /** Near and far planes have to hold the whole map. */
+  private fitExtent(state: LiveState): void {
+    const box = new THREE.Box3();
+    for (const keyframe of state.keyframes) {
+      box.expandByPoint(new THREE.Vector3(keyframe[2], keyframe[3], keyframe[4]));
+    }
+    const size = box.isEmpty() ? 0 : box.getSize(new THREE.Vector3()).length();
+    // Landmarks lie around the path.
+    this.viewport.setExtent(Math.max(MIN_EXTENT, 2 * size));
   }
 
   private followCamera(pose: number[]): void {
@@ -161,7 +205,6 @@ export class LiveViewer {
   }
 
   private showFacts(state: LiveState): void {
-    const matched = state.features.filter((value, i) => i % 3 === 2 && value === 1).length;
     const tile = (value: string, name: string): HTMLElement =>
       h("div", { class: "tile" }, h("dt", {}, name), h("dd", {}, value));
     this.facts.replaceChildren(
@@ -169,7 +212,7 @@ export class LiveViewer {
       tile(`${state.time.toFixed(1)} s`, "time in the input"),
       tile(grouped(state.keyframes.length), "keyframes"),
       tile(grouped(state.landmarks), "landmarks"),
-      tile(`${grouped(matched)} of ${grouped(state.features.length / 3)}`, "features matched"),
+      tile(this.matched, "features matched"),
       tile(grouped(state.loops.length), "loops closed"),
       tile(
         state.cameraHeight === null ? "unknown" : length(state.cameraHeight, "m"),
@@ -179,15 +222,21 @@ export class LiveViewer {
     this.pause.textContent = state.isPaused ? "Go on" : "Pause";
     const { chip } = this.page;
     chip.hidden = false;
-    chip.textContent = state.isPaused ? "paused" : STATES[state.state];
-    chip.className = `chip ${state.state === "tracking" && !state.isPaused ? "metric" : "rough"}`;
+    const isPaused = state.isPaused && state.state !== "finishing";
+    chip.textContent = isPaused ? "paused" : STATES[state.state];
+    chip.className = `chip ${state.state === "tracking" && !isPaused ? "metric" : "rough"}`;
     chip.title =
       state.cameraHeight === null
         ? "The ground is not known yet: lengths have no unit."
         : "Lengths are in metres.";
   }
 
-  private showImage(state: LiveState, image: ImageBitmap): void {
+  private async showImage({ frame, features, jpeg }: LiveImage): Promise<void> {
+    const image = await createImageBitmap(new Blob([jpeg], { type: "image/jpeg" }));
+    this.shownFrame = frame;
+    const numMatched = features.filter((value, i) => i % 3 === 2 && value === 1).length;
+    this.matched = `${grouped(numMatched)} of ${grouped(features.length / 3)}`;
+    this.page.canvas.dataset.imageFrame = String(frame);
     const context = this.image.getContext("2d")!;
     this.image.width = image.width;
     this.image.height = image.height;
@@ -199,18 +248,18 @@ export class LiveViewer {
     }
     const { width, height } = this.image;
     const radius = Math.max(2, width / 400);
-    for (let i = 0; i < state.features.length; i += 3) {
+    for (let i = 0; i < features.length; i += 3) {
       context.beginPath();
       context.arc(
-        (state.features[i] * width) / 1000,
-        (state.features[i + 1] * height) / 1000,
+        features[i] * width,
+        features[i + 1] * height,
         radius,
         0,
         2 * Math.PI,
       );
       context.fillStyle = context.strokeStyle =
-        state.features[i + 2] === 1 ? "#4be08a" : "#ffffff90";
-      if (state.features[i + 2] === 1) context.fill();
+        features[i + 2] === 1 ? "#4be08a" : "#ffffff90";
+      if (features[i + 2] === 1) context.fill();
       else context.stroke();
     }
   }

@@ -1,19 +1,30 @@
+import { timeout } from "./timeout";
+
 /** What the server tells of a run that goes on (slam/viewer/live_snapshot.h). */
 export interface LiveState {
   frame: number;
   time: number;
-  state: "initializing" | "tracking" | "lost";
+  state: "initializing" | "tracking" | "lost" | "finishing";
   isPaused: boolean;
+  /** The run stands still because it is paused. */
+  isWaiting: boolean;
   map: number;
   revision: number;
   size: [number, number];
-  features: number[];
   pose: number[] | null;
   keyframes: number[][];
   links: [number, number][];
   loops: [number, number][];
   cameraHeight: number | null;
   landmarks: number;
+}
+
+/** The image of a frame with its features. */
+export interface LiveImage {
+  frame: number;
+  /** 3 numbers each: u, v in 0..1 of width and height, 1 where matched. */
+  features: Float32Array;
+  jpeg: ArrayBuffer;
 }
 
 /** Landmarks in the frames of their keyframes. */
@@ -25,9 +36,10 @@ export interface LivePoints {
 }
 
 const POINT_BYTES = 20;
+const TIMEOUT_MS = 20_000;
 
 async function get(path: string): Promise<Response> {
-  const response = await fetch(path, { cache: "no-store" });
+  const response = await fetch(path, { cache: "no-store", signal: timeout(TIMEOUT_MS) });
   if (!response.ok) throw new Error((await response.text()).trim());
   return response;
 }
@@ -36,8 +48,21 @@ export async function liveState(): Promise<LiveState> {
   return (await get("live.json")).json();
 }
 
-export async function liveImage(): Promise<ImageBitmap> {
-  return createImageBitmap(await (await get("live.jpg")).blob());
+export async function liveImage(): Promise<LiveImage> {
+  return readLiveImage(await (await get("live.image")).arrayBuffer());
+}
+
+export function readLiveImage(bytes: ArrayBuffer): LiveImage {
+  const view = new DataView(bytes);
+  const count = view.getUint32(4, true);
+  const end = 8 + 6 * count;
+  if (bytes.byteLength < end) throw new Error("live.image is truncated");
+  const features = new Float32Array(3 * count);
+  for (let i = 0; i < 3 * count; ++i) {
+    const value = view.getUint16(8 + 2 * i, true);
+    features[i] = i % 3 === 2 ? value : value / 10_000;
+  }
+  return { frame: view.getUint32(0, true), features, jpeg: bytes.slice(end) };
 }
 
 export async function livePoints(): Promise<LivePoints> {
@@ -67,6 +92,6 @@ export function readLivePoints(bytes: ArrayBuffer): LivePoints {
 
 /** Asks the run to do something. */
 export async function control(action: "pause" | "resume" | "step" | "finish"): Promise<void> {
-  const response = await fetch(action, { method: "POST" });
+  const response = await fetch(action, { method: "POST", signal: timeout(TIMEOUT_MS) });
   if (!response.ok) throw new Error((await response.text()).trim());
 }

@@ -6,6 +6,7 @@ import { LiveViewer } from "./live";
 import type { Run } from "./run";
 import { openSource, SourceError } from "./source";
 import { Viewer } from "./viewer";
+import { isForControl } from "./viewport_keys";
 
 /** States of the page, which the style sheet and tests look at. */
 type State = "loading" | "ready" | "failed";
@@ -17,7 +18,10 @@ function setState(state: State): void {
 async function start(): Promise<void> {
   const page = makeLayout();
   if (document.body.dataset.mode === "live") {
-    new LiveViewer(page);
+    const live = new LiveViewer(page);
+    document.addEventListener("keydown", (event) => {
+      if (!isForControl(event) && live.key(event)) event.preventDefault();
+    });
     return;
   }
   const help = makeHelp();
@@ -69,11 +73,7 @@ async function start(): Promise<void> {
     else say(`Some points cannot be loaded: ${error.message}`);
   };
   document.addEventListener("keydown", (event) => {
-    const target = event.target as HTMLElement;
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (target.closest("dialog")) return;
-    const isControl = target.closest("input, summary, button, #panorama canvas") !== null;
-    if (isControl && (event.key.startsWith("Arrow") || event.key === " ")) return;
+    if (isForControl(event)) return;
     if (event.key === "?") help.showModal();
     else if (!viewer?.key(event)) return;
     event.preventDefault();

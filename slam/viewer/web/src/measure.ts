@@ -17,7 +17,8 @@ export class Measure {
   private segments: number[] = [];
   private labels: Label[] = [];
   private rubberLabel: Label | null = null;
-  private last: THREE.Vector3 | null = null;
+  private last: THREE.Vector3 | null = null; // where the line goes on
+  private latest: THREE.Vector3 | null = null; // picked since the line or the tool began
 
   constructor(
     private readonly run: Run,
@@ -30,10 +31,6 @@ export class Measure {
     this.group.add(this.lines.object, this.rubber.object);
   }
 
-  get isEmpty(): boolean {
-    return this.segments.length === 0 && this.last === null;
-  }
-
   setMode(mode: MeasureMode | null): void {
     this.mode = mode;
     this.endLine();
@@ -41,6 +38,8 @@ export class Measure {
 
   /** A point was picked. */
   add(point: THREE.Vector3): void {
+    if (this.latest?.equals(point)) return; // the second click of a double click
+    this.latest = point.clone();
     if (this.mode === "height") this.addHeight(point);
     else if (this.mode === "distance") this.addDistance(point);
     this.onChange();
@@ -65,6 +64,7 @@ export class Measure {
   /** The next point begins another line. */
   endLine(): void {
     this.last = null;
+    this.latest = null;
     this.hideRubber();
     this.onChange();
   }

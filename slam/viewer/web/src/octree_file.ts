@@ -7,7 +7,6 @@ const MAGIC = "ORB360OC";
 const VERSION = 1;
 
 export interface OctreeHeader {
-  hasNormals: boolean;
   hasConfidences: boolean;
   pointCount: number;
   nodeCount: number;
@@ -69,7 +68,6 @@ export function readHeader(bytes: ArrayBuffer): OctreeHeader {
   }
   const attributes = view.getUint32(12, true);
   return {
-    hasNormals: (attributes & 1) !== 0,
     hasConfidences: (attributes & 2) !== 0,
     pointCount: Number(view.getBigUint64(16, true)),
     nodeCount: view.getUint32(24, true),

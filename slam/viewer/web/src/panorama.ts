@@ -13,8 +13,8 @@ export interface PanoramaEvents {
   /** Another keyframe was chosen: -1 the one before, 1 the next. */
   onStep: (by: number) => void;
   onClose: () => void;
-  /** The panorama looks in another direction of the optical camera frame. */
-  onTurn: (forward: THREE.Vector3) => void;
+  /** The panorama looks in another direction of the optical camera frame of the frame shown. */
+  onTurn: (forward: THREE.Vector3, frame: number) => void;
   /** The user wants to be where the keyframe is. */
   onGo: () => void;
 }
@@ -36,6 +36,7 @@ export class Panorama {
   private range: ViewRange | null = null;
   private limits: [number, number] = [1, 10];
   private request = 0;
+  private shownFrame = 0; // whose image is shown: the nearest view may stand for the keyframe
 
   constructor(
     private readonly run: Run,
@@ -142,7 +143,8 @@ export class Panorama {
       this.view.setDepth(this.range.texels(this.limits), this.range.width, this.range.height);
     } else this.setOverlay("image");
     this.showLegend();
-    this.events.onTurn(this.view.forward());
+    this.shownFrame = hasImage ? frame : view!;
+    this.turned();
   }
 
   hide(): void {
@@ -208,7 +210,7 @@ export class Panorama {
   }
 
   private turned(): void {
-    if (this.view) this.events.onTurn(this.view.forward());
+    if (this.view) this.events.onTurn(this.view.forward(), this.shownFrame);
   }
 
   private listen(): void {

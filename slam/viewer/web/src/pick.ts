@@ -5,8 +5,6 @@ import type { Viewport } from "./viewport";
 /** A point of the cloud under the cursor. */
 export interface PickedPoint {
   position: THREE.Vector3;
-  /** Confidence in 0..1; 0 without. */
-  confidence: number;
 }
 
 interface Candidate extends PickedPoint {
@@ -19,6 +17,7 @@ function pickInNode(
   ray: THREE.Ray,
   tangent: number,
   clip: THREE.Box3 | null,
+  leastConfidence: number,
 ): Candidate | null {
   const { node, points } = entry;
   const scale = node.side / 65536;
@@ -38,7 +37,8 @@ function pickInNode(
     const limit = along * tangent;
     if (ray.distanceSqToPoint(p) > limit * limit) continue;
     if (clip && !clip.containsPoint(p)) continue;
-    best = { position: p.clone(), confidence: points.colors[4 * i + 3] / 255, distance: along };
+    if (points.colors[4 * i + 3] / 255 < leastConfidence) continue; // as in the shader
+    best = { position: p.clone(), distance: along };
   }
   return best;
 }
@@ -52,6 +52,7 @@ export function pickPoint(
   radius: number,
 ): PickedPoint | null {
   const { ray, radiansPerPixel } = viewport.ray(x, y);
+  const leastConfidence = cloud.material.uniforms.leastConfidence.value as number;
   const box = new THREE.Box3();
   let best: Candidate | null = null;
   for (const tangent of [radius / 2, radius].map((pixels) => pixels * radiansPerPixel)) {
@@ -63,7 +64,7 @@ export function pickPoint(
       if (best && distance > best.distance) continue;
       box.expandByScalar((distance + 2 * side) * tangent);
       if (!ray.intersectsBox(box)) continue;
-      const candidate = pickInNode(entry, ray, tangent, viewport.clip);
+      const candidate = pickInNode(entry, ray, tangent, viewport.clip, leastConfidence);
       if (candidate && (!best || candidate.distance < best.distance)) best = candidate;
     }
     if (best) return best;

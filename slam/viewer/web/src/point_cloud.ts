@@ -9,6 +9,7 @@ import {
   type OctreeHeader,
   type OctreeNode,
 } from "./octree_file";
+import { FailedNodes } from "./failed_nodes";
 import { chooseNodes, type Choice } from "./node_choice";
 import { makePointMaterial, makeVisibleTexture, VISIBLE_WIDTH } from "./point_material";
 import { SourceError, type Source } from "./source";
@@ -38,7 +39,7 @@ export class PointCloud {
   private shown: number[] = [];
   private wanted: number[] = [];
   private readonly loading = new Set<number>();
-  private readonly failed = new Set<number>();
+  private readonly failed: FailedNodes;
   private numLoaded = 0;
   private pass = 0;
 
@@ -49,6 +50,7 @@ export class PointCloud {
     private readonly onChange: () => void,
     private readonly onError: (error: SourceError | Error) => void,
   ) {
+    this.failed = new FailedNodes(onChange);
     const uniforms = this.material.uniforms;
     uniforms.rootMin.value.set(...header.min);
     uniforms.rootSide.value = header.side;
@@ -115,7 +117,7 @@ export class PointCloud {
     while (this.loading.size < MAX_REQUESTS && this.wanted.length > 0) {
       const place = this.wanted.shift()!;
       void this.load(place).catch((error: Error) => {
-        this.failed.add(place);
+        this.failed.add(place, error instanceof SourceError && error.isConnection);
         this.onError(error);
       });
     }
@@ -130,6 +132,7 @@ export class PointCloud {
           ? await this.source.octree(node.offset, node.offset + nodeBytes(node))
           : new ArrayBuffer(0);
       this.add(place, readPoints(bytes, node));
+      this.failed.loaded(place);
     } finally {
       this.loading.delete(place);
     }

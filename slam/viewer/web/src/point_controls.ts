@@ -64,7 +64,7 @@ export class PointControls {
           "1 is certain. A point of confidence c is expected 1/c − 1 voxels from the surface.",
       });
     }
-    if (cloud.header.hasConfidences && run.summary.cloud?.voxel_size) {
+    if (cloud.header.hasConfidences && run.voxelSize) {
       this.colorings.push({
         name: "Error",
         by: ColorBy.Error,
@@ -73,7 +73,7 @@ export class PointControls {
       });
     }
     const uniforms = cloud.material.uniforms;
-    const voxel = run.summary.cloud?.voxel_size;
+    const voxel = run.voxelSize;
     uniforms.voxel.value = voxel ?? 0;
     // A point of the dense cloud stands for a voxel; a landmark is a point.
     if (voxel) uniforms.leafSpacing.value = VOXELS_OF_POINT * voxel;
@@ -111,7 +111,7 @@ export class PointControls {
       const [low, high] = heightLimits(this.cloud);
       return [low - ground, high - ground];
     }
-    if (by === ColorBy.Error) return [0, 4 * (this.run.summary.cloud?.voxel_size ?? 1)];
+    if (by === ColorBy.Error) return [0, 4 * (this.run.voxelSize ?? 1)];
     return [0, 1];
   }
 

@@ -4,6 +4,8 @@ export interface Run {
   summary: Summary;
   unit: "m" | "units";
   hasCloud: boolean;
+  /** Of the dense cloud as it is, units; null for landmarks. */
+  voxelSize: number | null;
   frames: {
     index: number[];
     time: number[];
@@ -41,7 +43,7 @@ export interface Summary {
   warnings?: string[];
   scale?: Scale;
   timing_ms?: Record<string, { median: number; p95: number }>;
-  cloud?: { points?: number; voxel_size?: number; seconds?: number };
+  cloud?: { points?: number; seconds?: number };
   positions?: { source?: string; failure?: string | null } | null;
 }
 

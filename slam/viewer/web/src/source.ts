@@ -1,4 +1,9 @@
 import type { Run } from "./run";
+import { timeout } from "./timeout";
+
+/** A node of the octree or an image comes within this time on slow connections, too. */
+const TIMEOUT_MS = 60_000;
+const ALIVE_MS = 5000;
 
 /**
  * Where the page has its data from: the server of `orb360 view`, or the file of `orb360 report`.
@@ -29,10 +34,14 @@ export class SourceError extends Error {
   }
 }
 
-async function request(path: string, headers: HeadersInit = {}): Promise<Response> {
+async function request(
+  path: string,
+  headers: HeadersInit = {},
+  limit = TIMEOUT_MS,
+): Promise<Response> {
   let response: Response;
   try {
-    response = await fetch(path, { headers, cache: "no-store" });
+    response = await fetch(path, { headers, cache: "no-store", signal: timeout(limit) });
   } catch {
     throw new SourceError("orb360 does not answer", true);
   }
@@ -80,7 +89,7 @@ class ServerSource implements Source {
 
   async isAlive(): Promise<boolean> {
     try {
-      await request("alive");
+      await request("alive", {}, ALIVE_MS);
       return true;
     } catch {
       return false;

@@ -10,12 +10,13 @@ import { Panorama } from "./panorama";
 import { pickMark, pickPoint, type PickedPoint } from "./pick";
 import { PointCloud } from "./point_cloud";
 import { listenToPointer } from "./pointer";
-import type { Run } from "./run";
+import { orientationOf, type Run } from "./run";
 import type { Source } from "./source";
 import { canvasColors, followTheme } from "./theme";
 import { makeToolbar, type Toolbar } from "./toolbar";
 import { TrajectoryLayer } from "./trajectory_layer";
 import { Viewport } from "./viewport";
+import { viewportKeys } from "./viewport_keys";
 
 const PICK_PIXELS = 8;
 const MARK_PIXELS = 12;
@@ -57,7 +58,7 @@ export class Viewer {
     this.panorama = new Panorama(run, source, {
       onStep: (by) => this.step(by),
       onClose: () => this.select(null),
-      onTurn: (forward) => this.turned(forward),
+      onTurn: (forward, frame) => this.turned(forward, frame),
       onGo: () => this.standAtSelected(),
     });
     page.stage.append(this.panorama.element);
@@ -130,19 +131,8 @@ export class Viewer {
 
   /** Handles a key; true if it had a meaning. */
   key(event: KeyboardEvent): boolean {
-    const turn = 0.12;
     const actions: Record<string, () => void> = {
-      ArrowLeft: () => this.viewport.orbit(-turn, 0),
-      ArrowRight: () => this.viewport.orbit(turn, 0),
-      ArrowUp: () => this.viewport.orbit(0, -turn),
-      ArrowDown: () => this.viewport.orbit(0, turn),
-      w: () => this.viewport.pan(0, 0.1),
-      s: () => this.viewport.pan(0, -0.1),
-      a: () => this.viewport.pan(-0.1, 0),
-      d: () => this.viewport.pan(0.1, 0),
-      "+": () => this.viewport.zoom(0.8),
-      "=": () => this.viewport.zoom(0.8),
-      "-": () => this.viewport.zoom(1.25),
+      ...viewportKeys(this.viewport),
       h: () => this.viewport.flyTo(obliquePose(this.box(), this.viewport.camera)),
       t: () => this.viewport.flyTo(topPose(this.box(), this.viewport.camera)),
       m: () => this.toolbar.toggleMode("distance"),
@@ -221,10 +211,11 @@ export class Viewer {
     return Math.max(0.03 * this.box().getSize(new THREE.Vector3()).length(), 0.5);
   }
 
-  private turned(forward: THREE.Vector3): void {
-    if (this.selected === null) return;
-    const q = this.run.frames.orientation.slice(4 * this.run.keyframes[this.selected]).slice(0, 4);
-    const direction = forward.clone().applyQuaternion(new THREE.Quaternion(q[0], q[1], q[2], q[3]));
+  private turned(forward: THREE.Vector3, frame: number): void {
+    const place = this.run.frames.index.indexOf(frame);
+    if (this.selected === null || place < 0) return;
+    const orientation = new THREE.Quaternion(...orientationOf(this.run, place));
+    const direction = forward.clone().applyQuaternion(orientation);
     this.layer.showHeading(direction, this.headingLength());
     this.viewport.invalidate();
   }
