@@ -49,7 +49,7 @@ class Backend {
   virtual NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const = 0;
   /// Returns the program of `lowered`, made of `nodes` for images of that size: weights packed,
   /// memory planned. With `keeps_values` the result of every instruction remains
-  /// (Program::Find).
+  /// (Program::Find). Throws DeviceError where a device has too little memory or fails.
   virtual std::unique_ptr<const Program> MakeProgram(const Graph& graph,
                                                      std::span<const FusedNode> nodes,
                                                      Lowered lowered, int height, int width,

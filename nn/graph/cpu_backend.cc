@@ -98,8 +98,8 @@ class RunMaker {
   }
   Step::Run operator()(const ConvolutionOp&) const { return NotHere(); }
   Step::Run operator()(const NormalizedConvolutionOp&) const { return NotHere(); }
-  Step::Run operator()(const ConcatenateOp&) const { return {}; }
-  Step::Run operator()(const SliceOp&) const { return {}; }
+  Step::Run operator()(const ConcatenateOp&) const { return NotHere(); }
+  Step::Run operator()(const SliceOp&) const { return NotHere(); }
 
  private:
   const Weight& weight(std::size_t i) const {

@@ -31,6 +31,8 @@ struct Bound {  // what one instruction works on
 };
 
 struct CpuMemory : ProgramMemory {
+  using ProgramMemory::ProgramMemory;
+
   AlignedVector<std::byte> block;
   std::vector<TensorView> views;  // by value
   std::vector<Bound> bound;       // by instruction
@@ -45,7 +47,7 @@ CpuProgram::CpuProgram(Lowered lowered, std::vector<Step> steps, bool keeps_valu
       threads_(threads) {}
 
 std::unique_ptr<ProgramMemory> CpuProgram::Allocate() const {
-  auto memory = std::make_unique<CpuMemory>();
+  auto memory = std::make_unique<CpuMemory>(this);
   try {
     memory->block.resize(assignment_.bytes);
   } catch (const std::bad_alloc&) {
@@ -74,23 +76,24 @@ std::unique_ptr<ProgramMemory> CpuProgram::Allocate() const {
 
 void CpuProgram::Run(std::span<const std::span<const float>> inputs,
                      std::span<const std::span<float>> outputs, ProgramMemory* memory) const {
-  const auto& [block, views, bound] = static_cast<const CpuMemory&>(*memory);
-  ORB360_CHECK(bound.size() == steps_.size());
+  ORB360_CHECK(memory->IsOf(this), "a workspace of another executor");
+  const auto& cpu = static_cast<const CpuMemory&>(*memory);
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const TensorView& to = views[Index(lowered_.inputs[i])];
+    const TensorView& to = cpu.views[Index(lowered_.inputs[i])];
     CopyChannels(DenseView(inputs[i].data(), to.shape), 0, to, 0, to.shape.channels, threads_);
   }
   for (std::size_t i = 0; i < steps_.size(); ++i) {
-    steps_[i].run(bound[i].inputs, bound[i].outputs, bound[i].scratch);
+    steps_[i].run(cpu.bound[i].inputs, cpu.bound[i].outputs, cpu.bound[i].scratch);
   }
   for (std::size_t i = 0; i < outputs.size(); ++i) {
-    const TensorView& from = views[Index(lowered_.outputs[i])];
+    const TensorView& from = cpu.views[Index(lowered_.outputs[i])];
     CopyChannels(from, 0, DenseView(outputs[i].data(), from.shape), 0, from.shape.channels,
                  threads_);
   }
 }
 
 TensorView CpuProgram::Find(const ProgramMemory& memory, int value) const {
+  ORB360_CHECK(memory.IsOf(this), "a workspace of another executor");
   return static_cast<const CpuMemory&>(memory).views[Index(value)];
 }
 

@@ -8,13 +8,22 @@
 
 namespace orb360::nn {
 
+class Program;
+
 /// What one run of a Program works in.
 class ProgramMemory {
  public:
-  ProgramMemory() = default;
+  /// `program` allocates it.
+  explicit ProgramMemory(const Program* program) : program_(program) {}
   ProgramMemory(const ProgramMemory&) = delete;
   ProgramMemory& operator=(const ProgramMemory&) = delete;
   virtual ~ProgramMemory() = default;
+
+  /// Whether it is what that program has allocated, and so of its kind and size.
+  bool IsOf(const Program* program) const { return program == program_; }
+
+ private:
+  const Program* program_;  // only compared: it may not exist any more
 };
 
 /// A network prepared for one size of image on one kind of processor (Backend::MakeProgram). It
@@ -26,13 +35,15 @@ class Program {
   Program& operator=(const Program&) = delete;
   virtual ~Program() = default;
 
-  /// Throws UserError where there is too little memory.
+  /// Throws UserError where there is too little memory, and DeviceError where a device has too
+  /// little or fails. The result may outlive the program.
   virtual std::unique_ptr<ProgramMemory> Allocate() const = 0;
-  /// Computes `outputs` from `inputs`, whose order and sizes are those of the graph. `memory` is of
-  /// this program.
+  /// Computes `outputs` from `inputs`, whose order and sizes are those of the graph. Throws
+  /// ContractError for memory of another program, and DeviceError where a device fails.
   virtual void Run(std::span<const std::span<const float>> inputs,
                    std::span<const std::span<float>> outputs, ProgramMemory* memory) const = 0;
-  /// Returns a value of Lowered::values after a run. Contract: made with `keeps_values`.
+  /// Returns a value of Lowered::values after a run. Throws ContractError for memory of another
+  /// program. Contract: made with `keeps_values`.
   virtual TensorView Find(const ProgramMemory& memory, int value) const = 0;
 
   /// Bytes of the tensors and scratch of one run.

@@ -37,13 +37,12 @@ std::uint32_t ChooseType(const VkPhysicalDeviceMemoryProperties& memory, std::ui
 
 }  // namespace
 
-Buffer::Buffer(const LogicalDevice& device, std::size_t bytes, BufferUse use)
-    : bytes_(std::max<std::size_t>(bytes, sizeof(float))) {
+Buffer::Buffer(const LogicalDevice& device, std::size_t bytes, BufferUse use) {
   const char* const action = "allocate memory for a network";
   const DeviceFunctions& functions = device.functions();
   VkBufferCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-  info.size = bytes_;
+  info.size = std::max<std::size_t>(bytes, sizeof(float));
   info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   if (use == BufferUse::kDevice) info.usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   VkBuffer buffer = VK_NULL_HANDLE;

@@ -23,14 +23,12 @@ class Buffer {
   Buffer(const LogicalDevice& device, std::size_t bytes, BufferUse use);
 
   VkBuffer get() const { return buffer_.get(); }
-  std::size_t bytes() const { return bytes_; }
   /// Address of the memory for the CPU. Null for kDevice.
   std::byte* data() const { return data_; }
   /// Makes visible to the CPU what the device has written.
   void Invalidate(const LogicalDevice& device) const;
 
  private:
-  std::size_t bytes_ = 0;
   bool is_coherent_ = true;
   std::byte* data_ = nullptr;
   Owned<VkDeviceMemory> memory_;

@@ -102,4 +102,22 @@ std::optional<int> ChooseDevice(const std::string& name, const VulkanDevices& fo
                   List(found.devices));
 }
 
+Device OpenChosen(const std::string& name, VulkanDevices found, bool uses_halves,
+                  const OpenByIndex& open) {
+  for (;;) {
+    const std::optional<int> index = ChooseDevice(name, found);
+    VulkanDevice* const chosen =
+        index ? &*std::ranges::find(found.devices, *index, &VulkanDevice::index) : nullptr;
+    const bool stores_halves = ChooseHalves(name, chosen, uses_halves);
+    if (chosen == nullptr) return {};
+    try {
+      return open(*index, stores_halves);
+    } catch (const UserError& error) {
+      chosen->problem = error.what();
+    } catch (const DeviceError& error) {
+      chosen->problem = error.what();
+    }
+  }
+}
+
 }  // namespace orb360::nn

@@ -55,19 +55,9 @@ Device OpenDevice(const std::string& name, bool uses_halves) {
       found.problem = error.what();
     }
   }
-  const std::optional<int> index = ChooseDevice(name, found);
-  const VulkanDevice* const chosen =
-      index ? &found.devices[static_cast<std::size_t>(*index)] : nullptr;
-  const bool stores_halves = ChooseHalves(name, chosen, uses_halves);
-  if (!index) return {};
-  try {
-    return Open(std::move(instance), *index, stores_halves);
-  } catch (const UserError&) {
-    if (name != "auto") throw;
-  } catch (const DeviceError& error) {
-    if (name != "auto") throw UserError(error.what());
-  }
-  return {};
+  return OpenChosen(name, std::move(found), uses_halves, [&](int index, bool stores_halves) {
+    return Open(instance, index, stores_halves);
+  });
 }
 
 }  // namespace orb360::nn

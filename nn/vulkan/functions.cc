@@ -24,9 +24,11 @@ LoaderFunctions LoadVulkan() {
   // It is never closed: drivers keep threads and memory that outlive their devices.
   void* const library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
-    throw UserError(
-        "Vulkan is not installed on this machine (libvulkan.so.1 is missing); install the driver "
-        "of the graphics card and libvulkan1, or use --device cpu");
+    const char* const reason = dlerror();  // It names the library.
+    throw UserError(std::string("Vulkan cannot be used (") +
+                    (reason != nullptr ? reason : "libvulkan.so.1 cannot be opened") +
+                    "); install the driver of the graphics card and libvulkan1, or use "
+                    "--device cpu");
   }
   LoaderFunctions loader;
   Take(reinterpret_cast<PFN_vkVoidFunction>(dlsym(library, "vkGetInstanceProcAddr")),

@@ -48,6 +48,7 @@ namespace orb360::nn::vulkan {
   F(DestroyPipeline)                      \
   F(DestroyPipelineLayout)                \
   F(DestroyShaderModule)                  \
+  F(DeviceWaitIdle)                       \
   F(EndCommandBuffer)                     \
   F(FreeMemory)                           \
   F(GetBufferMemoryRequirements)          \

@@ -77,25 +77,32 @@ Instance::Instance(OnMessage on_message) {
   }
   VkInstance instance = VK_NULL_HANDLE;
   const VkResult result = loader.CreateInstance(&info, nullptr, &instance);
-  if (result != VK_SUCCESS) {
-    throw UserError("there is no Vulkan driver on this machine (vkCreateInstance gave " +
-                    std::to_string(result) +
-                    "); install the driver of the graphics card, or use --device cpu");
+  if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
+    throw UserError(
+        "there is no Vulkan driver on this machine; install the driver of the graphics card, or "
+        "use --device cpu");
   }
-  functions_ = LoadInstance(loader, instance);
-  instance_ = {instance, [destroy = functions_.DestroyInstance](VkInstance handle) {
-                 destroy(handle, nullptr);
+  if (result != VK_SUCCESS) {
+    throw UserError("Vulkan cannot be started (vkCreateInstance gave " + std::to_string(result) +
+                    "); install the driver of the graphics card again, or use --device cpu");
+  }
+  // Before the other functions, of which one may be missing.
+  const auto destroy = reinterpret_cast<PFN_vkDestroyInstance>(
+      loader.GetInstanceProcAddr(instance, "vkDestroyInstance"));
+  instance_ = {instance, [destroy](VkInstance handle) {
+                 if (destroy != nullptr) destroy(handle, nullptr);
                }};
+  functions_ = LoadInstance(loader, instance);
   if (on_message_) {
     const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
         loader.GetInstanceProcAddr(instance, "vkCreateDebugUtilsMessengerEXT"));
-    const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+    const auto destroy_messenger = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
         loader.GetInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT"));
     messenger.pNext = nullptr;
     VkDebugUtilsMessengerEXT handle = VK_NULL_HANDLE;
     ORB360_CHECK(create(instance, &messenger, nullptr, &handle) == VK_SUCCESS);
-    messenger_ = {handle, [instance, destroy](VkDebugUtilsMessengerEXT it) {
-                    destroy(instance, it, nullptr);
+    messenger_ = {handle, [instance, destroy_messenger](VkDebugUtilsMessengerEXT it) {
+                    destroy_messenger(instance, it, nullptr);
                   }};
   }
   std::uint32_t count = 0;

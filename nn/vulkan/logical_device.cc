@@ -1,5 +1,6 @@
 #include "nn/vulkan/logical_device.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -25,10 +26,11 @@ std::string Reason(VkResult result) {
 }  // namespace
 
 LogicalDevice::LogicalDevice(std::shared_ptr<const Instance> instance, int index,
-                             const Replace& replace)
+                             const Replace& replace, std::uint64_t max_buffer_bytes)
     : instance_(std::move(instance)),
       description_(Describe(*instance_, index)),
       name_("vulkan:" + std::to_string(index) + " (" + description_.name + ")") {
+  description_.max_buffer_bytes = std::min(description_.max_buffer_bytes, max_buffer_bytes);
   if (!description_.problem.empty()) {
     throw UserError(name_ + " cannot run networks: " + description_.problem);
   }
@@ -52,8 +54,13 @@ LogicalDevice::LogicalDevice(std::shared_ptr<const Instance> instance, int index
   VkDevice device = VK_NULL_HANDLE;
   const VkResult result = instance_->functions().CreateDevice(physical, &info, nullptr, &device);
   if (result != VK_SUCCESS) throw UserError(name_ + " cannot be opened: " + Reason(result));
+  // Before the other functions, of which one may be missing.
+  const auto destroy = reinterpret_cast<PFN_vkDestroyDevice>(
+      instance_->functions().GetDeviceProcAddr(device, "vkDestroyDevice"));
+  device_ = {device, [destroy](VkDevice it) {
+               if (destroy != nullptr) destroy(it, nullptr);
+             }};
   functions_ = LoadDevice(instance_->functions(), device);
-  device_ = {device, [destroy = functions_.DestroyDevice](VkDevice it) { destroy(it, nullptr); }};
   functions_.GetDeviceQueue(device, queue_family_, 0, &queue_);
   if (replace) replace(&functions_);
 }
@@ -75,7 +82,13 @@ void LogicalDevice::RunAndWait(VkCommandBuffer commands, VkFence fence) const {
   }
   // A driver that hangs is reset by the system, and the device is lost then.
   constexpr auto kForever = std::numeric_limits<std::uint64_t>::max();
-  Check(functions_.WaitForFences(handle(), 1, &fence, VK_TRUE, kForever), "run a network");
+  const VkResult result = functions_.WaitForFences(handle(), 1, &fence, VK_TRUE, kForever);
+  if (result != VK_SUCCESS && result != VK_ERROR_DEVICE_LOST) {
+    // The device may still work in memory that the caller frees because of the error.
+    const std::lock_guard lock(queue_mutex_);
+    functions_.DeviceWaitIdle(handle());
+  }
+  Check(result, "run a network");
 }
 
 }  // namespace orb360::nn::vulkan

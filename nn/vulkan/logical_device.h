@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -19,7 +20,9 @@ class LogicalDevice {
   using Replace = std::function<void(DeviceFunctions*)>;
 
   /// Throws UserError where networks cannot run on device `index` or it cannot be opened.
-  LogicalDevice(std::shared_ptr<const Instance> instance, int index, const Replace& replace = {});
+  /// `max_buffer_bytes` lowers what the device has, for tests of too large images.
+  LogicalDevice(std::shared_ptr<const Instance> instance, int index, const Replace& replace = {},
+                std::uint64_t max_buffer_bytes = std::numeric_limits<std::uint64_t>::max());
 
   const VulkanDevice& description() const { return description_; }
   /// "vulkan:N (NAME)".

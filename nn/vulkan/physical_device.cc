@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "nn/vulkan/tiles.h"
-
 namespace orb360::nn::vulkan {
 namespace {
 
@@ -76,17 +74,12 @@ bool HasFloat16(const Instance& instance, VkPhysicalDevice device) {
 /// Returns what networks lack on the device; empty if nothing.
 std::string ProblemOf(const Instance& instance, VkPhysicalDevice device,
                       const Properties& properties, const VulkanDevice& described) {
-  const VkPhysicalDeviceLimits& limits = properties.all.properties.limits;
   if (properties.all.properties.apiVersion < VK_API_VERSION_1_2) {
     return "it has Vulkan " + described.api_version + ", and 1.2 is needed";
   }
   if (!ComputeQueueFamily(instance, device)) return "it has no queue for computing";
   if (properties.controls.shaderSignedZeroInfNanPreserveFloat32 == VK_FALSE) {
     return "it does not keep NaN and infinity (shaderSignedZeroInfNanPreserveFloat32)";
-  }
-  if (limits.maxComputeWorkGroupInvocations < static_cast<std::uint32_t>(kMaxInvocations) ||
-      limits.maxComputeSharedMemorySize < static_cast<std::uint32_t>(kMaxSharedBytes)) {
-    return "its workgroups are too small";
   }
   return "";
 }

@@ -30,8 +30,10 @@ void CopyRows(const float* from, std::size_t from_row, float* to, std::size_t to
 }
 
 struct VulkanMemory : ProgramMemory {
-  explicit VulkanMemory(const LogicalDevice& device) : commands(device) {}
+  VulkanMemory(const Program* program, std::shared_ptr<const LogicalDevice> of)
+      : ProgramMemory(program), device(std::move(of)), commands(*device) {}
 
+  std::shared_ptr<const LogicalDevice> device;  // declared first: destroyed after what is its
   Buffer upload;
   Buffer arena;
   Buffer download;
@@ -158,7 +160,7 @@ void VulkanProgram::Upload(std::span<const float> constants) {
 }
 
 std::unique_ptr<ProgramMemory> VulkanProgram::Allocate() const {
-  auto memory = std::make_unique<VulkanMemory>(*device_);
+  auto memory = std::make_unique<VulkanMemory>(this, device_);
   std::size_t upload = 0;
   std::size_t download = 0;
   for (const int input : lowered_.inputs) upload += BytesOf(PlaceOf(input));
@@ -215,20 +217,21 @@ void VulkanProgram::Record(VkDescriptorSet set, Commands* commands) const {
 
 void VulkanProgram::Run(std::span<const std::span<const float>> inputs,
                         std::span<const std::span<float>> outputs, ProgramMemory* memory) const {
-  auto& [upload, arena, download, descriptors, commands] = static_cast<VulkanMemory&>(*memory);
-  std::byte* to = upload.data();
+  ORB360_CHECK(memory->IsOf(this), "a workspace of another executor");
+  const auto& vulkan = static_cast<const VulkanMemory&>(*memory);
+  std::byte* to = vulkan.upload.data();
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const Place place = PlaceOf(lowered_.inputs[i]);
     CopyRows(inputs[i].data(), Index(place.shape.width), reinterpret_cast<float*>(to), place.row,
              place.shape);
     to += BytesOf(place);
   }
-  commands.RunAndWait();
-  download.Invalidate(*device_);
-  const std::byte* from = download.data();
+  vulkan.commands.RunAndWait();
+  vulkan.download.Invalidate(*device_);
+  const std::byte* from = vulkan.download.data();
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const Place place = PlaceOf(lowered_.outputs[i]);
-    if (keeps_values_) from = download.data() + place.offset * sizeof(float);
+    if (keeps_values_) from = vulkan.download.data() + place.offset * sizeof(float);
     CopyRows(reinterpret_cast<const float*>(from), place.row, outputs[i].data(),
              Index(place.shape.width), place.shape);
     from += BytesOf(place);
@@ -237,6 +240,7 @@ void VulkanProgram::Run(std::span<const std::span<const float>> inputs,
 
 TensorView VulkanProgram::Find(const ProgramMemory& memory, int value) const {
   ORB360_CHECK(keeps_values_);
+  ORB360_CHECK(memory.IsOf(this), "a workspace of another executor");
   const auto& vulkan = static_cast<const VulkanMemory&>(memory);
   return ViewOf(assignment_.buffers[Index(value)],
                 lowered_.values[Index(value)].format.shape.channels, vulkan.download.data());

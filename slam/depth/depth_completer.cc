@@ -42,16 +42,22 @@ struct DepthCompleter::Network {
     try {
       prepared = std::make_unique<Prepared>(graph, options);
     } catch (const nn::DeviceError& error) {
-      GoOnWithCpu(error);
+      LeaveDevice(error);
+      PrepareCpu();
     }
     if (options.device.backend == nullptr) graph = {};
   }
 
-  void GoOnWithCpu(const nn::DeviceError& error) {
-    failure = std::string(error.what()) + "; the network runs on the CPU instead";
+  void LeaveDevice(const nn::DeviceError& error) {
+    device_error = error.what();
     options.device = {};
     prepared.reset();
+  }
+
+  /// May throw and be called again, for the memory that is missing now may be there later.
+  void PrepareCpu() {
     prepared = std::make_unique<Prepared>(graph, options);
+    failure = device_error + "; the network runs on the CPU instead";
     graph = {};
   }
 
@@ -60,15 +66,17 @@ struct DepthCompleter::Network {
       try {
         return prepared->model.Complete(input, &prepared->workspace);
       } catch (const nn::DeviceError& error) {
-        GoOnWithCpu(error);
+        LeaveDevice(error);
       }
     }
+    if (prepared == nullptr) PrepareCpu();
     return prepared->model.Complete(input, &prepared->workspace);
   }
 
   nn::Graph graph;  ///< Kept as long as the CPU may have to go on.
   DepthCompleterOptions options;
-  std::unique_ptr<Prepared> prepared;
+  std::unique_ptr<Prepared> prepared;  ///< Null where the CPU has not taken over yet.
+  std::string device_error;
   std::string failure;
 };
 

@@ -3,6 +3,7 @@
 // Takes x and c from the pixel of each 2 x 2 square with the largest c, the first one in row-major
 // order among equals, and applies the rule to c.
 #include "common.glsl"
+#include "math.glsl"
 
 layout(constant_id = 2) const int IS_QUARTER = 1;  // c / 4, otherwise sqrt(c)
 
@@ -14,6 +15,9 @@ layout(push_constant) uniform Parameters {
   int height;  // of y
   int width;
 };
+
+// The root of a negative number is undefined in shaders, and NaN on the CPU.
+float Root(float x) { return x < 0.0 ? Nan() : sqrt(x); }
 
 void main() {
   ivec3 at = ivec3(gl_GlobalInvocationID);
@@ -30,5 +34,5 @@ void main() {
     }
   }
   arena[At(y, at.z, at.y, at.x)] = value;
-  arena[At(y_confidence, at.z, at.y, at.x)] = IS_QUARTER != 0 ? 0.25 * best : sqrt(best);
+  arena[At(y_confidence, at.z, at.y, at.x)] = IS_QUARTER != 0 ? 0.25 * best : Root(best);
 }

@@ -16,6 +16,6 @@ ivec2 Source(int y, int x, int height, int width) {
       x += width / 2;
     }
   }
-  x %= width;
-  return ivec2(y, x < 0 ? x + width : x);
+  // The remainder of a negative number is undefined. The largest kernel, 15, reaches 7 pixels.
+  return ivec2(y, (x + 8 * width) % width);
 }

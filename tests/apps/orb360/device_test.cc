@@ -19,9 +19,12 @@ namespace orb360 {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
+
+constexpr const char* kNoDevice = "there is no Vulkan device here";
 
 /// Variables of the environment of programs that are started in its lifetime.
 class Environment {
@@ -56,12 +59,13 @@ class DeviceTest : public RunTest {
     return nlohmann::json::parse(result.out);
   }
 
-  /// Skips the test where no Vulkan device can run networks.
+  /// Whether there is any Vulkan device. One that does not work is a failure of the test.
   bool HasVulkan() const {
     const nlohmann::json found = Devices();
-    for (const nlohmann::json& device : found["devices"]) {
-      if (device["device"] != "cpu" && device["problem"] == "") return true;
-    }
+    if (found["devices"].size() > 1) return true;
+    EXPECT_THAT(found["problem"].get<std::string>(),
+                AnyOf(HasSubstr("No such file"), HasSubstr("there is no Vulkan driver"),
+                      HasSubstr("there is no Vulkan device"), HasSubstr("built without Vulkan")));
     return false;
   }
 
@@ -85,6 +89,12 @@ class DeviceTest : public RunTest {
 std::map<std::string, std::string> FailingDriver(int submissions) {
   return {{"LD_LIBRARY_PATH", ORB360_BINARY_DIR "/tests/apps/orb360/failing_vulkan"},
           {"ORB360_TEST_SUBMISSIONS", std::to_string(submissions)}};
+}
+
+/// A driver that cannot prepare a device for networks.
+std::map<std::string, std::string> DriverWithoutPipelines() {
+  return {{"LD_LIBRARY_PATH", ORB360_BINARY_DIR "/tests/apps/orb360/failing_vulkan"},
+          {"ORB360_TEST_NO_PIPELINES", "1"}};
 }
 
 /// No driver at all.
@@ -121,7 +131,7 @@ TEST_F(DeviceTest, UnknownDevicesAreRefusedBeforeAnyWork) {
 }
 
 TEST_F(DeviceTest, CompletesOnADeviceAsOnTheCpu) {
-  if (!HasVulkan()) GTEST_SKIP() << "no Vulkan device can run networks here";
+  if (!HasVulkan()) GTEST_SKIP() << kNoDevice;
   const ProgramResult cpu = Complete("cpu", "cpu.png");
   const ProgramResult vulkan = Complete("vulkan", "vulkan.png");
   ASSERT_EQ(cpu.status, 0) << cpu.err;
@@ -134,8 +144,27 @@ TEST_F(DeviceTest, CompletesOnADeviceAsOnTheCpu) {
   EXPECT_LE(cv::norm(expected, actual, cv::NORM_INF), 1.0 / 256);  // the unit of the file
 }
 
+TEST_F(DeviceTest, ADeviceThatCannotBeOpenedIsToldInOneLine) {
+  if (!HasVulkan()) GTEST_SKIP() << kNoDevice;
+  const Environment environment(DriverWithoutPipelines());
+  const ProgramResult vulkan = Complete("vulkan", "vulkan.png");
+  EXPECT_EQ(vulkan.status, 1);
+  EXPECT_THAT(vulkan.err, AllOf(IsOneLine(), HasSubstr("--device vulkan: networks cannot run on"),
+                                HasSubstr("could not prepare a shader")));
+  const ProgramResult automatic = Complete("auto", "auto.png");
+  EXPECT_EQ(automatic.status, 0) << automatic.err;
+  EXPECT_EQ(nlohmann::json::parse(automatic.out)[0]["device"], "cpu");
+  const nlohmann::json found = Devices()["devices"];
+  ASSERT_GT(found.size(), 1u);
+  EXPECT_GT(found[0]["milliseconds"], 0.0);
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    EXPECT_TRUE(found[i]["milliseconds"].is_null());
+    EXPECT_THAT(found[i]["problem"].get<std::string>(), HasSubstr("could not prepare a shader"));
+  }
+}
+
 TEST_F(DeviceTest, ARunStatesItsDevice) {
-  if (!HasVulkan()) GTEST_SKIP() << "no Vulkan device can run networks here";
+  if (!HasVulkan()) GTEST_SKIP() << kNoDevice;
   WriteRoom();
   const ProgramResult result = RunOn("vulkan");
   ASSERT_EQ(result.status, 0) << result.err;
@@ -145,7 +174,7 @@ TEST_F(DeviceTest, ARunStatesItsDevice) {
 }
 
 TEST_F(DeviceTest, ARunWhoseDeviceIsLostGoesOnWithTheCpuAndWarnsOnce) {
-  if (!HasVulkan()) GTEST_SKIP() << "no Vulkan device can run networks here";
+  if (!HasVulkan()) GTEST_SKIP() << kNoDevice;
   WriteRoom();
   ASSERT_EQ(RunOn("cpu").status, 0);
   const nlohmann::json expected = Summary();

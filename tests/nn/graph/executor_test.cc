@@ -207,5 +207,15 @@ TEST(Executor, ChecksTheSizesOfWhatItIsGiven) {
   EXPECT_THROW(run(executor, &workspace), ContractError);
 }
 
+TEST(Executor, RefusesAWorkspaceOfAnotherExecutor) {
+  const Graph graph = RandomNetwork(10, 1).Build();
+  const Executor executor(graph, 8, 16);
+  const Executor other(graph, 16, 16);  // with as many steps
+  Executor::Workspace workspace(other);
+  EXPECT_THROW(NetworkRun(executor, RandomInputs(8, 16, 1))(executor, &workspace), ContractError);
+  Executor::Workspace own(executor);
+  EXPECT_NO_THROW(NetworkRun(executor, RandomInputs(8, 16, 1))(executor, &own));
+}
+
 }  // namespace
 }  // namespace orb360::nn

@@ -71,6 +71,52 @@ TEST(ChooseDevice, UsesHalvesWhereTheDeviceCan) {
   EXPECT_FALSE(ChooseHalves("vulkan", &device, false));
 }
 
+/// Opens devices of a machine whose first `broken` devices cannot be opened, in turn for either
+/// reason.
+OpenByIndex OpenAllBut(int broken) {
+  return [broken](int index, bool) -> Device {
+    if (index >= broken) return {"device " + std::to_string(index), nullptr};
+    if (index % 2 == 0) throw DeviceError("it has no shaders");
+    throw UserError("it is in use");
+  };
+}
+
+TEST(OpenChosen, AutoGoesOnToTheNextGpuAndThenToTheCpu) {
+  const VulkanDevices found = Machine({kDiscrete, kIntegrated, kVirtual, kCpu});
+  EXPECT_EQ(OpenChosen("auto", found, false, OpenAllBut(0)).name, "device 0");
+  EXPECT_EQ(OpenChosen("auto", found, false, OpenAllBut(1)).name, "device 1");
+  EXPECT_EQ(OpenChosen("auto", found, false, OpenAllBut(2)).name, "device 2");
+  EXPECT_EQ(OpenChosen("auto", found, false, OpenAllBut(3)).name, "cpu");
+  EXPECT_EQ(OpenChosen("vulkan", found, false, OpenAllBut(3)).name, "device 3");
+}
+
+TEST(OpenChosen, ANamedDeviceThatCannotBeOpenedIsAUserError) {
+  const VulkanDevices found = Machine({kDiscrete, kIntegrated});
+  const auto error_of = [&](const std::string& name) -> std::string {
+    try {
+      OpenChosen(name, found, false, OpenAllBut(2));
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(error_of("vulkan:0"),
+            "--device vulkan:0: networks cannot run on discrete GPU: it has no shaders");
+  EXPECT_THAT(error_of("vulkan:1"), testing::HasSubstr("it is in use"));
+  EXPECT_THAT(error_of("vulkan"), testing::AllOf(testing::HasSubstr("it has no shaders"),
+                                                 testing::HasSubstr("it is in use")));
+}
+
+TEST(OpenChosen, TheHalvesOfAnotherGpuAreItsOwn) {
+  VulkanDevices found = Machine({kDiscrete, kIntegrated});
+  found.devices[0].has_float16 = true;
+  const auto open = [](int index, bool stores_halves) -> Device {
+    if (index == 0) throw DeviceError("it was lost");
+    return {stores_halves ? "halves" : "floats", nullptr};
+  };
+  EXPECT_EQ(OpenChosen("auto", found, true, open).name, "floats");
+}
+
 TEST(ChooseDevice, RefusesOtherNames) {
   for (const char* name : {"", "gpu", "vulkan:", "vulkan:-1", "vulkan:1x", "vulkan:99999", "CPU"}) {
     EXPECT_THAT(ErrorOf(name, Machine({kDiscrete})),

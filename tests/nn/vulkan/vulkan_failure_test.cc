@@ -32,6 +32,19 @@ VKAPI_ATTR VkResult VKAPI_CALL SubmitAFewTimes(VkQueue queue, std::uint32_t coun
   return submit(queue, count, infos, fence);
 }
 
+VkResult result_of_wait = VK_SUCCESS;
+VKAPI_ATTR VkResult VKAPI_CALL FailToWait(VkDevice, std::uint32_t, const VkFence*, VkBool32,
+                                          std::uint64_t) {
+  return result_of_wait;
+}
+
+PFN_vkDeviceWaitIdle wait_idle = nullptr;
+int waits_until_idle = 0;
+VKAPI_ATTR VkResult VKAPI_CALL CountWaitIdle(VkDevice device) {
+  ++waits_until_idle;
+  return wait_idle(device);
+}
+
 std::string MessageOf(const Graph& graph, const Device& device) {
   try {
     RunOnce(Executor(graph, 8, 16, {.device = device}), RandomInputs(8, 16, 1));
@@ -67,6 +80,48 @@ TEST_F(VulkanFailure, ADeviceMayBeLostInTheMidstOfRuns) {
   run(executor, &workspace);
   run(executor, &workspace);
   EXPECT_THROW(run(executor, &workspace), DeviceError);
+}
+
+TEST_F(VulkanFailure, ImagesTooLargeForOneBufferAreRefused) {
+  const Graph graph = RandomNetwork(10, 1).Build();
+  const std::vector<PlainImage> inputs = RandomInputs(256, 512, 1);
+  const Executor whole(graph, 256, 512, options());
+  const std::uint64_t bytes = whole.planned_bytes();
+  EXPECT_EQ(RunOnce(Executor(graph, 256, 512, {.device = OpenWith(bytes)}), inputs),
+            RunOnce(whole, inputs));
+  try {
+    const Executor executor(graph, 256, 512, {.device = OpenWith(bytes - 1)});
+    ADD_FAILURE() << "it should be refused";
+  } catch (const DeviceError& error) {
+    EXPECT_EQ(error.what(), device_.name + " could not prepare a network: it needs " +
+                                std::to_string(bytes >> 20) +
+                                " MiB in one buffer, and the device has up to " +
+                                std::to_string((bytes - 1) >> 20) + " MiB");
+  }
+}
+
+TEST_F(VulkanFailure, WeightsTooLargeForOneBufferAreRefused) {
+  NetworkBuilder net(1);
+  net.Input("x", 70);
+  net.Convolution("y", "x", 70, 70, 3);
+  net.Output("y", "y");
+  const Graph graph = net.Build();
+  const std::uint64_t weights = sizeof(float) * 70 * 70 * 9;  // a few are added to fill up vectors
+  Executor(graph, 1, 1, {.device = OpenWith(2 * weights)});
+  EXPECT_THROW(Executor(graph, 1, 1, {.device = OpenWith(weights)}), DeviceError);
+}
+
+TEST_F(VulkanFailure, MemoryIsNotFreedWhileTheDeviceWorksInIt) {
+  const Device device = OpenWith([](vulkan::DeviceFunctions* f) {
+    f->WaitForFences = FailToWait;
+    wait_idle = f->DeviceWaitIdle;
+    f->DeviceWaitIdle = CountWaitIdle;
+  });
+  const Graph graph = RandomNetwork(10, 1).Build();
+  waits_until_idle = 0;
+  result_of_wait = VK_ERROR_OUT_OF_HOST_MEMORY;
+  EXPECT_THAT(MessageOf(graph, device), testing::HasSubstr("the driver has too little memory"));
+  EXPECT_EQ(waits_until_idle, 1);
 }
 
 }  // namespace

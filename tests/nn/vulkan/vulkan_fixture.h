@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -13,8 +15,8 @@
 namespace orb360::nn {
 
 /// Tests on a Vulkan device with the validation layer, which must have nothing to say. They use the
-/// device of the environment variable ORB360_TEST_DEVICE, or else what `--device vulkan` chooses,
-/// and are skipped where there is none.
+/// device of the environment variable ORB360_TEST_DEVICE, or else what `--device vulkan` chooses.
+/// They are skipped only where there is no device at all; one that does not work is a failure.
 class VulkanTest : public ::testing::Test {
  protected:
   void SetUp() override;
@@ -22,6 +24,8 @@ class VulkanTest : public ::testing::Test {
 
   /// Opens the device again, with functions replaced.
   Device OpenWith(const vulkan::LogicalDevice::Replace& replace);
+  /// Opens the device again, as one whose buffers have at most that size.
+  Device OpenWith(std::uint64_t max_buffer_bytes);
   /// Opens the device again.
   Device OpenWith(const vulkan::VulkanBackendOptions& how);
 
@@ -33,6 +37,7 @@ class VulkanTest : public ::testing::Test {
   int index_ = 0;
 
  private:
+  std::mutex mutex_;  // of messages_: any thread may have one
   std::vector<std::string> messages_;
 };
 

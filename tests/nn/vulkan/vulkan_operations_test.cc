@@ -86,6 +86,28 @@ TEST_F(VulkanOperations, ChangeTheSizeOfImagesOfAnySize) {
   }
 }
 
+TEST_F(VulkanOperations, GiveTheMeanOfALargeImage) {
+  NetworkBuilder net(1);
+  net.Input("x", 6);
+  net.Output(net.Node("mean", "global_average_pool", {"x"}), "mean");
+  constexpr std::size_t kPixels = 512 * 1024;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  PlainImage x({6, 512, 1024});
+  const double constants[] = {0.1f, -3.3f, 1, 1, 1, 1};
+  for (std::size_t i = 0; i < x.values.size(); ++i) x.values[i] = constants[i / kPixels];
+  x.values[3 * kPixels + 1000] = kInfinity;
+  x.values[4 * kPixels + 1000] = std::numeric_limits<double>::quiet_NaN();
+  x.values[5 * kPixels + 1000] = kInfinity;
+  x.values[5 * kPixels + 3000] = -kInfinity;
+  const auto mean = RunOnce(Executor(net.Build(), 512, 1024, options()), {x})[0];
+  for (std::size_t c = 0; c < 3; ++c) {
+    // Half a unit of 2^-24 for each of some operations, as if there were few pixels.
+    EXPECT_NEAR(mean[c] / constants[c], 1, 10 * 0x1p-24) << c;
+  }
+  EXPECT_EQ(mean[3], kInfinity);
+  EXPECT_TRUE(std::isnan(mean[4]) && std::isnan(mean[5])) << mean[4] << ' ' << mean[5];
+}
+
 TEST_F(VulkanOperations, FindTheMedianOfAnyNumberOfPoints) {
   NetworkBuilder net(1);
   net.Input("depth", 1);

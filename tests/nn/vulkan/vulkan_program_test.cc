@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -106,6 +107,33 @@ TEST_F(VulkanProgramTest, TensorsShareMemory) {
   EXPECT_LT(executor.planned_bytes(), executor.naive_bytes() / 2);
   // In planes there is less to fill up than in blocks, and no halo.
   EXPECT_LT(executor.planned_bytes(), 2 * Executor(graph, 128, 256).planned_bytes());
+}
+
+TEST_F(VulkanProgramTest, AWorkspaceMayOutliveItsExecutorAndItsDevice) {
+  const Graph graph = RandomNetwork(20, 5).Build();
+  std::optional<Executor::Workspace> workspace;
+  {
+    const Executor executor(graph, 8, 16, {.device = OpenWith(vulkan::LogicalDevice::Replace())});
+    workspace.emplace(executor);
+    NetworkRun run(executor, RandomInputs(8, 16, 1));
+    run(executor, &*workspace);
+  }
+  // What belongs to a device that is closed already, the validation layer reports.
+  workspace.reset();
+}
+
+TEST_F(VulkanProgramTest, RefusesAWorkspaceOfAnotherExecutor) {
+  const Graph graph = RandomNetwork(20, 5).Build();
+  const Executor here(graph, 8, 16, options());
+  const Executor larger(graph, 16, 32, options());
+  const Executor cpu(graph, 8, 16);
+  const std::vector<PlainImage> inputs = RandomInputs(8, 16, 1);
+  for (const Executor* other : {&larger, &cpu}) {
+    Executor::Workspace workspace(*other);
+    EXPECT_THROW(NetworkRun(here, inputs)(here, &workspace), ContractError);
+  }
+  Executor::Workspace workspace(here);
+  EXPECT_THROW(NetworkRun(cpu, inputs)(cpu, &workspace), ContractError);
 }
 
 TEST_F(VulkanProgramTest, AnInputMayBeAnOutput) {

@@ -1,4 +1,8 @@
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
 #include <memory>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -9,6 +13,24 @@
 #include "tests/slam/pipeline/propagation_network.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/slam/depth/depth_completer.h>
+
+namespace {
+
+/// Whether the aligned memory in which networks work is used up.
+std::atomic<bool> aligned_memory_is_full = false;
+
+}  // namespace
+
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  const auto multiple = static_cast<std::size_t>(alignment);
+  void* const memory = aligned_memory_is_full
+                           ? nullptr
+                           : std::aligned_alloc(multiple, (bytes / multiple + 1) * multiple);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 
 namespace orb360 {
 namespace {
@@ -21,6 +43,7 @@ struct Failure {
   bool at_preparation = false;
   bool at_allocation = false;
   int after_runs = 1000;
+  bool takes_memory = false;  // when it fails in a run
 };
 
 /// The CPU's program until the device fails.
@@ -35,7 +58,10 @@ class FailingProgram : public nn::Program {
   }
   void Run(std::span<const std::span<const float>> inputs,
            std::span<const std::span<float>> outputs, nn::ProgramMemory* memory) const override {
-    if (runs_left_-- == 0) throw nn::DeviceError("it was lost");
+    if (runs_left_-- == 0) {
+      aligned_memory_is_full = failure_.takes_memory;
+      throw nn::DeviceError("it was lost");
+    }
     program_->Run(inputs, outputs, memory);
   }
   nn::TensorView Find(const nn::ProgramMemory& memory, int value) const override {
@@ -114,6 +140,18 @@ TEST_F(DepthCompleterTest, GoesOnWithTheCpuWhereADeviceIsLost) {
   Complete(&completer, 9);
   EXPECT_EQ(completer.device(), "test device");
   WritePropagation(folder_);  // for the CPU that is compared
+  for (const int x : {20, 30}) ExpectSameAsCpu(&completer, x);
+  EXPECT_EQ(completer.device(), "cpu");
+  EXPECT_EQ(completer.device_failure(), "it was lost; the network runs on the CPU instead");
+}
+
+TEST_F(DepthCompleterTest, WhereTheCpuHasTooLittleMemoryToGoOnTheNextImageTriesAgain) {
+  DepthCompleter completer = MakeFailing({.after_runs = 1, .takes_memory = true});
+  Complete(&completer, 5);
+  EXPECT_ANY_THROW(Complete(&completer, 9));
+  EXPECT_ANY_THROW(Complete(&completer, 9));
+  EXPECT_THAT(completer.device_failure(), IsEmpty());
+  aligned_memory_is_full = false;
   for (const int x : {20, 30}) ExpectSameAsCpu(&completer, x);
   EXPECT_EQ(completer.device(), "cpu");
   EXPECT_EQ(completer.device_failure(), "it was lost; the network runs on the CPU instead");

@@ -40,7 +40,7 @@ class Executor {
   class Workspace {
    public:
     /// Allocates the memory. Throws UserError where there is too little, and DeviceError where a
-    /// device has too little.
+    /// device has too little or fails. A workspace may outlive its executor.
     explicit Workspace(const Executor& executor);
     ~Workspace();
     /// Moves the memory.
@@ -60,7 +60,7 @@ class Executor {
   };
 
   /// Prepares the graph for images of `height` x `width` pixels. Throws UserError for an image size
-  /// that the graph does not accept.
+  /// that the graph does not accept, and DeviceError where a device has too little memory or fails.
   Executor(const Graph& graph, int height, int width, const ExecutorOptions& options = {});
 
   /// Returns the inputs in the order in which Run takes them.
@@ -69,8 +69,9 @@ class Executor {
   const std::vector<Port>& outputs() const { return outputs_; }
 
   /// Computes `outputs` from `inputs`, which have the order and sizes of inputs() and outputs().
-  /// Nothing is allocated. Throws ContractError for another number of arrays or another size of
-  /// one. The bits are the same for any number of threads.
+  /// Nothing is allocated. Throws ContractError for another number of arrays, another size of one
+  /// or a workspace of another executor, and DeviceError where a device fails; the contents of
+  /// `outputs` are undefined then. The bits are the same for any number of threads.
   void Run(std::span<const std::span<const float>> inputs,
            std::span<const std::span<float>> outputs, Workspace* workspace) const;
 

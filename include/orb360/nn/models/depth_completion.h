@@ -45,7 +45,8 @@ class DepthCompletion {
   /// Memory of one completion. A workspace serves one completion at a time.
   class Workspace {
    public:
-    /// Allocates the memory. Throws UserError where there is too little.
+    /// Allocates the memory. Throws UserError where there is too little, and DeviceError where a
+    /// device has too little or fails.
     explicit Workspace(const DepthCompletion& model);
 
    private:
@@ -55,8 +56,9 @@ class DepthCompletion {
     std::vector<std::vector<float>> outputs_;
   };
 
-  /// Throws UserError for a network that is not for depth completion. Images are resampled to the
-  /// width that the network's normalisation states, if any, and to the nearest size that it takes.
+  /// Throws UserError for a network that is not for depth completion, and DeviceError where a
+  /// device has too little memory or fails. Images are resampled to the width that the network's
+  /// normalisation states, if any, and to the nearest size that it takes.
   DepthCompletion(const Graph& graph, ImageSize size, const ExecutorOptions& options = {});
 
   /// Returns the size of the images that are completed.
@@ -65,7 +67,8 @@ class DepthCompletion {
   ImageSize network_size() const { return network_size_; }
 
   /// Completes the depth of one panorama. Throws ContractError where an array of `image` has not
-  /// the size of this model. `workspace` is one of this model.
+  /// the size of this model or `workspace` is one of another model, and DeviceError where a device
+  /// fails.
   CompletionOutput Complete(const CompletionInput& image, Workspace* workspace) const;
 
  private:

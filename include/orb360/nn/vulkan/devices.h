@@ -49,8 +49,9 @@ VulkanDevices ListVulkanDevices();
 
 /// Opens a processor for networks (ExecutorOptions::device) by name: "cpu"; "auto", the first GPU
 /// on which networks can run, never a driver that computes on the CPU, or else the CPU; "vulkan",
-/// the first GPU or else the first device; "vulkan:N", the device of that index. Throws UserError,
-/// which says what was found, where there is no such device or networks cannot run on it.
+/// the first GPU or else the first device; "vulkan:N", the device of that index. A device that its
+/// driver cannot open is passed over as one on which networks cannot run. Throws UserError, which
+/// says what was found, where there is no such device or networks cannot run on it.
 ///
 /// With `uses_halves` the device keeps the results of most convolutions as 16-bit floats, which
 /// halves the traffic of its memory and is less exact; sums still have 32 bits. Throws UserError

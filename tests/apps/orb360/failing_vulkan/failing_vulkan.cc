@@ -1,5 +1,6 @@
 // A library in the place of libvulkan.so.1 whose device is lost: it passes everything on to the
-// true one, but only the first ORB360_TEST_SUBMISSIONS submissions to a queue.
+// true one, but only the first ORB360_TEST_SUBMISSIONS submissions to a queue, and with
+// ORB360_TEST_NO_PIPELINES no layout of pipelines.
 
 #include <cstdlib>
 #include <string_view>
@@ -22,8 +23,17 @@ VKAPI_ATTR VkResult VKAPI_CALL Submit(VkQueue queue, std::uint32_t count, const 
   return true_submit(queue, count, infos, fence);
 }
 
+VKAPI_ATTR VkResult VKAPI_CALL HaveNoMemory(VkDevice, const VkPipelineLayoutCreateInfo*,
+                                            const VkAllocationCallbacks*, VkPipelineLayout*) {
+  return VK_ERROR_OUT_OF_HOST_MEMORY;
+}
+
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL DeviceFunction(VkDevice device, const char* name) {
   const PFN_vkVoidFunction found = true_device_function(device, name);
+  if (std::string_view(name) == "vkCreatePipelineLayout" &&
+      std::getenv("ORB360_TEST_NO_PIPELINES") != nullptr) {
+    return reinterpret_cast<PFN_vkVoidFunction>(HaveNoMemory);
+  }
   if (std::string_view(name) != "vkQueueSubmit") return found;
   true_submit = reinterpret_cast<PFN_vkQueueSubmit>(found);
   return reinterpret_cast<PFN_vkVoidFunction>(Submit);
