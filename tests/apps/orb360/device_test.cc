@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
@@ -161,6 +162,18 @@ TEST_F(DeviceTest, ADeviceThatCannotBeOpenedIsToldInOneLine) {
     EXPECT_TRUE(found[i]["milliseconds"].is_null());
     EXPECT_THAT(found[i]["problem"].get<std::string>(), HasSubstr("could not prepare a shader"));
   }
+}
+
+TEST_F(DeviceTest, ALoaderThatCannotBeOpenedIsNotCalledMissing) {
+  if (!HasVulkan()) GTEST_SKIP() << kNoDevice;
+  std::ofstream(folder_ / "libvulkan.so.1") << std::string(1000, 'x');  // no library
+  const std::map<std::string, std::string> variables = {
+      {"LD_LIBRARY_PATH", (folder_ / ".").string()}};
+  const Environment environment(variables);
+  const ProgramResult vulkan = Complete("vulkan", "vulkan.png");
+  EXPECT_EQ(vulkan.status, 1);
+  EXPECT_THAT(vulkan.err, AllOf(IsOneLine(), HasSubstr("libvulkan.so.1: invalid ELF header"),
+                                HasSubstr("--device cpu")));
 }
 
 TEST_F(DeviceTest, ARunStatesItsDevice) {
