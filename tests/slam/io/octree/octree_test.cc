@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <random>
 #include <set>
@@ -124,11 +125,27 @@ TEST_F(OctreeTest, NamesTheChildrenOfEachNode) {
   EXPECT_EQ(named, keys.size());
 }
 
+TEST_F(OctreeTest, LeavesNothingBehindWhenItIsEnded) {
+  Write(200000);
+  std::filesystem::remove(folder_ / "a.octree");
+  struct Ended {};
+  for (const int num_calls : {1, 5, 8}) {  // while points are measured, sorted, merged
+    int left = num_calls;
+    const auto check = [&left] {
+      if (--left == 0) throw Ended();
+    };
+    EXPECT_THROW(WriteOctree(folder_ / "a.octree", folder_ / "cloud.ply", {100000, check}), Ended);
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "")) {
+    EXPECT_EQ(entry.path().filename(), "cloud.ply");
+  }
+}
+
 TEST_F(OctreeTest, HasTheSameBytesForAnyAmountOfMemory) {
   Write(60000);
   const std::string bytes = ReadText(folder_ / "a.octree");
   for (const size_t max_in_memory : {60001, 60000, 12345, 1000}) {
-    WriteOctree(folder_ / "b.octree", folder_ / "cloud.ply", {max_in_memory});
+    WriteOctree(folder_ / "b.octree", folder_ / "cloud.ply", {max_in_memory, nullptr});
     EXPECT_EQ(ReadText(folder_ / "b.octree"), bytes);
   }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "b.octree.sort"));
