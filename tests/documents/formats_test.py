@@ -66,7 +66,7 @@ class Formats(unittest.TestCase):
             gpx = Path(name) / "track.gpx"
             gpx.write_text("<gpx><trk><trkseg>" + "".join(
                 f'<trkpt lat="47" lon="{8 + 1e-4 * i}"><time>2025-03-14T07:00:0{i}Z</time></trkpt>'
-                for i in range(5)) + "</trkseg></trk></gpx>")
+                for i in range(8)) + "</trkseg></trk></gpx>")
             town, result = Path(name) / "town", Path(name) / "run"
             run(BUILD / "town", "render", "--town", 7, "--frames", 40, "--width", 512,
                 "--depth-every", 10, "--out", town)
