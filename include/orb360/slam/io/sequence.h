@@ -28,7 +28,8 @@ struct SequenceOptions {
   /// Size to which every image is scaled; empty: not scaled. Must be near 2:1 (IsFullSphere).
   cv::Size resize;
   /// Calibration file or name of a preset, for a video or folder of images of two fisheye lenses
-  /// that are stitched while they are read. Empty: the input is equirectangular, or tells its projection.
+  /// that are stitched while they are read. Empty: the input is equirectangular, or tells its
+  /// projection.
   std::string lens;
 };
 
