@@ -9,7 +9,7 @@
 
 namespace orb360::town {
 
-/// How SuperTuxKart draws a surface, as far as a picture of it without effects needs it.
+/// How SuperTuxKart draws a surface, as far as an image of it without effects needs it.
 enum class KartSurface {
   kOpaque,  ///< the texture's alpha is a gloss or nothing
   kCutout,  ///< absent where the texture's alpha is below one half

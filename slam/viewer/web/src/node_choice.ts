@@ -61,7 +61,7 @@ class Queue {
 /**
  * Goes from the root to the nodes that are largest on the screen, until the budget of points is
  * used.
- * A node is shown only with its parent, so that what is missing makes the picture coarser, not
+ * A node is shown only with its parent, so that what is missing makes the view coarser, not
  * wrong.
  */
 export function chooseNodes(nodes: OctreeNode[], view: Viewpoint): Choice {
