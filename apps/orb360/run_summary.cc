@@ -125,6 +125,7 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
                         {"views", dense->cloud.fusion.views},
                         {"measured_views", record.depth.measured},
                         {"views_without_sources", record.depth.without_sources},
+                        {"views_with_moving_objects", record.depth.with_moving_objects},
                         {"unseen_views", record.depth.unseen},
                         {"voxel_size", dense->cloud.fusion.voxel_size},
                         {"seconds", record.fusion_seconds}};

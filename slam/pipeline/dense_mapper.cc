@@ -5,6 +5,7 @@
 #include <map>
 
 #include "slam/pipeline/dense_views.h"
+#include "slam/pipeline/moving_object_pass.h"
 #include "slam/pipeline/view_depth.h"
 #include <orb360/nn/base/check.h>
 
@@ -49,8 +50,14 @@ ViewDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished, std::s
                            .keeps_completed = options_.completion};
   if (!options_.stereo) options.baselines.clear();
   try {
-    return orb360::ComputeDepth(covisible.views(), neighbours_of, landmarks_of, options,
-                                images_.store(), &completer_, num_threads_, depth_maps_, callbacks);
+    ViewDepthReport report =
+        orb360::ComputeDepth(covisible.views(), neighbours_of, landmarks_of, options,
+                             images_.store(), &completer_, num_threads_, depth_maps_, callbacks);
+    if (finished.up) {
+      report.with_moving_objects = CorrectMovingObjects(
+          covisible.views(), neighbours_of, *finished.up, {}, depth_maps_, callbacks.progress);
+    }
+    return report;
   } catch (const UserError&) {
     images_.Clear();
     throw;

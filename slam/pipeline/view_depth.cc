@@ -6,6 +6,8 @@
 #include <map>
 #include <optional>
 
+#include "slam/pipeline/view_selection.h"
+
 namespace orb360 {
 namespace {
 
@@ -106,10 +108,6 @@ void TakeOver(const InverseRanges& seen, DenseDepth* depth) {
   }
 }
 
-double DistanceBetween(const DenseView& a, const DenseView& b) {
-  return (a.world_from_camera.translation - b.world_from_camera.translation).norm();
-}
-
 // Length of the path in each map.
 std::map<int, double> PathLengths(std::span<const DenseView> views) {
   std::map<int, double> lengths;
@@ -127,24 +125,9 @@ std::map<int, double> PathLengths(std::span<const DenseView> views) {
 std::vector<size_t> ChooseStereoSources(std::span<const DenseView> views, size_t reference,
                                         std::span<const size_t> neighbours, double median_range,
                                         const ViewDepthOptions& options) {
-  std::vector<size_t> chosen;
-  for (const double baseline : options.baselines) {
-    for (const bool is_after : {false, true}) {
-      std::optional<size_t> best;
-      double least = std::log(options.max_baseline_ratio);
-      for (const size_t i : neighbours) {
-        if ((i > reference) != is_after || std::ranges::find(chosen, i) != chosen.end()) continue;
-        const double distance = DistanceBetween(views[i], views[reference]);
-        if (!(distance > 0)) continue;
-        const double difference = std::abs(std::log(distance / (baseline * median_range)));
-        if (difference >= least) continue;
-        least = difference;
-        best = i;
-      }
-      if (best) chosen.push_back(*best);
-    }
-  }
-  return chosen;
+  std::vector<double> distances = options.baselines;
+  for (double& distance : distances) distance *= median_range;
+  return ChooseViewsByDistance(views, reference, neighbours, distances, options.max_baseline_ratio);
 }
 
 ViewDepthReport ComputeDepth(std::span<const DenseView> views, const NeighbourFinder& neighbours_of,

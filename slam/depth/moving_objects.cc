@@ -1,0 +1,194 @@
+#include "slam/depth/moving_objects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
+
+#include "nn/base/statistics.h"
+#include <orb360/nn/base/check.h>
+
+namespace orb360 {
+namespace {
+
+/// The plane of the ground: normal . p + height = 0, camera frame.
+struct Plane {
+  explicit Plane(const DenseGround& ground)
+      : normal(ground.up.cast<float>()), height(static_cast<float>(std::exp(ground.log_height))) {}
+
+  /// By how much a ray comes nearer to the plane for each unit of range.
+  float Fall(const Eigen::Vector3f& bearing) const { return -normal.dot(bearing); }
+
+  Eigen::Vector3f normal;
+  float height;
+};
+
+/// The range of a view in a direction, unit vector in its camera frame; 0 where unknown.
+float RangeAlong(const DepthView& view, const Eigen::Vector3f& direction) {
+  constexpr float kPi = std::numbers::pi_v<float>;
+  const float longitude = std::atan2(direction.y(), -direction.x());
+  const float latitude = std::asin(std::clamp(direction.z(), -1.0F, 1.0F));
+  const auto row = static_cast<int>((0.5F - latitude / kPi) * static_cast<float>(view.height()));
+  const auto column =
+      static_cast<int>((longitude / (2 * kPi) + 0.5F) * static_cast<float>(view.width()));
+  return view.range(std::clamp(row, 0, view.height() - 1), column % view.width());
+}
+
+/// What views see in the direction of places on the ground.
+struct Sightings {
+  int ground = 0;   ///< How often the ground.
+  int through = 0;  ///< How often something behind and below it.
+
+  void Look(const DepthView& view, const Rigid3& view_from_reference, const Eigen::Vector3f& place,
+            const Plane& plane, double tolerance) {
+    const Eigen::Vector3d seen = view_from_reference * Eigen::Vector3d(place.cast<double>());
+    const double distance = seen.norm();
+    const double range = RangeAlong(view, (seen / distance).cast<float>());
+    if (!(range > 0)) return;
+    const Eigen::Vector3d normal = view_from_reference.rotation * plane.normal.cast<double>();
+    const double below = (range / distance - 1) * -normal.dot(seen) / plane.height;
+    if (below > tolerance) {
+      ++through;
+    } else if (below > -tolerance) {
+      ++ground;
+    }
+  }
+};
+
+/// A column without any mark, if there is one.
+std::optional<int> EmptyColumn(const cv::Mat& marks) {
+  for (int column = 0; column < marks.cols; ++column) {
+    if (cv::countNonZero(marks.col(column)) == 0) return column;
+  }
+  return std::nullopt;
+}
+
+/// The columns from `first` on, and then those before it.
+cv::Mat Turned(const cv::Mat& image, int first) {
+  if (first == 0) return image;
+  cv::Mat turned;
+  cv::hconcat(image.colRange(first, image.cols), image.colRange(0, first), turned);
+  return turned;
+}
+
+/// A column of an object.
+struct ObjectColumn {
+  std::vector<int> rows;  ///< Those below the ground, downward.
+  double distance;        ///< Of the place where it touches the ground, horizontally.
+  float median_range;
+};
+
+/// The rows above the highest one of a column whose ranges are like its own, downward from there.
+int CountRowsAbove(const DepthView& view, int column, const ObjectColumn& object,
+                   const Plane& plane, double max_height) {
+  constexpr float kMaxRatio = 1.5F;  // of the ranges of one object
+  constexpr float kFarther = 1.1F;   // of a range that is not right yet
+  int count = 0;
+  for (int row = object.rows.front() - 1; row >= 0; --row, ++count) {
+    const float range = view.range(row, column);
+    const double fall = plane.Fall(view.BearingOf(row, column));
+    const double placed = object.distance / std::sqrt(1 - fall * fall);
+    if (plane.height - placed * fall > max_height * plane.height) break;
+    if (!(range > kFarther * placed)) break;
+    if (range > kMaxRatio * object.median_range || range * kMaxRatio < object.median_range) break;
+  }
+  return count;
+}
+
+}  // namespace
+
+cv::Mat FindBelowGround(const DepthView& view, const DenseGround& ground,
+                        const MovingObjectOptions& options) {
+  const Plane plane(ground);
+  const auto tolerance = static_cast<float>(options.tolerance) * plane.height;
+  const auto relative_tolerance = static_cast<float>(options.relative_tolerance);
+  const auto min_fall = static_cast<float>(1 / options.max_ground_range);
+  cv::Mat below = cv::Mat::zeros(view.height(), view.width(), CV_8U);
+  for (int row = 0; row < view.height(); ++row) {
+    for (int column = 0; column < view.width(); ++column) {
+      const float range = view.range(row, column);
+      const float fall = plane.Fall(view.BearingOf(row, column));
+      if (!(range > 0 && fall > min_fall)) continue;
+      if (fall * range - plane.height > tolerance + relative_tolerance * range) {
+        below.at<std::uint8_t>(row, column) = 255;
+      }
+    }
+  }
+  return below;
+}
+
+int PlaceMovingObjects(const cv::Mat& below_ground, const DepthView& view,
+                       const DenseGround& ground, std::span<const DepthView* const> others,
+                       const MovingObjectOptions& options, DenseDepth* depth) {
+  ORB360_CHECK(below_ground.type() == CV_8U && below_ground.size() == depth->range.size() &&
+                   below_ground.size() == cv::Size(view.width(), view.height()),
+               below_ground.size(), depth->range.size());
+  const std::optional<int> start = EmptyColumn(below_ground);
+  if (!start) return 0;  // There is no ground around the camera.
+  const Plane plane(ground);
+  std::vector<Rigid3> other_from_view;
+  for (const DepthView* other : others) {
+    other_from_view.push_back(other->world_from_camera().Inverse() * view.world_from_camera());
+  }
+  cv::Mat labels;
+  cv::Mat boxes;
+  cv::Mat centroids;
+  const int count =
+      cv::connectedComponentsWithStats(Turned(below_ground, *start), labels, boxes, centroids);
+  const double pixel_angle = std::numbers::pi / view.height();
+  const auto confidence = static_cast<float>(1 / (1 + options.stated_error));
+  int num_objects = 0;
+  for (int label = 1; label < count; ++label) {
+    const cv::Rect box(
+        boxes.at<int>(label, cv::CC_STAT_LEFT), boxes.at<int>(label, cv::CC_STAT_TOP),
+        boxes.at<int>(label, cv::CC_STAT_WIDTH), boxes.at<int>(label, cv::CC_STAT_HEIGHT));
+    Sightings sightings;
+    double solid_angle = 0;
+    std::vector<float> ratios;  // of the ranges to those of the ground
+    std::vector<ObjectColumn> columns;
+    for (int x = box.x; x < box.x + box.width; ++x) {
+      const int column = (x + *start) % view.width();
+      std::vector<int> rows;
+      std::vector<float> ranges;
+      for (int row = box.y; row < box.y + box.height; ++row) {
+        if (labels.at<int>(row, x) != label) continue;
+        rows.push_back(row);
+        ranges.push_back(view.range(row, column));
+        solid_angle += std::sin((row + 0.5) * pixel_angle) * pixel_angle * pixel_angle;
+        const Eigen::Vector3f bearing = view.BearingOf(row, column);
+        const float ground_range = plane.height / plane.Fall(bearing);
+        ratios.push_back(ranges.back() / ground_range);
+        const Eigen::Vector3f place = ground_range * bearing;
+        for (size_t i = 0; i < others.size(); ++i) {
+          sightings.Look(*others[i], other_from_view[i], place, plane, options.tolerance);
+        }
+      }
+      const double fall = plane.Fall(view.BearingOf(rows.back(), column));
+      columns.push_back({rows, plane.height * std::sqrt(1 - fall * fall) / fall, Median(ranges)});
+    }
+    if (solid_angle < options.min_solid_angle || sightings.ground == 0) continue;
+    if (Median(ratios) < options.min_range_ratio) continue;
+    if (sightings.ground < options.min_ground_ratio * sightings.through) continue;
+    ++num_objects;
+    for (size_t i = 0; i < columns.size(); ++i) {
+      const int column = (box.x + static_cast<int>(i) + *start) % view.width();
+      const ObjectColumn& object = columns[i];
+      std::vector<int> rows = object.rows;
+      const int above = CountRowsAbove(view, column, object, plane, options.max_height);
+      for (int k = 1; k <= above; ++k) rows.push_back(object.rows.front() - k);
+      for (const int row : rows) {
+        const double fall = plane.Fall(view.BearingOf(row, column));
+        depth->range.at<float>(row, column) =
+            static_cast<float>(object.distance / std::sqrt(1 - fall * fall));
+        depth->confidence.at<float>(row, column) = confidence;
+      }
+    }
+  }
+  return num_objects;
+}
+
+}  // namespace orb360

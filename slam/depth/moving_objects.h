@@ -1,0 +1,55 @@
+#pragma once
+
+#include <span>
+
+#include <opencv2/core.hpp>
+
+#include "slam/depth/dense_ground.h"
+#include "slam/depth/depth_view.h"
+
+namespace orb360 {
+
+struct MovingObjectOptions {
+  /// A point is below the ground if its depth under the plane is more than this many heights of the
+  /// camera over it plus relative_tolerance of its range.
+  double tolerance = 0.25;
+  double relative_tolerance = 0.03;
+  /// The ray of such a point must pass through the plane nearer than this many heights of the
+  /// camera. Farther away the ground may be another plane.
+  double max_ground_range = 12.0;
+  /// Least ratio of the ranges of an object to those of the ground in the same directions, in the
+  /// median. An object that moves with less than half of the camera's speed has a smaller one; so
+  /// has ground that is not even.
+  double min_range_ratio = 1.85;
+  /// Least solid angle of the part of an object that is below the ground, sr.
+  double min_solid_angle = 5e-4;
+  /// How often other views must see the ground where the object hides it, for each time that they
+  /// look through it at something farther away. Where the land falls away they always look through;
+  /// where an object moves along, only those that have it in the same direction.
+  double min_ground_ratio = 0.5;
+  /// Largest height of an object, in heights of the camera.
+  double max_height = 2.0;
+  /// Relative error that is stated for an object that is put where it touches the ground: so large
+  /// that it does not come into the cloud, which is of what is at rest.
+  double stated_error = 1.0;
+};
+
+/// Returns the pixels of a view whose rays pass through the ground before they reach their points,
+/// CV_8U, 255 there. Such points cannot be seen.
+cv::Mat FindBelowGround(const DepthView& view, const DenseGround& ground,
+                        const MovingObjectOptions& options);
+
+/// Corrects the ranges of objects that move along with the camera. Returns their number.
+///
+/// At a constant velocity the images of such an object agree with a point at rest in every view. If
+/// it moves the same way as the camera, that point is farther away than the object, and below the
+/// ground for the lower part of it. No comparison of ranges finds this; only the ground on which
+/// the object stands does. `others`, which should be far enough apart for an object to have left
+/// its place, tell whether there is ground: a connected region of `below_ground` (FindBelowGround)
+/// is an object if they see it. The object is put upright where it touches the ground: its pixels
+/// get the distance of that, and so do those above as long as their ranges are like its own.
+int PlaceMovingObjects(const cv::Mat& below_ground, const DepthView& view,
+                       const DenseGround& ground, std::span<const DepthView* const> others,
+                       const MovingObjectOptions& options, DenseDepth* depth);
+
+}  // namespace orb360
