@@ -25,7 +25,7 @@ struct ViewDepthReport {
   int without_sources = 0;  ///< Those without two frames around them at a useful distance.
   /// Views in which an object that moves along with the camera was put on the ground.
   int with_moving_objects = 0;
-  int unseen = 0;           ///< Those of which two frames agree on little, for want of texture.
+  int unseen = 0;  ///< Those of which two frames agree on little, for want of texture.
 };
 
 }  // namespace orb360
