@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/orb360/commands.h"
+#include "apps/orb360/compared_run.h"
 #include "apps/orb360/interrupt.h"
 #include "apps/orb360/viewed_run.h"
 #include "slam/io/atomic_file.h"
@@ -22,8 +23,9 @@ namespace {
 
 struct ReportOptions {
   std::string run;
-  std::string out;     // "": report.html of the run
-  double max_mb = 30;  // 10^6 bytes
+  std::string compare;  // "": nothing
+  std::string out;      // "": report.html of the run
+  double max_mb = 30;   // 10^6 bytes
   int views = 12;
 };
 
@@ -43,6 +45,7 @@ int Report(const ReportOptions& options) try {
   CatchInterrupts();
   ViewedRun run = OpenViewedRun(options.run, true);
   RunScene& scene = run.scene;
+  if (!options.compare.empty()) CompareWith(options.compare, &run);
   scene.images.clear();  // They would be too large.
   const size_t all_views = scene.views.size();
   scene.views = SpreadEvenly(scene.views, options.views);
@@ -101,6 +104,7 @@ void AddReportCommand(CLI::App* app, Command* chosen) {
       app->add_subcommand("report", "Write a finished run as one file that a browser shows");
   const auto options = std::make_shared<ReportOptions>();
   command->add_option("RUN", options->run, "Folder of a run")->required()->type_name("DIR");
+  command->add_option("--compare", options->compare, kCompareHelp)->type_name("PATH");
   command->add_option("--out", options->out, "File to write (default: DIR/report.html)")
       ->type_name("FILE");
   command
