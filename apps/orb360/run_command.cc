@@ -20,10 +20,12 @@
 #include "apps/orb360/live_view.h"
 #include "apps/orb360/mask.h"
 #include "apps/orb360/progress.h"
+#include "apps/orb360/report_file.h"
 #include "apps/orb360/run_options.h"
 #include "apps/orb360/run_output.h"
 #include "apps/orb360/run_summary.h"
 #include "apps/orb360/sparse_output.h"
+#include "apps/orb360/viewed_run.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/octree/octree_format.h"
 #include "slam/io/octree/octree_writer.h"
@@ -279,6 +281,11 @@ int Run(const RunOptions& options) {
   if (options.saves_sparse && options.weights == "none") {
     WriteSparseKeyframes(MakeSparseFolder(output.folder()), system.maps(),
                          OpenInput(options.input, sequence_options).get());
+  }
+  try {
+    WriteReport(OpenViewedRun(output.folder(), true), {}, output.folder() / kReportName);
+  } catch (const UserError&) {
+    if (!record.failure) record.failure = std::current_exception();
   }
   if (!options.is_quiet) PrintResult(summary, output.folder());
 
