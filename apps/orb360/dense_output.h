@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "apps/orb360/run_report.h"
 #include "slam/depth/dense_cloud.h"
 #include "slam/io/dense_cloud_file.h"
 #include "slam/io/depth_map_store.h"
@@ -23,11 +22,10 @@ struct DenseOutput {
   std::optional<MeshSummary> mesh;
   /// Why the mesh could not be written, such as a full disk. Null where there was no failure.
   std::exception_ptr mesh_failure;
-  DenseImages images;
 };
 
 /// Writes cloud.ply, fused from the views, into `folder`, and the surface through its points as
-/// mesh.ply where `has_mesh` is true, and draws the cloud and a few views.
+/// mesh.ply where `has_mesh` is true.
 DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMapStore& store,
                              std::span<const DenseView> views, const DenseCloudOptions& options,
                              bool has_mesh);

@@ -33,8 +33,6 @@ void LiveView::Watch(System* system) {
   system->Watch([this](const PresentState& state) { feed_.Take(state); });
 }
 
-void LiveView::End() { feed_.End(); }
-
 bool LiveView::WaitForTurn() {
   return feed_.WaitForTurn([] { return CaughtInterrupt() != 0; });
 }

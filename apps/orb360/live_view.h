@@ -23,8 +23,8 @@ class LiveView {
   void Watch(System* system);
   /// Waits while the user has paused the run. False where the user has ended it.
   bool WaitForTurn();
-  /// The last frame was tracked: there is nothing left to pause.
-  void End();
+  /// What is shown after the last frame (LiveFeed).
+  LiveFeed& feed() { return feed_; }
 
  private:
   LiveFeed feed_;

@@ -20,10 +20,12 @@
 #include "apps/orb360/live_view.h"
 #include "apps/orb360/mask.h"
 #include "apps/orb360/progress.h"
+#include "apps/orb360/report_file.h"
 #include "apps/orb360/run_options.h"
 #include "apps/orb360/run_output.h"
 #include "apps/orb360/run_summary.h"
 #include "apps/orb360/sparse_output.h"
+#include "apps/orb360/viewed_run.h"
 #include "slam/io/atomic_file.h"
 #include "slam/io/octree/octree_format.h"
 #include "slam/io/octree/octree_writer.h"
@@ -99,7 +101,8 @@ void ProcessFrames(Sequence* sequence, System* system, RunOutput* output, LiveVi
 /// so that the trajectory is written.
 std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
                                      const RunOptions& options, int num_threads,
-                                     const RunOutput& output, System* system, RunRecord* record) {
+                                     const RunOutput& output, System* system, LiveView* live,
+                                     RunRecord* record) {
   const auto start = Clock::now();
   std::optional<DenseOutput> dense;
   if (options.weights == "none" || reconstruction.keyframes.empty()) return dense;
@@ -111,11 +114,20 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
   try {
     // After an interrupt the rest of the views are left to the network.
     Progress progress(std::nullopt, options.is_quiet);
+    const auto show = [&](const char* what, int done, int count, const char* of_what) {
+      progress.Update(what, done, count, of_what);
+      if (live != nullptr) live->feed().ShowProgress({what, done, count, of_what});
+    };
     ViewDepthCallbacks callbacks;
     callbacks.progress = [&](int done, int count) {
-      progress.Update("computing depth", done, count, "frames");
+      show("computing depth", done, count, "frames");
       return CaughtInterrupt() == 0;
     };
+    if (live != nullptr) {
+      callbacks.watcher = [live](int frame, const Rigid3& pose, const DenseDepth& depth) {
+        live->feed().AddView(frame, pose, depth);
+      };
+    }
     if (options.saves_sparse) callbacks.sink = SparseWriter(output.folder(), &record->failure);
     record->depth = system->ComputeDepth(reconstruction, callbacks);
     const bool has_depth = std::ranges::any_of(reconstruction.frames, [&](const FramePose& frame) {
@@ -130,9 +142,7 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
     }
     DenseCloudOptions fusion;
     fusion.num_threads = num_threads;
-    fusion.progress = [&](int done, int count) {
-      progress.Update("fusing depth", done, count, "views");
-    };
+    fusion.progress = [&](int done, int count) { show("fusing depth", done, count, "views"); };
     dense = output.WriteDense(
         reconstruction, *system->depth_maps(),
         {.depth = options.saves_depth, .views = options.saves_views, .mesh = options.has_mesh},
@@ -238,13 +248,14 @@ int Run(const RunOptions& options) {
   const auto start = Clock::now();
   ProcessFrames(sequence.get(), &system, &output, live ? &*live : nullptr, options.is_quiet,
                 &record);
-  if (live) live->End();
+  if (live) live->feed().End();
   const auto last_frame = Clock::now();
   const Reconstruction reconstruction = system.Finish(positions ? positions->local : Positions());
   record.finishing_seconds = SecondsSince(last_frame);
   record.seconds = SecondsSince(start);
-  const std::optional<DenseOutput> dense =
-      FuseDepth(reconstruction, options, threads, output, &system, &record);
+  if (live) live->feed().ShowFinished(system.maps(), output.WorldOf(reconstruction));
+  const std::optional<DenseOutput> dense = FuseDepth(reconstruction, options, threads, output,
+                                                     &system, live ? &*live : nullptr, &record);
   const DepthCompleter* const completer = system.depth_completer();
   if (completer != nullptr && !completer->device_failure().empty()) {
     Warn(completer->device_failure(), &record);
@@ -270,6 +281,11 @@ int Run(const RunOptions& options) {
   if (options.saves_sparse && options.weights == "none") {
     WriteSparseKeyframes(MakeSparseFolder(output.folder()), system.maps(),
                          OpenInput(options.input, sequence_options).get());
+  }
+  try {
+    WriteReport(OpenViewedRun(output.folder(), true), {}, output.folder() / kReportName);
+  } catch (const UserError&) {
+    if (!record.failure) record.failure = std::current_exception();
   }
   if (!options.is_quiet) PrintResult(summary, output.folder());
 

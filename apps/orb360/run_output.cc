@@ -10,6 +10,7 @@
 #include "slam/io/atomic_file.h"
 #include "slam/io/json_text.h"
 #include "slam/io/octree/octree_format.h"
+#include "slam/io/octree/octree_writer.h"
 #include "slam/io/ply.h"
 #include "slam/io/scale_file.h"
 
@@ -121,13 +122,11 @@ void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::jso
   // One of an earlier run in the same folder would belong to another cloud.
   if (!dense || !dense->mesh) std::filesystem::remove(folder_ / kMeshName);
   if (!dense) std::filesystem::remove(folder_ / kOctreeName);
-  std::string map_svg;
+  if (!dense && !cloud.empty()) WriteOctree(folder_ / kOctreeName, folder_ / "cloud.ply");
   if (!reconstruction.keyframes.empty()) {
-    map_svg = DrawMap(reconstruction, file_world_from_map);
-    WriteFileAtomically(folder_ / "map.svg", map_svg);
+    WriteFileAtomically(folder_ / "map.svg", DrawMap(reconstruction, file_world_from_map));
   }
   WriteFileAtomically(folder_ / "summary.json", ToJsonText(summary, 2) + "\n");
-  WriteRunReport(folder_, reconstruction, summary, map_svg, dense ? dense->images : DenseImages());
   std::filesystem::remove(folder_ / kJournalName);
 }
 

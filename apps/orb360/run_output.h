@@ -46,8 +46,8 @@ class RunOutput {
                          DenseFiles files, DenseCloudOptions options) const;
 
   /// Writes trajectory.txt, keyframes.txt, scale.txt, the landmarks as cloud.ply (as landmarks.ply
-  /// where there is a dense cloud), map.svg (where there is a keyframe), summary.json and the
-  /// report (WriteRunReport), then removes the journal.
+  /// where there is a dense cloud) with an octree, map.svg (where there is a keyframe) and
+  /// summary.json, then removes the journal.
   void Finish(const Reconstruction& reconstruction, const nlohmann::json& summary,
               const std::optional<DenseOutput>& dense);
 

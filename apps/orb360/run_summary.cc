@@ -213,7 +213,7 @@ void PrintResult(const nlohmann::json& summary, const std::filesystem::path& fol
             << (positions.is_null() ? "" : "\n" + StatePositions(positions))
             << "\nwrote trajectory.txt, keyframes.txt, scale.txt, cloud.ply, reconstruction.h5, "
                "map.svg, summary.json"
-            << (IsPlaced(positions) ? ", georeference.json" : "") << " and report/report.html to "
+            << (IsPlaced(positions) ? ", georeference.json" : "") << " and report.html to "
             << folder.string() << "\n`orb360 view " << folder.string()
             << "` shows the run in a browser" << std::endl;
 }

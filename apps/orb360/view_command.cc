@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "apps/orb360/commands.h"
+#include "apps/orb360/compared_run.h"
 #include "apps/orb360/interrupt.h"
 #include "apps/orb360/viewed_run.h"
 #include "slam/viewer/run_resources.h"
@@ -19,6 +20,7 @@ namespace {
 
 struct ViewOptions {
   std::string run;
+  std::string compare;  // "": nothing
   std::string address = "127.0.0.1";
   int port = 8360;
 };
@@ -27,14 +29,18 @@ int View(const ViewOptions& options) try {
 #ifdef ORB360_HAS_LIBWEBSOCKETS
   RequireFree(options.address, options.port, "--port N");  // before minutes of work
   CatchInterrupts();
-  const ViewedRun run = OpenViewedRun(options.run, false);
+  ViewedRun run = OpenViewedRun(options.run, false);
+  if (!options.compare.empty()) {
+    CompareWith(options.compare, &run);
+    AddOtherCloud(options.compare, &run);
+  }
   for (const std::string& missing : run.scene.missing)
     std::cout << "not there: " << missing << '\n';
   const RunImages images{run.scene.images,
                          [&run](int frame) { return LoadInputImage(run, frame); }};
-  const HttpServer server(
-      RunResources(SceneJson(run.scene), run.octree, images, run.views, run.scene.views),
-      {options.address, options.port});
+  const HttpServer server(RunResources(SceneJson(run.scene), run.octree, images, run.views,
+                                       run.scene.views, run.other_octree),
+                          {options.address, options.port});
   std::cout << options.run << " is at " << server.url() << "\nCtrl-C ends it" << std::endl;
   constexpr std::chrono::milliseconds kStep(50);
   while (CaughtInterrupt() == 0) std::this_thread::sleep_for(kStep);
@@ -55,6 +61,7 @@ void AddViewCommand(CLI::App* app, Command* chosen) {
   CLI::App* command = app->add_subcommand("view", "Show a finished run in a browser");
   const auto options = std::make_shared<ViewOptions>();
   command->add_option("RUN", options->run, "Folder of a run")->required()->type_name("DIR");
+  command->add_option("--compare", options->compare, kCompareHelp)->type_name("PATH");
   command->add_option("--port", options->port, "Port to listen at; 0: any that is free")
       ->check(CLI::Range(0, 65535))
       ->type_name("N")

@@ -22,29 +22,6 @@
 namespace orb360 {
 namespace {
 
-nlohmann::json ReadSummaryJson(const std::filesystem::path& folder) {
-  if (!std::filesystem::is_directory(folder)) {
-    throw UserError(folder.string() + ": is no folder; give that of a finished `orb360 run`");
-  }
-  const std::filesystem::path path = folder / "summary.json";
-  std::ifstream file(path);
-  if (!file) {
-    throw UserError(folder.string() +
-                    ": holds no finished run (there is no summary.json); `orb360 run INPUT --out "
-                    "DIR` makes one");
-  }
-  try {
-    nlohmann::json summary = nlohmann::json::parse(file);
-    // What is read below and by the page's scene throws here if it has another type.
-    summary.value("input", "");
-    summary.value("lens", "");
-    HasMetres(summary);
-    return summary;
-  } catch (const nlohmann::json::exception&) {  // The message below says what to do.
-  }
-  throw UserError(path.string() + ": is damaged; run `orb360 run` again");
-}
-
 /// The frames of a run that has no reconstruction, as its trajectories tell them. Their indices in
 /// the input are unknown; numbers in order stand for them.
 SparseModel ModelOfTrajectories(const std::filesystem::path& folder) {
@@ -106,6 +83,29 @@ std::vector<int> FindViews(const std::filesystem::path& folder, const SparseMode
 }
 
 }  // namespace
+
+nlohmann::json ReadSummaryJson(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder)) {
+    throw UserError(folder.string() + ": is no folder; give that of a finished `orb360 run`");
+  }
+  const std::filesystem::path path = folder / "summary.json";
+  std::ifstream file(path);
+  if (!file) {
+    throw UserError(folder.string() +
+                    ": holds no finished run (there is no summary.json); `orb360 run INPUT --out "
+                    "DIR` makes one");
+  }
+  try {
+    nlohmann::json summary = nlohmann::json::parse(file);
+    // What is read below and by the page's scene throws here if it has another type.
+    summary.value("input", "");
+    summary.value("lens", "");
+    HasMetres(summary);
+    return summary;
+  } catch (const nlohmann::json::exception&) {  // The message below says what to do.
+  }
+  throw UserError(path.string() + ": is damaged; run `orb360 run` again");
+}
 
 ViewedRun OpenViewedRun(const std::filesystem::path& folder, bool is_quiet) {
   ViewedRun run;

@@ -186,6 +186,7 @@ ViewDepthReport ComputeDepth(std::span<const DenseView> views, const NeighbourFi
     if (!options.baselines.empty()) Distrust(options.completion_error_factor, &depth);
     if (is_measured) TakeOver(seen, &depth);
     if (!options.keeps_completed) depth.confidence.setTo(0, ~(seen.value > 0));
+    if (callbacks.watcher) callbacks.watcher(view.frame_index, view.world_from_camera, depth);
     store.Put(view.frame_index, depth);
   }
   return report;

@@ -2,20 +2,9 @@
 
 #include <algorithm>
 
-#include "nn/base/number_text.h"
+#include "slam/viewer/digits.h"
 
 namespace orb360 {
-namespace {
-
-/// A number of digits only.
-std::optional<std::uint64_t> ParseDigits(std::string_view text) {
-  const bool is_digits =
-      !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
-  return is_digits ? ParseNumber<std::uint64_t>(text) : std::nullopt;
-}
-
-}  // namespace
-
 std::optional<ByteRange> ParseByteRange(std::string_view header, std::uint64_t size) {
   constexpr std::string_view kUnit = "bytes=";
   if (!header.starts_with(kUnit)) return std::nullopt;

@@ -212,10 +212,12 @@ class HttpServer::Impl {
     const bool has_coding = lws_hdr_total_length(connection, WSI_TOKEN_HTTP_TRANSFER_ENCODING) > 0;
     if (has_coding) head.content_length = "unknown";
     const Admission admission = CheckRequest(head, rules_);
-    Response response = admission.status == 200
-                            ? MakeResponse(resources_, admission.resource,
-                                           HeaderOf(connection, WSI_TOKEN_HTTP_RANGE), head.is_post)
-                            : TextResponse(admission.status, "refused");
+    const std::string query = HeaderOf(connection, WSI_TOKEN_HTTP_URI_ARGS);
+    const std::string range = HeaderOf(connection, WSI_TOKEN_HTTP_RANGE);
+    Response response =
+        admission.status == 200
+            ? MakeResponse(resources_, {admission.resource, query, range, head.is_post})
+            : TextResponse(admission.status, "refused");
     if (!WriteHead(connection, response)) return -1;
     // What follows a refused request may be its body.
     if (admission.status == 405 || admission.status == 413) return -1;

@@ -25,6 +25,10 @@ std::vector<LiveSnapshot::Feature> CopyFeatures(const PresentState& state) {
   return features;
 }
 
+bool IsSame(const Rigid3& a, const Rigid3& b) {
+  return a.rotation.coeffs() == b.rotation.coeffs() && a.translation == b.translation;
+}
+
 }  // namespace
 
 void LiveFeed::Take(const PresentState& state) {
@@ -51,10 +55,13 @@ void LiveFeed::Take(const PresentState& state) {
   }
   snapshot->map = before->map;
   snapshot->revision = before->revision;
+  if (before->revision > 0 && !IsSame(snapshot->world_from_map, before->world_from_map)) {
+    ++snapshot->revision;
+  }
   const Clock::time_point begin = now_();
   if (state.map != nullptr && begin >= next_map_) {
-    snapshot->map = std::make_shared<LiveSnapshot::MapPart>(CopyMap(*state.map));
-    ++snapshot->revision;
+    snapshot->map = std::make_shared<LiveSnapshot::MapPart>(
+        CopyMaps({state.map, 1}, ++snapshot->revision, before->map->landmarks));
     const Clock::time_point end = now_();
     next_map_ = end + kMapInterval * (end - begin);
   }
@@ -81,9 +88,44 @@ void LiveFeed::End() {
   control_.is_finishing = true;
 }
 
+void LiveFeed::ShowFinished(std::span<const Map> maps, const Rigid3& world_from_map) {
+  auto snapshot = std::make_shared<LiveSnapshot>(*Latest());
+  const LandmarkGroups before = snapshot->map->landmarks;
+  snapshot->map =
+      std::make_shared<LiveSnapshot::MapPart>(CopyMaps(maps, ++snapshot->revision, before));
+  snapshot->world_from_map = world_from_map;
+  snapshot->taken = Clock::now();
+  snapshot->map_from_camera.reset();  // It was tracked in the map as it was then.
+  const std::lock_guard lock(mutex_);
+  latest_ = std::move(snapshot);
+}
+
+void LiveFeed::ShowProgress(const LiveControl::Progress& progress) {
+  const std::lock_guard lock(mutex_);
+  control_.progress = progress;
+}
+
+void LiveFeed::AddView(int frame, const Rigid3& map_from_camera, const DenseDepth& depth) {
+  cloud_.Add(frame, Latest()->world_from_map * map_from_camera, depth);
+}
+
 std::shared_ptr<const LiveSnapshot> LiveFeed::Latest() const {
   const std::lock_guard lock(mutex_);
   return latest_;
+}
+
+std::string LiveFeed::StateSince(std::uint64_t since) {
+  std::shared_ptr<const LiveSnapshot> snapshot;
+  LiveControl control;
+  {
+    const std::lock_guard lock(mutex_);
+    snapshot = latest_;
+    control = control_;
+    // A step that the run has not yet begun is no waiting.
+    control.is_waiting = control.is_waiting && steps_ == 0;
+  }
+  is_wanted_ = true;
+  return LiveJson(*snapshot, control, cloud_.num_views(), since);
 }
 
 ResourceTable LiveFeed::Resources() {
@@ -99,21 +141,18 @@ ResourceTable LiveFeed::Resources() {
     };
   };
   ResourceTable table;
-  table["live.json"] = {"application/json", {}, [this] {
-                          std::shared_ptr<const LiveSnapshot> snapshot;
-                          LiveControl control;
-                          {
-                            const std::lock_guard lock(mutex_);
-                            snapshot = latest_;
-                            control = control_;
-                            // A step that the run has not yet begun is no waiting.
-                            control.is_waiting = control.is_waiting && steps_ == 0;
-                          }
-                          is_wanted_ = true;
-                          return LiveJson(*snapshot, control);
-                        }};
+  const auto since = [&table](const std::string& path, std::string type, auto make) {
+    Resource& resource = table[path];
+    resource.type = std::move(type);
+    resource.make_since = make;
+  };
   const std::string bytes = "application/octet-stream";
-  table["live.points"] = {bytes, {}, [this] { return LivePoints(*Latest()); }};
+  since("live.json", "application/json", [this](std::uint64_t r) { return StateSince(r); });
+  since("live.points", bytes, [this](std::uint64_t revision) {
+    const std::shared_ptr<const LiveSnapshot> snapshot = Latest();
+    return LivePoints(snapshot->map->landmarks, snapshot->revision, revision);
+  });
+  since("live.cloud", bytes, [this](std::uint64_t views) { return cloud_.Bytes(views); });
   table["live.image"] = {bytes, {}, [this] { return LiveImage(*Latest()); }};
   const std::string text = "text/plain; charset=utf-8";
   table["pause"] = {text, {}, action([this] { control_.is_paused = true; }), true};

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "slam/viewer/live_cloud.h"
 #include "slam/viewer/live_snapshot.h"
 #include "slam/viewer/resource.h"
 
@@ -33,14 +34,22 @@ class LiveFeed {
   bool WaitForTurn(const std::function<bool()>& is_ended);
   /// No further frame comes; what is left of the run may take minutes.
   void End();
+  /// Shows the finished maps in place of the present one. `world_from_map` is the world of written
+  /// files.
+  void ShowFinished(std::span<const Map> maps, const Rigid3& world_from_map);
+  /// Shows how far the work after that has got.
+  void ShowProgress(const LiveControl::Progress& progress);
+  /// Shows the depth of a view with its pose in the finished maps.
+  void AddView(int frame, const Rigid3& map_from_camera, const DenseDepth& depth);
 
   // --- called by the server ---
-  /// `live.json`, `live.points`, `live.image`, and the actions `pause`, `resume`, `step`, `finish`.
-  /// They refer to this object.
+  /// `live.json`, `live.points`, `live.cloud`, `live.image`, and the actions `pause`, `resume`,
+  /// `step`, `finish`. They refer to this object.
   ResourceTable Resources();
 
  private:
   std::shared_ptr<const LiveSnapshot> Latest() const;
+  std::string StateSince(std::uint64_t since);
 
   std::atomic<bool> is_wanted_ = true;
   mutable std::mutex mutex_;
@@ -48,7 +57,8 @@ class LiveFeed {
   // Guarded by the mutex:
   std::shared_ptr<const LiveSnapshot> latest_ = std::make_shared<LiveSnapshot>();
   LiveControl control_;
-  int steps_ = 0;  ///< Frames that may pass although the run is paused.
+  int steps_ = 0;    ///< Frames that may pass although the run is paused.
+  LiveCloud cloud_;  ///< Has a mutex of its own.
   // Used by the run only:
   std::function<Clock::time_point()> now_;
   Clock::time_point next_map_;        ///< The map is not copied again before.

@@ -50,53 +50,66 @@ std::string EncodeForPage(const cv::Mat& image) {
 
 }  // namespace
 
-LiveSnapshot::MapPart CopyMap(const Map& map) {
+LiveSnapshot::MapPart CopyMaps(std::span<const Map> maps, int revision,
+                               const LandmarkGroups& before) {
   LiveSnapshot::MapPart part;
-  for (const KeyframeId id : map.KeyframeIds()) {
-    const Keyframe& keyframe = map.keyframe(id);
-    part.keyframes.push_back({id, keyframe.frame_index, keyframe.world_from_camera});
+  KeyframeId offset = 0;
+  for (const Map& map : maps) {
+    for (const KeyframeId id : map.KeyframeIds()) {
+      const Keyframe& keyframe = map.keyframe(id);
+      part.keyframes.push_back({offset + id, keyframe.frame_index, keyframe.world_from_camera});
+    }
+    for (const CovisibilityEdge& edge : FindCovisibilityEdges(map, kMinShared)) {
+      part.links.push_back({offset + edge.first, offset + edge.second});
+    }
+    offset += map.keyframe_end();
   }
-  for (const CovisibilityEdge& edge : FindCovisibilityEdges(map, kMinShared)) {
-    part.links.push_back({edge.first, edge.second});
-  }
-  for (LandmarkId id = 0; id < map.landmark_end(); ++id) {
-    if (!map.HasLandmark(id)) continue;
-    const Landmark& landmark = map.landmark(id);
-    if (landmark.observations.size() < 2) continue;
-    const KeyframeId keyframe = landmark.observations.front().keyframe;
-    const Rigid3 camera_from_map = map.keyframe(keyframe).world_from_camera.Inverse();
-    part.landmarks.push_back(
-        {keyframe, (camera_from_map * landmark.position).cast<float>(), landmark.color});
-  }
+  part.landmarks = GroupLandmarks(maps, revision, before);
   return part;
 }
 
-std::string LiveJson(const LiveSnapshot& snapshot, const LiveControl& control) {
+std::string LiveJson(const LiveSnapshot& snapshot, const LiveControl& control, size_t num_views,
+                     std::uint64_t since) {
   const cv::Size size = snapshot.image.size();
-  nlohmann::json keyframes = nlohmann::json::array();
-  for (const LiveSnapshot::Keyframe& keyframe : snapshot.map->keyframes) {
-    nlohmann::json entry = {keyframe.id, keyframe.frame};
-    for (nlohmann::json& value : PoseJson(snapshot.world_from_map * keyframe.map_from_camera)) {
-      entry.push_back(value);
-    }
-    keyframes.push_back(entry);
-  }
   nlohmann::json loops = nlohmann::json::array();
   for (const ClosedLoop& loop : snapshot.loops) loops.push_back({loop.frame, loop.place});
+  const std::chrono::duration<double, std::milli> age =
+      std::chrono::steady_clock::now() - snapshot.taken;
   nlohmann::json json = {{"frame", snapshot.frame},
+                         {"age", age.count()},
                          {"time", snapshot.timestamp},
                          {"state", control.is_finishing ? "finishing" : NameOf(snapshot.state)},
+                         {"progress", nullptr},
                          {"isPaused", control.is_paused},
                          {"isWaiting", control.is_waiting},
                          {"map", snapshot.map_number},
                          {"revision", snapshot.revision},
                          {"size", {size.width, size.height}},
                          {"pose", nullptr},
-                         {"keyframes", keyframes},
-                         {"links", snapshot.map->links},
+                         {"keyframes", nullptr},
+                         {"links", nullptr},
                          {"loops", loops},
                          {"cameraHeight", nullptr},
-                         {"landmarks", snapshot.map->landmarks.size()}};
+                         {"landmarks", CountLandmarks(snapshot.map->landmarks)},
+                         {"views", num_views}};
+  if (static_cast<std::uint64_t>(snapshot.revision) != since || since == 0) {
+    nlohmann::json keyframes = nlohmann::json::array();
+    for (const LiveSnapshot::Keyframe& keyframe : snapshot.map->keyframes) {
+      nlohmann::json entry = {keyframe.id, keyframe.frame};
+      for (nlohmann::json& value : PoseJson(snapshot.world_from_map * keyframe.map_from_camera)) {
+        entry.push_back(value);
+      }
+      keyframes.push_back(entry);
+    }
+    json["keyframes"] = keyframes;
+    json["links"] = snapshot.map->links;
+  }
+  if (const auto& progress = control.progress) {
+    json["progress"] = {{"what", progress->what},
+                        {"done", progress->done},
+                        {"count", progress->count},
+                        {"ofWhat", progress->of_what}};
+  }
   if (snapshot.map_from_camera) {
     json["pose"] = PoseJson(snapshot.world_from_map * *snapshot.map_from_camera);
   }
@@ -118,22 +131,6 @@ std::string LiveImage(const LiveSnapshot& snapshot) {
     AppendLittleEndian(static_cast<std::uint16_t>(feature.is_matched ? 1 : 0), &bytes);
   }
   return bytes + EncodeForPage(snapshot.image);
-}
-
-std::string LivePoints(const LiveSnapshot& snapshot) {
-  std::string bytes;
-  AppendLittleEndian(static_cast<std::uint32_t>(snapshot.revision), &bytes);
-  AppendLittleEndian(static_cast<std::uint32_t>(snapshot.map->landmarks.size()), &bytes);
-  const Eigen::Quaternionf optical_from_camera = CameraFromOptical().conjugate().cast<float>();
-  for (const LiveSnapshot::Landmark& landmark : snapshot.map->landmarks) {
-    AppendLittleEndian(static_cast<std::int32_t>(landmark.keyframe), &bytes);
-    for (const float value : Eigen::Vector3f(optical_from_camera * landmark.position)) {
-      AppendLittleEndian(value, &bytes);
-    }
-    for (const std::uint8_t value : landmark.color) bytes += static_cast<char>(value);
-    bytes += '\0';
-  }
-  return bytes;
 }
 
 }  // namespace orb360

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "slam/evaluation/html_report.h"
+#include "slam/io/base64.h"
 #include "slam/viewer/web_files.h"
 #include <orb360/nn/base/check.h>
 

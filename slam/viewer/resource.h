@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -7,13 +8,15 @@
 
 namespace orb360 {
 
-/// What a server answers to one path: a file, or bytes that are made when they are asked for.
+/// What a server answers to one path: a file, or bytes that are made when they are asked for, on
+/// the thread of the server. Making them may throw UserError.
 struct Resource {
   std::string type;            ///< Media type.
   std::filesystem::path file;  ///< Empty: `make` gives the bytes.
-  /// Called on the thread of the server. May throw UserError.
   std::function<std::string()> make = {};
   bool is_action = false;  ///< It changes something: only POST is answered.
+  /// In place of `make`: the bytes for a page that has all up to the revision `since` (ParseSince).
+  std::function<std::string(std::uint64_t since)> make_since = {};
 };
 
 /// All that a server has, by path without a leading slash; "" is the page itself. Nothing else is

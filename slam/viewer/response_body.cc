@@ -8,6 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include "slam/viewer/since_query.h"
+
 namespace orb360 {
 
 ResponseBody::ResponseBody(const std::filesystem::path& file, const ByteRange& range)
@@ -34,16 +36,21 @@ Response TextResponse(int status, std::string_view text) {
   return response;
 }
 
-Response MakeResponse(const ResourceTable& resources, std::string_view path,
-                      std::string_view range_header, bool is_post) {
-  const auto found = resources.find(path);
+Response MakeResponse(const ResourceTable& resources, const ResourceRequest& request) {
+  const auto found = resources.find(request.path);
   if (found == resources.end()) return TextResponse(404, "there is nothing at this address");
   const Resource& resource = found->second;
-  if (resource.is_action != is_post) return TextResponse(405, "not with this method");
+  if (resource.is_action != request.is_post) return TextResponse(405, "not with this method");
   Response response;
   response.status = 200;
   response.type = resource.type;
   try {
+    if (resource.make_since) {
+      const std::optional<std::uint64_t> since = ParseSince(request.query);
+      if (!since) return TextResponse(400, "no such query");
+      response.body.emplace(resource.make_since(*since));
+      return response;
+    }
     if (resource.file.empty()) {
       response.body.emplace(resource.make());
       return response;
@@ -52,8 +59,8 @@ Response MakeResponse(const ResourceTable& resources, std::string_view path,
     const std::uint64_t size = std::filesystem::file_size(resource.file, error);
     if (error) return TextResponse(500, resource.file.string() + ": " + error.message());
     ByteRange range{0, size};
-    if (!range_header.empty()) {
-      const std::optional<ByteRange> wanted = ParseByteRange(range_header, size);
+    if (!request.range.empty()) {
+      const std::optional<ByteRange> wanted = ParseByteRange(request.range, size);
       if (!wanted) {
         response = TextResponse(416, "no such range of bytes");
         response.content_range = "bytes */" + std::to_string(size);

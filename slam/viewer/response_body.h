@@ -40,11 +40,19 @@ struct Response {
   std::optional<ResponseBody> body;
 };
 
-/// Answers to a path of the table; 405 where the method does not fit Resource::is_action.
-/// `range_header` is empty where there is none. What fails gives
-/// the status 500 with the reason as its text.
-Response MakeResponse(const ResourceTable& resources, std::string_view path,
-                      std::string_view range_header, bool is_post = false);
+/// What a request asks for.
+struct ResourceRequest {
+  std::string_view path = {};  ///< Key of the table.
+  std::string_view query =
+      {};  ///< Without its question mark; looked at for Resource::make_since only.
+  std::string_view range = {};  ///< Header Range, empty where there is none.
+  bool is_post = false;         ///< POST, not GET or HEAD.
+};
+
+/// Answers a request from the table: 404 where that has no such path, 405 where the method does not
+/// fit Resource::is_action, 400 for a query that ParseSince does not read, 416 for a range that
+/// ParseByteRange does not read. What fails gives the status 500 with the reason as its text.
+Response MakeResponse(const ResourceTable& resources, const ResourceRequest& request);
 
 /// A response that is one line of text.
 Response TextResponse(int status, std::string_view text);

@@ -35,10 +35,15 @@ ResourceTable PageResources(bool is_live) {
 
 ResourceTable RunResources(std::string scene_json, const std::filesystem::path& octree,
                            const RunImages& images, const std::filesystem::path& views,
-                           const std::vector<int>& frames) {
+                           const std::vector<int>& frames,
+                           const std::filesystem::path& other_octree) {
   ResourceTable table = PageResources(false);
   table["run.json"] = {"application/json", {}, [scene = std::move(scene_json)] { return scene; }};
-  if (!octree.empty()) table["cloud.octree"] = {"application/octet-stream", octree, {}};
+  const auto add_octree = [&table](const char* name, const std::filesystem::path& path) {
+    if (!path.empty()) table[name] = {"application/octet-stream", path, {}};
+  };
+  add_octree("cloud.octree", octree);
+  add_octree("other.octree", other_octree);
   for (const int frame : images.frames) {
     table["images/" + std::to_string(frame) + ".jpg"] = {
         "image/jpeg", {}, [load = images.load, frame] {

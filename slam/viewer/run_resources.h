@@ -24,10 +24,11 @@ struct RunImages {
 /// The page and what it asks for of a finished run: `run.json`, `cloud.octree`, for each image
 /// `images/FRAME.jpg`, and for each view `views/FRAME.jpg` and `views/FRAME.range`.
 ///
-/// `octree`: empty where there is none. `views`: folder of the depth map store, with the views of
-/// `frames`.
+/// `octree`, `other_octree` (`other.octree`): empty where there is none. `views`: folder of the
+/// depth map store, with the views of `frames`.
 ResourceTable RunResources(std::string scene_json, const std::filesystem::path& octree,
                            const RunImages& images, const std::filesystem::path& views,
-                           const std::vector<int>& frames);
+                           const std::vector<int>& frames,
+                           const std::filesystem::path& other_octree = {});
 
 }  // namespace orb360

@@ -135,6 +135,11 @@ std::string SceneJson(const RunScene& scene) {
     scale["sigma"].push_back(Rounded(stamped.sigma));
   }
   const nlohmann::json voxel_size = scene.voxel_size ? nlohmann::json(*scene.voxel_size) : nullptr;
+  nlohmann::json comparison;
+  if (scene.comparison) {
+    comparison = ComparisonJson(*scene.comparison);
+    comparison["hasCloud"] = scene.has_other_cloud;
+  }
   const nlohmann::json json = {{"folder", scene.folder},
                                {"summary", scene.summary},
                                {"unit", HasMetres(scene.summary) ? "m" : "units"},
@@ -145,6 +150,7 @@ std::string SceneJson(const RunScene& scene) {
                                {"links", links},
                                {"loops", DescribeLoops(scene)},
                                {"scale", scale},
+                               {"comparison", comparison},
                                {"images", scene.images},
                                {"views", scene.views},
                                {"missing", scene.missing}};

@@ -8,6 +8,7 @@
 
 #include "slam/io/scale_file.h"
 #include "slam/io/sparse_model.h"
+#include "slam/viewer/comparison.h"
 
 namespace orb360 {
 
@@ -19,9 +20,11 @@ struct RunScene {
   std::vector<StampedScale> scales;  ///< Content of scale.txt.
   /// Indices of the keyframes whose images the input still has.
   std::vector<int> images;
-  std::vector<int> views;            ///< Indices of the frames whose image and range there are.
-  bool has_cloud = false;            ///< Whether there is an octree.
-  std::optional<double> voxel_size;  ///< Of a dense cloud, units; summary.json may be older.
+  std::vector<int> views;                ///< Indices of the frames whose image and range there are.
+  bool has_cloud = false;                ///< Whether there is an octree.
+  std::optional<double> voxel_size;      ///< Of a dense cloud, units; summary.json may be older.
+  std::optional<Comparison> comparison;  ///< With another path.
+  bool has_other_cloud = false;          ///< Whether there is an octree of the other run.
   std::vector<std::string> missing;  ///< One sentence for each thing that cannot be shown, and why.
 };
 
@@ -52,6 +55,7 @@ std::vector<KeyframeLink> LinkKeyframes(const SparseModel& model);
 /// | `keyframes` | places of the keyframes among the frames |
 /// | `links` | 3 numbers each: places of two among the keyframes, number of landmarks in common |
 /// | `loops` | pairs of places among the frames: the one that came back, and where |
+/// | `comparison` | ComparisonJson with `hasCloud` (has_other_cloud), or null |
 /// | `scale` | `time`, `value`, `sigma` along the path |
 std::string SceneJson(const RunScene& scene);
 

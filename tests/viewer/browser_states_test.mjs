@@ -1,12 +1,12 @@
 // Servers and runs in different states, in a real browser (ORB360_RUN: a run with views, ORB360_REPORT:
-// its report, ORB360_TOWN: its input).
+// its report).
 import assert from "node:assert/strict";
 import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { coverage, findColor, launch, open, serve, serveLive, shownPoints } from "./page.mjs";
+import { coverage, findColor, launch, open, serve, shownPoints } from "./page.mjs";
 
 const run = process.env.ORB360_RUN;
 let browser;
@@ -147,58 +147,6 @@ test("shows why a run cannot be loaded", async () => {
       await page.close();
     },
   );
-});
-
-test("shows, steps and finishes a run that goes on", async () => {
-  const live = await serveLive(process.env.ORB360_TOWN, join(run, "..", "live"));
-  const page = await browser.newPage();
-  const problems = [];
-  page.on("pageerror", (error) => problems.push(error.message));
-  page.on("console", (message) => message.type() === "error" && problems.push(message.text()));
-  await page.goto(live.url);
-  const frameNow = () => page.$eval("#view", (canvas) => Number(canvas.dataset.frame));
-  const click = (name) =>
-    page.evaluate(
-      (text) =>
-        [...document.querySelectorAll(".live-buttons button")]
-          .find((button) => button.textContent === text)
-          .click(),
-      name,
-    );
-  await click("One frame");
-  await page.waitForFunction(() => document.body.dataset.state === "ready");
-  for (let i = 0; i < 4; ++i) {
-    const before = await frameNow();
-    await click("One frame");
-    await page.waitForFunction(
-      (frame) => Number(document.querySelector("#view").dataset.frame) === frame + 1,
-      {},
-      before,
-    );
-  }
-  assert.equal(await page.$eval(".chip", (chip) => chip.textContent), "paused");
-  assert.equal(
-    await page.$eval("#view", (canvas) => canvas.dataset.imageFrame),
-    String(await frameNow()),
-  );
-  const isFollowing = () => page.$eval(".check input", (input) => input.checked);
-  assert.ok(await isFollowing());
-  await page.focus("#view");
-  await page.keyboard.press("ArrowLeft");
-  assert.ok(!(await isFollowing()), "keys move the camera, which then follows no more");
-  await click("Go on");
-  await page.waitForFunction(
-    () =>
-      Number(document.querySelector("#view").dataset.keyframes) > 3 &&
-      Number(document.querySelector("#view").dataset.landmarks) > 100,
-  );
-  assert.ok(await page.$eval(".live-image canvas", (canvas) => canvas.width > 300));
-  assert.deepEqual(problems, []);
-  await click("Finish early");
-  assert.equal(await live.ended, 0);
-  await page.waitForFunction(() => document.body.dataset.connection === "lost");
-  assert.match(await page.$eval("#banner", (banner) => banner.textContent), /has ended/);
-  await page.close();
 });
 
 test("opens a report from a file, without a server", async () => {

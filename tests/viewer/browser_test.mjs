@@ -108,6 +108,22 @@ onPage("opens the panorama of a keyframe that is clicked", {}, async (page) => {
   await page.waitForSelector("#panorama", { hidden: true });
 });
 
+onPage("shows in the cloud where a panorama looks", {}, async (page) => {
+  await page.keyboard.press("]");
+  await page.waitForSelector("#panorama:not([hidden]):not(.without-image)");
+  await settle(page);
+  const before = new Set((await findColor(page, "selected")).map(({ x, y }) => `${x} ${y}`));
+  assert.ok(before.size > 20, "there is no arrow");
+  const box = await (await page.$("#panorama canvas")).boundingBox();
+  await page.mouse.move(box.x + 40, box.y + 150);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 480, box.y + 150, { steps: 5 });
+  await page.mouse.up();
+  await settle(page);
+  const turned = (await findColor(page, "selected")).filter(({ x, y }) => !before.has(`${x} ${y}`));
+  assert.ok(turned.length > 20, "the arrow has not turned with the panorama");
+});
+
 onPage("measures distances with the uncertainty of the scale", {}, async (page) => {
   await page.keyboard.press("m");
   const { width, height } = page.viewport();

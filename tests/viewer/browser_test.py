@@ -1,5 +1,4 @@
-"""Renders a drive, runs on it, and looks at it in a browser (browser_test.mjs,
-browser_states_test.mjs). Ends with 77 (skipped) where there is none."""
+"""Renders a drive, runs on it, and looks at it in a browser (browser_*test.mjs). Ends with 77 (skipped) where there is none."""
 
 import os
 import shutil
@@ -25,10 +24,15 @@ def main() -> int:
     report = out / "report.html"
     subprocess.run([BUILD / "orb360", "report", out / "run", "--out", report, "--max-size", "12"],
                    **quiet)
+    compared = out / "compared.html"
+    subprocess.run([BUILD / "orb360", "report", out / "run", "--out", compared, "--max-size", "4",
+                    "--views", "0", "--compare", out / "town"], **quiet)
     environment = {**os.environ, "ORB360_RUN": str(out / "run"), "ORB360_TOWN": str(out / "town"),
-                   "ORB360_REPORT": str(report), "ORB360_CHROMIUM": chromium}
+                   "ORB360_REPORT": str(report), "ORB360_COMPARED": str(compared),
+                   "ORB360_CHROMIUM": chromium}
     tests = subprocess.run(["node", "--test", "--test-concurrency=1", "browser_test.mjs",
-                            "browser_states_test.mjs"],
+                            "browser_states_test.mjs", "browser_live_test.mjs",
+                            "browser_compare_test.mjs"],
                            cwd=BUILD / "viewer_tests", env=environment, check=False)
     return 1 if tests.returncode != 0 else 0
 

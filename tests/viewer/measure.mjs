@@ -1,18 +1,19 @@
-// Times and memory of the page for a run: node measure.mjs RUN [POINTS [NEARER]], in
-// build/viewer_tests.
+// Times and memory of the page for a run, or for a report (FILE.html): node measure.mjs RUN
+// [POINTS [NEARER]], in build/viewer_tests.
 // POINTS: how many may be shown at once. NEARER: how often plus is pressed from the first view.
 import { readFileSync, readdirSync } from "node:fs";
+import { pathToFileURL } from "node:url";
 import { launch, serve, shownPoints } from "./page.mjs";
 
 process.env.ORB360_CHROMIUM ??= "/usr/bin/chromium";
 const [run, points = "5000000", nearer = "10"] = process.argv.slice(2);
-const server = await serve(run);
+const server = run.endsWith(".html") ? null : await serve(run);
 const browser = await launch();
 const page = await browser.newPage();
 await page.setViewport({ width: 1400, height: 900 });
 const begin = Date.now();
 const seconds = () => ((Date.now() - begin) / 1000).toFixed(2);
-await page.goto(server.url);
+await page.goto(server?.url ?? pathToFileURL(run).href);
 await page.waitForFunction(() => Number(document.querySelector("#view")?.dataset.points) > 0);
 console.log(`first points drawn after ${seconds()} s`);
 await page.evaluate((budget) => {
@@ -48,4 +49,4 @@ for (const pid of readdirSync("/proc").filter((name) => /^\d+$/.test(name))) {
   }
 }
 await browser.close();
-await server.stop();
+await server?.stop();

@@ -24,8 +24,8 @@ async function start(parameters) {
 }
 
 /** Starts `orb360 view`. */
-export async function serve(run, port = 0) {
-  const { program, ended, url } = await start(["view", run, "--port", String(port)]);
+export async function serve(run, port = 0, more = []) {
+  const { program, ended, url } = await start(["view", run, "--port", String(port), ...more]);
   return {
     url,
     port: Number(new URL(url).port),
@@ -38,17 +38,16 @@ export async function serve(run, port = 0) {
 }
 
 /** Starts a run that is shown, and pauses it at once. */
-export async function serveLive(input, out) {
+export async function serveLive(input, out, more = ["--weights", "none"]) {
   const { ended, url } = await start([
     "run",
     input,
     "--out",
     out,
-    "--weights",
-    "none",
     "--mask",
     "none",
     "--view=0",
+    ...more,
   ]);
   const { host, origin } = new URL(url);
   const status = await new Promise((resolve) =>

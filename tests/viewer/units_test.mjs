@@ -1,27 +1,7 @@
-// Modules of the page by themselves, bundled by esbuild.
+// Modules of the page by themselves.
 import assert from "node:assert/strict";
-import { createRequire } from "node:module";
-import { fileURLToPath } from "node:url";
 import { test } from "node:test";
-
-const web = fileURLToPath(new URL("../viewer_web/", import.meta.url));
-const esbuild = createRequire(`${web}package.json`)("esbuild");
-
-/** Imports what a TypeScript text exports. */
-async function load(text) {
-  const { outputFiles } = await esbuild.build({
-    stdin: { contents: text, resolveDir: web, loader: "ts" },
-    bundle: true,
-    format: "esm",
-    write: false,
-  });
-  return import(
-    "data:text/javascript;base64," + Buffer.from(outputFiles[0].contents).toString("base64")
-  );
-}
-
-// What modules look for in a page when they are loaded.
-globalThis.document = { getElementById: () => null };
+import { load } from "./modules.mjs";
 
 const {
   format,
@@ -30,8 +10,8 @@ const {
   ViewRange,
   colorAt,
   ticksBetween,
-  readLivePoints,
-  readLiveImage,
+  PointCloud,
+  errorOfFrames,
   FailedNodes,
   Measure,
   pickPoint,
@@ -44,7 +24,8 @@ const {
   export { ViewRange } from "./src/view_range";
   export { colorAt } from "./src/color_maps";
   export { ticksBetween } from "./src/charts";
-  export { readLivePoints, readLiveImage } from "./src/live_source";
+  export { PointCloud } from "./src/point_cloud";
+  export { errorOfFrames } from "./src/comparison";
   export { FailedNodes } from "./src/failed_nodes";
   export { Measure } from "./src/measure";
   export { pickPoint } from "./src/pick";
@@ -156,34 +137,46 @@ test("ranges of a view are found by their place in the panorama", () => {
   assert.throws(() => new ViewRange(bytes.slice(0, 20)), /truncated/);
 });
 
-test("landmarks of a live run are read as they are written", () => {
-  const bytes = new ArrayBuffer(28);
-  const view = new DataView(bytes);
-  view.setUint32(0, 3, true);
-  view.setUint32(4, 1, true);
-  view.setInt32(8, 5, true);
-  [0.5, -0.25, 2].forEach((value, axis) => view.setFloat32(12 + 4 * axis, value, true));
-  [10, 20, 30].forEach((value, c) => view.setUint8(24 + c, value));
-  const points = readLivePoints(bytes);
-  assert.equal(points.revision, 3);
-  assert.deepEqual([...points.keyframe], [5]);
-  assert.deepEqual([...points.position], [0.5, -0.25, 2]);
-  assert.deepEqual([...points.color], [10, 20, 30]);
-  assert.throws(() => readLivePoints(bytes.slice(0, 20)), /truncated/);
+test("each frame has the error at its own time", () => {
+  const run = { frames: { time: [0, 0.1, 0.2, 0.3, 0.4] } };
+  const comparison = { time: [0.0, 0.105, 0.3, 0.385], error: [1, 2, 3, 4] };
+  assert.deepEqual(errorOfFrames(run, comparison), [1, 2, null, 3, 4]);
+  assert.deepEqual(errorOfFrames(run, { time: [], error: [] }), [null, null, null, null, null]);
 });
 
-test("the image of a live run comes with the features of its own frame", () => {
-  const bytes = new ArrayBuffer(8 + 12 + 3);
-  const view = new DataView(bytes);
-  view.setUint32(0, 41, true);
-  view.setUint32(4, 2, true);
-  [2500, 2000, 0, 5000, 10000, 1].forEach((v, i) => view.setUint16(8 + 2 * i, v, true));
-  new Uint8Array(bytes).set([1, 2, 3], 20);
-  const image = readLiveImage(bytes);
-  assert.equal(image.frame, 41);
-  assert.deepEqual([...image.features], [...Float32Array.of(0.25, 0.2, 0, 0.5, 1, 1)]);
-  assert.deepEqual([...new Uint8Array(image.jpeg)], [1, 2, 3]);
-  assert.throws(() => readLiveImage(bytes.slice(0, 19)), /truncated/);
+test("the cloud of another run is chosen as it lies in the world", () => {
+  const nodes = completeOctree(100, 4);
+  const cloud = Object.assign(Object.create(PointCloud.prototype), {
+    group: new THREE.Group(),
+    loaded: new Map(),
+    cloudFromWorld: new THREE.Matrix4(),
+    header: { side: 100, cellsPerSide: 64 },
+    material: { uniforms: { cloudFromWorld: { value: new THREE.Matrix4() }, rootSpacing: {} } },
+  });
+  // Twice as large, turned, and far away.
+  const worldFromCloud = new THREE.Matrix4().compose(
+    new THREE.Vector3(1000, 0, 0),
+    new THREE.Quaternion().setFromAxisAngle(new THREE.Vector3(0, 0, 1), Math.PI / 2),
+    new THREE.Vector3(2, 2, 2),
+  );
+  cloud.setTransform(worldFromCloud);
+  assert.equal(cloud.material.uniforms.rootSpacing.value, (2 * 100) / 64);
+  const camera = new THREE.PerspectiveCamera(60, 1, 0.1, 5000);
+  camera.up.set(0, 0, 1);
+  const inCloud = new THREE.Vector3(-5, 50, 50);
+  camera.position.copy(inCloud.clone().applyMatrix4(worldFromCloud));
+  camera.lookAt(new THREE.Vector3(50, 50, 50).applyMatrix4(worldFromCloud));
+  camera.updateMatrixWorld();
+  assert.ok(cloud.inCloud(camera).position.distanceTo(inCloud) < 1e-6);
+  const view = {
+    pixelsPerRadian: 900,
+    clip: null,
+    budget: 1e9,
+    cellsPerSide: 64,
+    isLoaded: () => true,
+  };
+  const shown = chooseNodes(nodes, { ...view, camera: cloud.inCloud(camera) }).shown;
+  assert.deepEqual(shown, choose(nodes, [-5, 50, 50], [50, 50, 50]).shown);
 });
 
 test("nodes that the connection failed are asked for again, ever later", (t) => {
@@ -273,7 +266,7 @@ test("points that the least confidence hides are not picked", () => {
 
 test("colours of maps grow brighter from end to end", () => {
   const brightness = ([r, g, b]) => 0.2126 * r + 0.7152 * g + 0.0722 * b;
-  for (const name of ["viridis", "cividis", "magma"]) {
+  for (const name of ["viridis", "cividis", "magma", "plasma"]) {
     for (let i = 1; i <= 20; ++i) {
       assert.ok(brightness(colorAt(name, i / 20)) > brightness(colorAt(name, (i - 1) / 20)), name);
     }

@@ -26,8 +26,6 @@ class OctreeFile {
   std::vector<SurfacePoint> ReadPoints(const OctreeNode& node) const;
 
  private:
-  void Check() const;
-
   const std::filesystem::path path_;
   mutable std::ifstream file_;
   OctreeHeader header_{};

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "slam/io/octree/morton.h"
 #include "slam/io/octree/octree_format.h"
 #include "slam/io/octree/point_sorter.h"
 
@@ -13,12 +14,13 @@ namespace orb360 {
 
 /// Divides points, which come in the order of their codes, among the nodes of an octree.
 ///
-/// A point belongs to the coarsest level on which its cell is still free, where the cells of a
-/// level are a 2^kOctreeCellBits-th of the side of its nodes and a cell is taken by the first point
-/// in it, of this level or a coarser one. As equal digits of Morton codes are common cells, the
-/// level follows from the number of digits that a point shares with the one before it. A cube with
-/// few points becomes a leaf with all of them. Memory: the open nodes on the path from the root,
-/// and the leaves below each.
+/// A point belongs to the coarsest level on which it is the best one of its cell, where the cells
+/// of a level are a 2^kOctreeCellBits-th of the side of its nodes, and the best is the most
+/// confident point, the first of several. The best point of a cell is also that of the finer cell
+/// which has it, so the points down to a level are one a cell. Equal digits of Morton codes are
+/// common cells: while the points come, one cell of each width is open, and keeps the best point so
+/// far. A cube with few points becomes a leaf with all of them. Memory: the open nodes on the path
+/// from the root, and the leaves below each.
 class OctreeLevels {
  public:
   struct Node {
@@ -44,9 +46,15 @@ class OctreeLevels {
     std::uint64_t num_points = 0;  // with all below it
   };
 
-  void Close(int level);
+  /// Passes the best point of the open cell of a width to the cell around it, whose former best it
+  /// may replace. The lesser of both belongs to the level of the cells of this width.
+  void CloseCell(int digits);
+  void Place(const SortedPoint& point, int level);
+  void CloseNode(int level);
 
   std::function<void(const Node&)> take_;
+  /// By the number of digits that the points of a cell have in common.
+  std::array<std::optional<SortedPoint>, kMortonBits + 1> best_;
   std::array<std::optional<Open>, kOctreeMaxLevel + 1> open_;  // by level
   std::optional<std::uint64_t> last_code_;
 };

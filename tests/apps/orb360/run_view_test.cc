@@ -58,18 +58,29 @@ class RunViewTest : public RunTest {
 };
 
 TEST_F(RunViewTest, HasTheSameResultWhileItIsLookedAt) {
-  const ProgramResult unseen = Run();
-  EXPECT_EQ(unseen.status, 0);
+  // With the dense cloud, which a page shows as it grows.
+  WriteMeanNetwork(folder_ / "net.h5");
+  // A point must be seen by three keyframes; the room is small and the way short.
+  WriteText(folder_ / "dense.yaml", "keyframe:\n  max_motion: 0.02\n");
+  std::vector<std::string> dense = {"--weights", folder_ / "net.h5", "--config",
+                                    folder_ / "dense.yaml"};
+  const ProgramResult unseen = Run(dense);
+  EXPECT_EQ(unseen.status, 0) << unseen.err;
   EXPECT_THAT(unseen.out, testing::Not(HasSubstr("http"))) << "nobody asked for a page";
-  Program shown(Arguments("shown"));
+  dense.insert(dense.end(), {"--out", folder_ / "shown", "--threads", "2", "--view=0"});
+  dense.insert(dense.begin(), {"run", Input()});
+  Program shown(dense);
   const int port = PortOf(&shown);
   std::atomic<bool> has_ended = false;
   std::atomic<int> num_seen = 0;
+  std::atomic<size_t> num_dense_bytes = 0;
   std::thread page([&] {
     while (!has_ended) {
-      for (const char* path : {"/live.json", "/live.points", "/live.image"}) {
+      for (const char* path : {"/live.json?since=1", "/live.points", "/live.image"}) {
         num_seen += StatusOf(Exchange(port, GetRequest(port, path))) == 200 ? 1 : 0;
       }
+      const size_t size = BodyOf(Exchange(port, GetRequest(port, "/live.cloud?since=0"))).size();
+      num_dense_bytes = std::max<size_t>(num_dense_bytes, size);
     }
   });
   const ProgramResult result = shown.Wait();
@@ -77,7 +88,9 @@ TEST_F(RunViewTest, HasTheSameResultWhileItIsLookedAt) {
   page.join();
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_GT(num_seen, 3);
-  for (const char* name : {"trajectory.txt", "keyframes.txt", "cloud.ply", "reconstruction.h5"}) {
+  EXPECT_GT(num_dense_bytes, 16 * 1000U) << "no depth of a view was shown";
+  for (const char* name :
+       {"trajectory.txt", "keyframes.txt", "cloud.ply", "cloud.octree", "reconstruction.h5"}) {
     EXPECT_EQ(ReadText(folder_ / ("shown/" + std::string(name))), ReadText(OutFile(name))) << name;
   }
 }

@@ -198,6 +198,59 @@ TEST_F(ViewTest, LeavesNothingWhenInterruptedWhileItMakesTheOctree) {
   }
 }
 
+/// Moving poses, 0.1 s apart, along a bend.
+std::vector<StampedPose> MovingPoses() {
+  std::vector<StampedPose> poses(30);
+  for (int i = 0; i < 30; ++i) {
+    poses[i].timestamp = 0.1 * i;
+    poses[i].world_from_camera.translation = {0.2 * i, 0.01 * i * i, 0};
+  }
+  return poses;
+}
+
+TEST_F(ViewTest, ComparesWithAnotherRunWithGroundTruthAndWithATrajectory) {
+  WriteTrajectory(File("trajectory.txt"), MovingPoses());
+  std::filesystem::copy(Run(), folder_ / "other");
+  std::filesystem::create_directory(folder_ / "sequence");
+  WriteTrajectory(folder_ / "sequence/groundtruth.txt", MovingPoses());
+  WriteTrajectory(folder_ / "path.txt", MovingPoses());
+  for (const char* name : {"other", "sequence", "path.txt"}) {
+    const ProgramResult result = Viewing(Run(), {"--compare", folder_ / name}).Stop();
+    EXPECT_EQ(result.status, 0) << result.err;
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "other/cloud.octree"));
+  const ProgramResult report =
+      RunOrb360({"report", Run(), "--out", folder_ / "r.html", "--compare", folder_ / "other"});
+  EXPECT_EQ(report.status, 0) << report.err;
+  const std::string page = ReadText(folder_ / "r.html");
+  EXPECT_THAT(page, AllOf(HasSubstr("\"isRigid\":true"), HasSubstr("\"hasCloud\":false")));
+}
+
+TEST_F(ViewTest, RefusesToCompareWithWhatIsNoPathOrHasOtherTimes) {
+  WriteTrajectory(File("trajectory.txt"), MovingPoses());
+  const auto expect_refusal = [&](const std::string& other, const std::string& what) {
+    for (const char* command : {"view", "report"}) {
+      std::vector<std::string> arguments = {command, Run(), "--compare", other};
+      if (arguments.front() == "view") arguments.insert(arguments.end(), {"--port", "0"});
+      const ProgramResult result = RunOrb360(arguments);
+      EXPECT_EQ(result.status, 1);
+      EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr(what)));
+    }
+  };
+  expect_refusal(folder_ / "absent", "absent: no such file or folder");
+  std::filesystem::create_directory(folder_ / "empty");
+  expect_refusal(folder_ / "empty", "neither a finished run (summary.json) nor ground truth");
+  WriteText(folder_ / "words.txt", "no pose\n");
+  expect_refusal(folder_ / "words.txt", "words.txt");
+  std::vector<StampedPose> later = MovingPoses();
+  for (StampedPose& pose : later) pose.timestamp += 1000;
+  WriteTrajectory(folder_ / "later.txt", later);
+  expect_refusal(folder_ / "later.txt", "cannot be aligned with " + Run());
+  std::filesystem::create_directory(folder_ / "damaged");
+  WriteText(folder_ / "damaged/summary.json", "{");
+  expect_refusal(folder_ / "damaged", "summary.json: is damaged");
+}
+
 TEST_F(ViewTest, HasATokenWhenOpenedBeyondThisMachine) {
   Viewing viewing(Run(), {"--view-address", "0.0.0.0"});
   const ProgramResult result = viewing.Stop();
@@ -221,6 +274,26 @@ TEST_F(ViewTest, ReportIsOneFileOfTheSizeAskedFor) {
   EXPECT_THAT(page, HasSubstr("embedded-octree"));
   EXPECT_THAT(page, HasSubstr("walk.mp4"));
   EXPECT_THAT(page, HasSubstr(" of 400000 points"));
+}
+
+TEST_F(ViewTest, ReportHoldsItsSizeWithoutACloudAsWell) {
+  std::filesystem::remove(File("cloud.ply"));
+  std::vector<StampedPose> poses(40000);
+  for (int i = 0; i < 40000; ++i) {
+    poses[i].timestamp = 0.1 * i;
+    poses[i].world_from_camera.translation = {0.12345 * i, 0.54321 * i, 1.23456};
+  }
+  WriteTrajectory(File("trajectory.txt"), poses);
+  const auto report = [&](const char* max_size) {
+    return RunOrb360({"report", Run(), "--out", folder_ / "r.html", "--max-size", max_size});
+  };
+  const ProgramResult refused = report("2");
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err, AllOf(IsOneLine(), HasSubstr("--max-size: 2 MB have no room for")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "r.html"));
+  const ProgramResult written = report("10");
+  EXPECT_EQ(written.status, 0) << written.err;
+  EXPECT_GT(std::filesystem::file_size(folder_ / "r.html"), 2'000'000U);
 }
 
 }  // namespace

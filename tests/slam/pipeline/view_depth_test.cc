@@ -110,6 +110,28 @@ TEST_F(ComputeDepthTest, RangesAreMeasuredByStereo) {
   EXPECT_EQ(store_.Get(0).color.size(), cv::Size(256, 128));
 }
 
+TEST_F(ComputeDepthTest, ShowsWhatItStoresOfEachView) {
+  const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
+  std::vector<int> shown;
+  std::vector<DenseDepth> depths;
+  ViewDepthCallbacks callbacks;
+  callbacks.watcher = [&](int frame_index, const Rigid3& pose, const DenseDepth& depth) {
+    EXPECT_EQ(pose.translation, views[shown.size()].world_from_camera.translation);
+    shown.push_back(frame_index);
+    depths.push_back(depth);
+  };
+  Compute(views, kAll, callbacks);
+  ASSERT_EQ(shown, (std::vector<int>{0, 10, 20, 30}));
+  for (size_t i = 0; i < shown.size(); ++i) {
+    EXPECT_EQ(depths[i].color.size(), depths[i].range.size());
+    const cv::Mat stored = store_.Get(shown[i]).range;  // 0 where the confidence is
+    const cv::Mat is_wrong = cv::abs(stored - depths[i].range) > 0.01 * depths[i].range;
+    EXPECT_EQ(cv::countNonZero(is_wrong & (stored > 0)), 0);
+    EXPECT_EQ(cv::countNonZero((depths[i].confidence > 0) & (stored == 0)), 0);
+    EXPECT_GT(cv::countNonZero(stored), 10000);
+  }
+}
+
 TEST_F(ComputeDepthTest, WithoutTwoSourcesTheNetworkCompletesTheLandmarks) {
   EXPECT_EQ(Compute(ViewsAt({0, 0.3})).without_sources, 2);
   EXPECT_NEAR(store_.Get(0).range.at<float>(60, 100), 2.4, 0.01);

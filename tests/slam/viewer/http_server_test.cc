@@ -1,6 +1,7 @@
 #include "slam/viewer/http_server.h"
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <random>
@@ -31,6 +32,7 @@ class HttpServerTest : public testing::Test {
     table[""] = {"text/html", {}, [] { return std::string("the page"); }};
     table["large"] = {"application/octet-stream", folder_ / "large", {}};
     table["views/7.jpg"] = {"image/jpeg", {}, [] { return std::string("image"); }};
+    table["since"].make_since = [](std::uint64_t since) { return std::to_string(since); };
     table["act"] = {"text/plain", {}, [this] { return std::to_string(++num_actions_); }, true};
     server_.emplace(table, HttpAddress{});
     port_ = server_->port();
@@ -68,6 +70,16 @@ TEST_F(HttpServerTest, SendsFilesAndRangesOfThem) {
   EXPECT_THAT(part, HasSubstr("content-range: bytes 100000-300000/400000\r\n"));
   EXPECT_EQ(BodyOf(part), large_.substr(100000, 200001));
   EXPECT_EQ(StatusOf(Get("/large", "Range: bytes=400000-\r\n")), 416);
+}
+
+TEST_F(HttpServerTest, PassesOnWhatAPageHasAlready) {
+  EXPECT_EQ(BodyOf(Get("/since?since=17")), "17");
+  EXPECT_EQ(BodyOf(Get("/since")), "0");
+  for (const char* query : {"since=1&since=2", "since=1&x=2", "since=", "y"}) {
+    EXPECT_EQ(StatusOf(Get("/since?" + std::string(query))), 400) << query;
+  }
+  EXPECT_EQ(BodyOf(Get("/views/7.jpg?since=x")), "image");
+  ExpectAlive();
 }
 
 TEST_F(HttpServerTest, AnswersSeveralRequestsOfOneConnection) {

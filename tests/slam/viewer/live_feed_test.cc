@@ -2,7 +2,9 @@
 
 #include <atomic>
 #include <chrono>
+#include <memory>
 #include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,7 +42,9 @@ class LiveFeedTest : public testing::Test {
     return state;
   }
 
-  nlohmann::json Json() { return nlohmann::json::parse(table_.at("live.json").make()); }
+  nlohmann::json Json(std::uint64_t since = 0) {
+    return nlohmann::json::parse(table_.at("live.json").make_since(since));
+  }
 
   Frame frame_;
   Features features_;
@@ -58,6 +62,7 @@ TEST_F(LiveFeedTest, ShowsTheFrameWithItsFeatures) {
   const nlohmann::json json = Json();
   EXPECT_EQ(json["frame"], 7);
   EXPECT_EQ(json["time"], 0.35);
+  EXPECT_GE(json["age"], 0.0);
   EXPECT_EQ(json["state"], "tracking");
   EXPECT_THAT(json["size"].get<std::vector<int>>(), testing::ElementsAre(100, 50));
   EXPECT_EQ(json["isPaused"], false);
@@ -164,23 +169,52 @@ TEST_F(LiveFeedTest, ChangesNothingByRequestsThatAreNotActions) {
   }
 }
 
-TEST(LivePoints, AreInTheFramesOfTheirKeyframes) {
-  LiveSnapshot snapshot;
-  snapshot.revision = 3;
-  // Ahead, right and up in the camera frame of memory.
-  LiveSnapshot::MapPart map;
-  map.landmarks = {{5, Eigen::Vector3f(-2, 0.5f, 0.25f), {10, 20, 30}}};
-  snapshot.map = std::make_shared<LiveSnapshot::MapPart>(map);
-  const std::string bytes = LivePoints(snapshot);
-  ASSERT_EQ(bytes.size(), 28U);
-  EXPECT_EQ(ReadNumber<std::uint32_t>(bytes, 0, std::endian::little), 3U);
-  EXPECT_EQ(ReadNumber<std::uint32_t>(bytes, 4, std::endian::little), 1U);
-  EXPECT_EQ(ReadNumber<std::int32_t>(bytes, 8, std::endian::little), 5);
-  // Right, down, forward.
-  EXPECT_FLOAT_EQ(*ReadNumber<float>(bytes, 12, std::endian::little), 0.5f);
-  EXPECT_FLOAT_EQ(*ReadNumber<float>(bytes, 16, std::endian::little), -0.25f);
-  EXPECT_FLOAT_EQ(*ReadNumber<float>(bytes, 20, std::endian::little), 2.0f);
-  EXPECT_EQ(bytes.substr(24), std::string("\x0a\x14\x1e\0", 4));
+TEST_F(LiveFeedTest, SendsPosesAgainOnlyWhereTheyHaveChanged) {
+  Map map;
+  map.AddKeyframe(7, 0.35, Rigid3(), std::make_shared<Features>());
+  PresentState state = State();
+  state.map = &map;
+  feed_.Take(state);
+  nlohmann::json json = Json();
+  EXPECT_EQ(json["revision"], 1);
+  EXPECT_EQ(json["keyframes"].size(), 1U);
+  EXPECT_EQ(Json(1)["keyframes"], nullptr);
+  EXPECT_EQ(Json(1)["links"], nullptr);
+  // The ground levels the world, and all poses with it.
+  state.map = nullptr;
+  state.ground = KnownGround{.up = Eigen::Vector3d(0.1, 0, 1).normalized(), .camera_height = 1.6};
+  feed_.Take(state);
+  json = Json(1);
+  EXPECT_EQ(json["revision"], 2);
+  EXPECT_EQ(json["keyframes"].size(), 1U);
+}
+
+TEST_F(LiveFeedTest, ShowsWhatBecomesOfTheRunAfterItsLastFrame) {
+  feed_.Take(State());
+  EXPECT_EQ(Json()["progress"], nullptr);
+  Map map;
+  map.AddKeyframe(7, 0.35, Rigid3(), std::make_shared<Features>());
+  const std::vector<Map> maps(2, map);
+  Rigid3 world_from_map;
+  world_from_map.translation = {1, 2, 3};
+  feed_.ShowFinished(maps, world_from_map);
+  feed_.ShowProgress({"computing depth", 3, 9, "frames"});
+  nlohmann::json json = Json();
+  ASSERT_EQ(json["keyframes"].size(), 2U);
+  EXPECT_NE(json["keyframes"][0][0], json["keyframes"][1][0]) << "two keyframes with one id";
+  EXPECT_EQ(json["keyframes"][0][2], 1);
+  EXPECT_EQ(json["pose"], nullptr);
+  EXPECT_EQ(json["progress"]["what"], "computing depth");
+  EXPECT_EQ(json["progress"]["done"], 3);
+  EXPECT_EQ(json["progress"]["count"], 9);
+  EXPECT_EQ(json["views"], 0);
+  DenseDepth depth{cv::Mat(8, 16, CV_32FC1, cv::Scalar(2)), cv::Mat(8, 16, CV_32FC1, cv::Scalar(1)),
+                   cv::Mat(8, 16, CV_8UC3, cv::Scalar(30, 20, 10))};
+  feed_.AddView(7, Rigid3(), depth);
+  EXPECT_EQ(Json()["views"], 1);
+  const std::string bytes = table_.at("live.cloud").make_since(0);
+  EXPECT_EQ(*ReadNumber<std::int32_t>(bytes, 8, std::endian::little), 7);
+  EXPECT_EQ(*ReadNumber<float>(bytes, 12, std::endian::little), 1) << "not in the world of files";
 }
 
 }  // namespace

@@ -40,21 +40,21 @@ class ResponseTest : public testing::Test {
 };
 
 TEST_F(ResponseTest, HasBytesMadeOnDemandOrOfAFile) {
-  Response made = MakeResponse(table_, "made", "");
+  Response made = MakeResponse(table_, {.path = "made"});
   EXPECT_EQ(made.status, 200);
   EXPECT_EQ(made.type, "text/x");
   EXPECT_EQ(ReadAll(&made), "made on demand");
-  Response file = MakeResponse(table_, "digits", "");
+  Response file = MakeResponse(table_, {.path = "digits"});
   EXPECT_EQ(file.status, 200);
   EXPECT_EQ(ReadAll(&file), "0123456789");
 }
 
 TEST_F(ResponseTest, HasARangeOfAFile) {
-  Response part = MakeResponse(table_, "digits", "bytes=2-8");
+  Response part = MakeResponse(table_, {.path = "digits", .range = "bytes=2-8"});
   EXPECT_EQ(part.status, 206);
   EXPECT_EQ(part.content_range, "bytes 2-8/10");
   EXPECT_EQ(ReadAll(&part), "2345678");
-  Response outside = MakeResponse(table_, "digits", "bytes=10-");
+  Response outside = MakeResponse(table_, {.path = "digits", .range = "bytes=10-"});
   EXPECT_EQ(outside.status, 416);
   EXPECT_EQ(outside.content_range, "bytes */10");
 }
@@ -66,22 +66,32 @@ TEST_F(ResponseTest, KnowsNoPathThatIsNotInTheTable) {
         std::string_view("./digits"), std::string_view("../digits"),
         std::string_view("made/../digits"), kWithNul, kWithNul.substr(0, 7),
         std::string_view("*")}) {
-    EXPECT_EQ(MakeResponse(table_, path, "").status, 404) << path;
+    EXPECT_EQ(MakeResponse(table_, {.path = path}).status, 404) << path;
   }
 }
 
+TEST_F(ResponseTest, HasWhatHasChangedSinceARevision) {
+  table_["since"].make_since = [](std::uint64_t since) { return std::to_string(since + 1); };
+  Response response = MakeResponse(table_, {.path = "since", .query = "since=41"});
+  EXPECT_EQ(response.status, 200);
+  EXPECT_EQ(ReadAll(&response), "42");
+  response = MakeResponse(table_, {.path = "since"});
+  EXPECT_EQ(ReadAll(&response), "1");
+  EXPECT_EQ(MakeResponse(table_, {.path = "since", .query = "since=-1"}).status, 400);
+}
+
 TEST_F(ResponseTest, SaysWhyAResourceFails) {
-  Response bad = MakeResponse(table_, "bad", "");
+  Response bad = MakeResponse(table_, {.path = "bad"});
   EXPECT_EQ(bad.status, 500);
   EXPECT_EQ(ReadAll(&bad), "view 7: is damaged\n");
-  EXPECT_EQ(MakeResponse(table_, "gone", "").status, 500);
+  EXPECT_EQ(MakeResponse(table_, {.path = "gone"}).status, 500);
 }
 
 TEST_F(ResponseTest, EndsWhereAFileHasBecomeShorter) {
-  Response part = MakeResponse(table_, "digits", "");
+  Response part = MakeResponse(table_, {.path = "digits"});
   std::filesystem::resize_file(folder_ / "digits", 8);
   EXPECT_EQ(ReadAll(&part), "cut off");
-  Response gone = MakeResponse(table_, "digits", "");
+  Response gone = MakeResponse(table_, {.path = "digits"});
   std::filesystem::remove(folder_ / "digits");
   EXPECT_EQ(ReadAll(&gone), "01234567");  // It is open already.
 }

@@ -6,10 +6,17 @@ const VIRIDIS = "440154 482878 3e4989 31688e 26828e 1f9e89 35b779 6ece58 b5de2b 
 const CIVIDIS = "00224e 123570 3b496c 575d6d 707173 8a8678 a59c74 c3b369 e1cc55 fee838";
 /** magma, by S. van der Walt and N. Smith, without its darkest part. */
 const MAGMA = "2c115f 51127c 721f81 932b80 b73779 d8456c f1605d fb8861 fec287 fcfdbf";
+/** plasma, by the same, without its darkest part: for lines over dark and light backgrounds. */
+const PLASMA = "7201a8 9c179e bd3786 d8576b ed7953 fb9f3a fdca26 f0f921";
 
-export type ColorMapName = "viridis" | "cividis" | "magma";
+export type ColorMapName = "viridis" | "cividis" | "magma" | "plasma";
 
-const STOPS: Record<ColorMapName, string> = { viridis: VIRIDIS, cividis: CIVIDIS, magma: MAGMA };
+const STOPS: Record<ColorMapName, string> = {
+  viridis: VIRIDIS,
+  cividis: CIVIDIS,
+  magma: MAGMA,
+  plasma: PLASMA,
+};
 
 function stopsOf(name: ColorMapName): [number, number, number][] {
   return STOPS[name].split(" ").map((hex) => {

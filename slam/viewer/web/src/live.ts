@@ -1,21 +1,23 @@
 import * as THREE from "three";
 import { announce, h } from "./dom";
-import { grouped, length } from "./format";
+import { grouped, length, short } from "./format";
+import { obliquePose } from "./framing";
 import { centerMessage, section, type Layout } from "./layout";
 import { LiveLayer } from "./live_layer";
 import {
   control,
+  liveCloud,
   liveImage,
   livePoints,
   liveState,
-  type LiveImage,
   type LiveState,
 } from "./live_source";
+import { LiveStrip } from "./live_strip";
 import { followTheme } from "./theme";
 import { Viewport } from "./viewport";
 import { viewportKeys } from "./viewport_keys";
 
-const POLL_MS = 200;
+const POLL_MS = 100;
 /** How far behind the camera the view follows it, units of the world. */
 const BEHIND = 22;
 const ABOVE = 14;
@@ -24,21 +26,24 @@ const STATES: Record<LiveState["state"], string> = {
   initializing: "looking for a first motion",
   tracking: "tracking",
   lost: "lost",
-  finishing: "finishing: map and cloud",
+  finishing: "finishing the map",
 };
 
-/** Least extent that is shown, units of the world. */
-const MIN_EXTENT = 200;
+/** What the run does, in a few words. */
+function statusOf(state: LiveState): string {
+  const { progress } = state;
+  if (state.state !== "finishing" || !progress) return STATES[state.state];
+  return `${progress.what}: ${progress.done} of ${progress.count} ${progress.ofWhat}`;
+}
+
+/** What is around the path and belongs to it, units of the world. */
+const SURROUNDINGS = 8;
 
 /** The page of a run that goes on. */
 export class LiveViewer {
   private readonly viewport: Viewport;
   private readonly layer = new LiveLayer();
-  private readonly image = h("canvas", {
-    role: "img",
-    "aria-label": "Present image with its features: those that agree with the map are filled",
-  });
-  private readonly strip = h("div", { class: "live-image", hidden: true }, this.image);
+  private readonly strip = new LiveStrip(() => this.makeRoom());
   private readonly facts = h("dl", { class: "tiles" });
   private readonly follow = h("input", { type: "checkbox", checked: true });
   private readonly pause = h(
@@ -47,16 +52,15 @@ export class LiveViewer {
     "Pause",
   );
   private readonly buttons: HTMLButtonElement[];
-  private revision = 0;
-  private shownMap = -1;
+  private revision = 0; // of poses and landmarks
+  private numViews = 0; // of the dense cloud
   private last: LiveState | null = null;
-  private shownFrame = -1; // of the image
-  private matched = ""; // features, as text
   private hasEnded = false;
 
   constructor(private readonly page: Layout) {
     this.viewport = new Viewport(page.canvas);
     this.viewport.overlay.add(this.layer.group);
+    this.viewport.points.add(this.layer.cloud.group);
     this.viewport.onResize = (width, height) => {
       this.layer.resize(width, height);
       this.makeRoom();
@@ -66,7 +70,7 @@ export class LiveViewer {
       "3D view of the run. Arrow keys turn, W A S D move, plus and minus zoom.",
     );
     this.layer.resize(page.stage.clientWidth, page.stage.clientHeight);
-    this.viewport.setExtent(MIN_EXTENT);
+    this.viewport.setExtent(this.layer.extent);
     this.viewport.setPose({
       eye: new THREE.Vector3(-BEHIND, 0, ABOVE),
       target: new THREE.Vector3(),
@@ -103,7 +107,7 @@ export class LiveViewer {
     page.center.replaceChildren(
       centerMessage("Waiting for the first frame", "The run has just begun."),
     );
-    page.stage.append(this.strip);
+    page.stage.append(this.strip.element);
     page.panelBody.append(
       section(
         "Run",
@@ -136,7 +140,7 @@ export class LiveViewer {
 
   private async poll(): Promise<void> {
     try {
-      await this.update(await liveState());
+      await this.update(await liveState(this.revision));
       // What an action has brought stays until the next.
       if (this.hasEnded) this.say(null);
       document.body.dataset.connection = "connected";
@@ -146,44 +150,72 @@ export class LiveViewer {
         this.hasEnded = true;
         document.body.dataset.connection = "lost";
         this.say("The run has ended, or does not answer. `orb360 view` shows the finished run.");
+        this.page.chip.textContent = "ended";
+        for (const button of this.buttons) button.disabled = true;
       }
     }
     setTimeout(() => void this.poll(), this.hasEnded ? 5 * POLL_MS : POLL_MS);
   }
 
   private async update(state: LiveState): Promise<void> {
+    const begin = performance.now();
+    const { dataset } = this.page.canvas;
     for (const button of this.buttons) button.disabled = state.state === "finishing";
     if (state.size[0] === 0) return;
     if (state.state !== this.last?.state) announce(STATES[state.state]);
+    if (state.revision < this.revision) this.forget();
+    if (state.state === "finishing" && this.last?.state !== "finishing") this.finishing();
+    const isNew =
+      state.frame !== this.last?.frame ||
+      state.revision !== this.revision ||
+      state.views !== this.numViews ||
+      state.pose === null !== (this.last.pose === null);
     this.last = state;
     document.body.dataset.state = "ready";
     this.page.center.replaceChildren();
-    if (state.revision !== this.revision || state.map !== this.shownMap) {
-      const points = await livePoints();
-      this.layer.setLandmarks(points);
-      this.revision = points.revision;
-      this.shownMap = state.map;
+    if (isNew) this.layer.setState(state);
+    if (state.revision > this.revision) {
+      const { revision, groups } = await livePoints(this.revision);
+      this.layer.setLandmarks(groups);
+      // The poses are those of the state, which may be older than the landmarks.
+      this.revision = Math.min(revision, state.revision);
     }
-    this.layer.setState(state);
-    if (this.follow.checked && state.pose) this.followCamera(state.pose);
-    this.fitExtent(state);
-    if (state.frame !== this.shownFrame) await this.showImage(await liveImage());
+    if (state.views > this.numViews) {
+      const part = await liveCloud(this.numViews);
+      this.layer.addViews(part);
+      this.numViews = part.numViews;
+    }
+    const isTracking = state.state !== "finishing";
+    if (isTracking && this.follow.checked && state.pose) this.followCamera(state.pose);
+    this.viewport.setExtent(this.layer.extent);
+    if (isTracking && state.frame !== this.strip.frame) {
+      await this.strip.show(await liveImage());
+      dataset.latency = (state.age + performance.now() - begin).toFixed(0);
+    }
     this.showFacts(state);
-    this.page.canvas.dataset.keyframes = String(state.keyframes.length);
-    this.page.canvas.dataset.landmarks = String(state.landmarks);
-    this.page.canvas.dataset.frame = String(state.frame);
-    this.viewport.invalidate();
+    dataset.keyframes = String(this.layer.numKeyframes);
+    dataset.landmarks = String(state.landmarks);
+    dataset.frame = String(state.frame);
+    dataset.imageFrame = String(this.strip.frame);
+    dataset.densePoints = String(this.layer.cloud.count);
+    if (isNew) this.viewport.invalidate();
   }
 
-  /** Near and far planes have to hold the whole map. */
-  private fitExtent(state: LiveState): void {
-    const box = new THREE.Box3();
-    for (const keyframe of state.keyframes) {
-      box.expandByPoint(new THREE.Vector3(keyframe[2], keyframe[3], keyframe[4]));
-    }
-    const size = box.isEmpty() ? 0 : box.getSize(new THREE.Vector3()).length();
-    // Landmarks lie around the path.
-    this.viewport.setExtent(Math.max(MIN_EXTENT, 2 * size));
+  private forget(): void {
+    this.layer.clear();
+    this.revision = 0;
+    this.numViews = 0;
+    this.strip.frame = -1;
+  }
+
+  /** The camera has stopped: the whole path is shown, and its cloud in place of the image. */
+  private finishing(): void {
+    this.strip.element.hidden = true;
+    this.makeRoom();
+    const box = this.layer.box();
+    if (!this.follow.checked || box.isEmpty()) return;
+    this.viewport.setExtent(this.layer.extent);
+    this.viewport.flyTo(obliquePose(box.expandByScalar(SURROUNDINGS), this.viewport.camera));
   }
 
   private followCamera(pose: number[]): void {
@@ -201,7 +233,7 @@ export class LiveViewer {
 
   /** Moves the middle of the view out of the image's way. */
   private makeRoom(): void {
-    this.viewport.setShift(0, this.strip.offsetHeight / 2);
+    this.viewport.setShift(0, this.strip.element.offsetHeight / 2);
   }
 
   private showFacts(state: LiveState): void {
@@ -210,9 +242,10 @@ export class LiveViewer {
     this.facts.replaceChildren(
       tile(grouped(state.frame), "frame"),
       tile(`${state.time.toFixed(1)} s`, "time in the input"),
-      tile(grouped(state.keyframes.length), "keyframes"),
+      tile(grouped(this.layer.numKeyframes), "keyframes"),
       tile(grouped(state.landmarks), "landmarks"),
-      tile(this.matched, "features matched"),
+      ...(state.views > 0 ? [tile(short(this.layer.cloud.count), "points of depth maps")] : []),
+      tile(this.strip.matched, "features matched"),
       tile(grouped(state.loops.length), "loops closed"),
       tile(
         state.cameraHeight === null ? "unknown" : length(state.cameraHeight, "m"),
@@ -223,44 +256,11 @@ export class LiveViewer {
     const { chip } = this.page;
     chip.hidden = false;
     const isPaused = state.isPaused && state.state !== "finishing";
-    chip.textContent = isPaused ? "paused" : STATES[state.state];
+    chip.textContent = isPaused ? "paused" : statusOf(state);
     chip.className = `chip ${state.state === "tracking" && !isPaused ? "metric" : "rough"}`;
     chip.title =
       state.cameraHeight === null
         ? "The ground is not known yet: lengths have no unit."
         : "Lengths are in metres.";
-  }
-
-  private async showImage({ frame, features, jpeg }: LiveImage): Promise<void> {
-    const image = await createImageBitmap(new Blob([jpeg], { type: "image/jpeg" }));
-    this.shownFrame = frame;
-    const numMatched = features.filter((value, i) => i % 3 === 2 && value === 1).length;
-    this.matched = `${grouped(numMatched)} of ${grouped(features.length / 3)}`;
-    this.page.canvas.dataset.imageFrame = String(frame);
-    const context = this.image.getContext("2d")!;
-    this.image.width = image.width;
-    this.image.height = image.height;
-    context.drawImage(image, 0, 0);
-    image.close();
-    if (this.strip.hidden) {
-      this.strip.hidden = false;
-      this.makeRoom();
-    }
-    const { width, height } = this.image;
-    const radius = Math.max(2, width / 400);
-    for (let i = 0; i < features.length; i += 3) {
-      context.beginPath();
-      context.arc(
-        features[i] * width,
-        features[i + 1] * height,
-        radius,
-        0,
-        2 * Math.PI,
-      );
-      context.fillStyle = context.strokeStyle =
-        features[i + 2] === 1 ? "#4be08a" : "#ffffff90";
-      if (features[i + 2] === 1) context.fill();
-      else context.stroke();
-    }
   }
 }

@@ -1,22 +1,15 @@
 import * as THREE from "three";
-import type { LivePoints, LiveState } from "./live_source";
+import type { CameraPoints, LiveCloud, LiveState } from "./live_source";
+import { matrixOf, PosedPoints } from "./posed_points";
 import type { CanvasColors } from "./theme";
 import { WideLines } from "./trajectory_layer";
 
 const POINT_PIXELS = 2.2;
 const MARK_PIXELS = 7;
+/** Least extent that is shown, units of the world. */
+const MIN_EXTENT = 200;
 
-/** Three numbers of a pose: where it is. */
-function placeOf(pose: number[]): THREE.Vector3 {
-  return new THREE.Vector3(pose[0], pose[1], pose[2]);
-}
-
-function matrixOf(pose: number[]): THREE.Matrix4 {
-  const rotation = new THREE.Quaternion(pose[3], pose[4], pose[5], pose[6]);
-  return new THREE.Matrix4().compose(placeOf(pose), rotation, new THREE.Vector3(1, 1, 1));
-}
-
-/** Path, keyframes, graph, loops and landmarks of a run that goes on. */
+/** Path, keyframes, graph, loops, landmarks and dense cloud of a run that goes on. */
 export class LiveLayer {
   readonly group = new THREE.Group();
   private readonly path = new WideLines(3);
@@ -24,13 +17,11 @@ export class LiveLayer {
   private readonly camera = new WideLines(3);
   private readonly links: THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>;
   private readonly marks: THREE.Points<THREE.BufferGeometry, THREE.PointsMaterial>;
-  private readonly landmarks = new THREE.Group();
-  private readonly pointMaterial = new THREE.PointsMaterial({
-    size: POINT_PIXELS,
-    sizeAttenuation: false,
-    vertexColors: true,
-  });
-  private readonly objects = new Map<number, THREE.Points>(); // landmarks by keyframe
+  private readonly landmarks = new PosedPoints(POINT_PIXELS);
+  /** Points of depth maps by view; to be drawn with eye-dome lighting. */
+  readonly cloud = new PosedPoints(POINT_PIXELS);
+  private keyframes: number[][] = [];
+  private poses = new Map<number, number[]>(); // of keyframes by id
 
   constructor() {
     const material = new THREE.LineBasicMaterial({ transparent: true, opacity: 0.28 });
@@ -42,7 +33,7 @@ export class LiveLayer {
     for (const object of [this.links, this.marks]) object.frustumCulled = false;
     this.camera.drawOnTop();
     this.group.add(
-      this.landmarks,
+      this.landmarks.group,
       this.links,
       this.path.object,
       this.loops.object,
@@ -51,10 +42,18 @@ export class LiveLayer {
     );
   }
 
-  /** Poses have changed: everything moves with its keyframe. */
+  /** The present state; with poses, everything moves with its keyframe. */
   setState(state: LiveState): void {
-    const poses = new Map(state.keyframes.map(([id, , ...pose]) => [id, pose]));
-    const ofFrame = new Map(state.keyframes.map(([, frame, ...pose]) => [frame, pose]));
+    if (state.keyframes) {
+      this.keyframes = state.keyframes;
+      this.poses = new Map(state.keyframes.map(([id, , ...pose]) => [id, pose]));
+      this.landmarks.setPoses(this.poses);
+      setPositions(
+        this.marks,
+        state.keyframes.flatMap((keyframe) => keyframe.slice(2, 5)),
+      );
+    }
+    const ofFrame = new Map(this.keyframes.map(([, frame, ...pose]) => [frame, pose]));
     const inOrder = [...ofFrame.entries()].sort(([a], [b]) => a - b).map(([, pose]) => pose);
     if (state.pose) inOrder.push(state.pose);
     const path: number[] = [];
@@ -67,47 +66,56 @@ export class LiveLayer {
     this.loops.setSegments(
       state.loops.flatMap(([a, b]) => between(ofFrame.get(a), ofFrame.get(b))),
     );
-    setPositions(
-      this.links,
-      state.links.flatMap(([a, b]) => between(poses.get(a), poses.get(b))),
-    );
-    setPositions(
-      this.marks,
-      state.keyframes.flatMap((keyframe) => keyframe.slice(2, 5)),
-    );
+    if (state.links) {
+      setPositions(
+        this.links,
+        state.links.flatMap(([a, b]) => between(this.poses.get(a), this.poses.get(b))),
+      );
+    }
     this.camera.setSegments(state.pose ? cameraShape(matrixOf(state.pose)) : []);
-    for (const [id, object] of this.objects) {
-      const pose = poses.get(id);
-      object.visible = pose !== undefined;
-      if (pose) object.matrix.copy(matrixOf(pose));
-      object.matrixWorldNeedsUpdate = true;
+  }
+
+  /** Landmarks that have changed. */
+  setLandmarks(groups: CameraPoints[]): void {
+    for (const { id, position, color } of groups) {
+      this.landmarks.set(id, position, color);
+      const pose = this.poses.get(id);
+      if (pose) this.landmarks.setPose(id, pose);
     }
   }
 
-  setLandmarks(points: LivePoints): void {
-    const numbers = new Map<number, number[]>();
-    points.keyframe.forEach((id, i) => {
-      const list = numbers.get(id);
-      if (list) list.push(i);
-      else numbers.set(id, [i]);
-    });
-    for (const object of this.objects.values()) object.geometry.dispose();
-    this.objects.clear();
-    this.landmarks.clear();
-    for (const [id, list] of numbers) {
-      const position = list.flatMap((i) => [...points.position.subarray(3 * i, 3 * i + 3)]);
-      const color = Uint8Array.from(
-        list.flatMap((i) => [...points.color.subarray(3 * i, 3 * i + 3)]),
-      );
-      const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute("position", new THREE.Float32BufferAttribute(position, 3));
-      geometry.setAttribute("color", new THREE.BufferAttribute(color, 3, true));
-      const object = new THREE.Points(geometry, this.pointMaterial);
-      object.matrixAutoUpdate = false;
-      object.frustumCulled = false;
-      this.objects.set(id, object);
-      this.landmarks.add(object);
+  addViews({ maxOfView, views }: LiveCloud): void {
+    for (const { id, pose, position, color } of views) {
+      this.cloud.set(id, position, color);
+      this.cloud.setPose(id, pose!);
     }
+    this.cloud.limit(maxOfView);
+  }
+
+  /** Forgets all points: another run may be served by now. */
+  clear(): void {
+    this.landmarks.clear();
+    this.cloud.clear();
+  }
+
+  /** Least extent that holds the map and its surroundings, units of the world. */
+  get extent(): number {
+    const box = this.box();
+    const size = box.isEmpty() ? 0 : box.getSize(new THREE.Vector3()).length();
+    return Math.max(MIN_EXTENT, 2 * size); // Landmarks lie around the path.
+  }
+
+  get numKeyframes(): number {
+    return this.keyframes.length;
+  }
+
+  /** Box of the path; empty before the first keyframe. */
+  box(): THREE.Box3 {
+    const box = new THREE.Box3();
+    for (const keyframe of this.keyframes) {
+      box.expandByPoint(new THREE.Vector3(keyframe[2], keyframe[3], keyframe[4]));
+    }
+    return box;
   }
 
   setColors(colors: CanvasColors): void {

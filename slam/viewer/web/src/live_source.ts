@@ -4,6 +4,8 @@ import { timeout } from "./timeout";
 export interface LiveState {
   frame: number;
   time: number;
+  /** Milliseconds since this was the state of the run. */
+  age: number;
   state: "initializing" | "tracking" | "lost" | "finishing";
   isPaused: boolean;
   /** The run stands still because it is paused. */
@@ -11,12 +13,17 @@ export interface LiveState {
   map: number;
   revision: number;
   size: [number, number];
+  /** How far the work after the last frame has got. */
+  progress: { what: string; done: number; count: number; ofWhat: string } | null;
   pose: number[] | null;
-  keyframes: number[][];
-  links: [number, number][];
+  /** Id, frame and pose each; null where the page has them. */
+  keyframes: number[][] | null;
+  links: [number, number][] | null;
   loops: [number, number][];
   cameraHeight: number | null;
   landmarks: number;
+  /** Views of the dense cloud so far. */
+  views: number;
 }
 
 /** The image of a frame with its features. */
@@ -27,15 +34,32 @@ export interface LiveImage {
   jpeg: ArrayBuffer;
 }
 
-/** Landmarks in the frames of their keyframes. */
-export interface LivePoints {
-  revision: number;
-  keyframe: Int32Array;
+/** Points in the coordinates of a camera. */
+export interface CameraPoints {
+  /** Of the keyframe, or the index of the frame of a view. */
+  id: number;
+  /** x y z qx qy qz qw of the camera in the world; keyframes have theirs in LiveState. */
+  pose: Float32Array | null;
   position: Float32Array;
   color: Uint8Array;
 }
 
-const POINT_BYTES = 20;
+/** The landmarks of keyframes that have changed. */
+export interface LivePoints {
+  revision: number;
+  groups: CameraPoints[];
+}
+
+/** A further part of the dense cloud. */
+export interface LiveCloud {
+  /** Number of views that the page has with these. */
+  numViews: number;
+  /** Points of a view at most; what the page has beyond is dropped. */
+  maxOfView: number;
+  views: CameraPoints[];
+}
+
+const POINT_BYTES = 16;
 const TIMEOUT_MS = 20_000;
 
 async function get(path: string): Promise<Response> {
@@ -44,8 +68,9 @@ async function get(path: string): Promise<Response> {
   return response;
 }
 
-export async function liveState(): Promise<LiveState> {
-  return (await get("live.json")).json();
+/** `since`: the revision of the poses that the page has. */
+export async function liveState(since: number): Promise<LiveState> {
+  return (await get(`live.json?since=${since}`)).json();
 }
 
 export async function liveImage(): Promise<LiveImage> {
@@ -65,29 +90,89 @@ export function readLiveImage(bytes: ArrayBuffer): LiveImage {
   return { frame: view.getUint32(0, true), features, jpeg: bytes.slice(end) };
 }
 
-export async function livePoints(): Promise<LivePoints> {
-  return readLivePoints(await (await get("live.points")).arrayBuffer());
+/** Reads numbers one after the other. */
+class ByteReader {
+  private at = 0;
+  private readonly view: DataView;
+
+  constructor(
+    private readonly bytes: ArrayBuffer,
+    private readonly name: string,
+  ) {
+    this.view = new DataView(bytes);
+  }
+
+  get isAtEnd(): boolean {
+    return this.at === this.bytes.byteLength;
+  }
+
+  uint32(): number {
+    return this.view.getUint32(this.skip(4), true);
+  }
+
+  int32(): number {
+    return this.view.getInt32(this.skip(4), true);
+  }
+
+  floats(count: number): Float32Array {
+    const at = this.skip(4 * count);
+    return Float32Array.from({ length: count }, (_, i) => this.view.getFloat32(at + 4 * i, true));
+  }
+
+  /** A number of points, and the points. */
+  points(): { position: Float32Array; color: Uint8Array } {
+    const count = this.uint32();
+    const begin = this.skip(POINT_BYTES * count);
+    const position = new Float32Array(3 * count);
+    const color = new Uint8Array(3 * count);
+    for (let i = 0; i < count; ++i) {
+      for (let axis = 0; axis < 3; ++axis) {
+        const at = begin + POINT_BYTES * i;
+        position[3 * i + axis] = this.view.getFloat32(at + 4 * axis, true);
+        color[3 * i + axis] = this.view.getUint8(at + 12 + axis);
+      }
+    }
+    return { position, color };
+  }
+
+  private skip(count: number): number {
+    const at = this.at;
+    this.at += count;
+    if (this.at > this.bytes.byteLength) throw new Error(`${this.name} is truncated`);
+    return at;
+  }
+}
+
+/** `since`: the revision of the landmarks that the page has. */
+export async function livePoints(since: number): Promise<LivePoints> {
+  return readLivePoints(await (await get(`live.points?since=${since}`)).arrayBuffer());
 }
 
 export function readLivePoints(bytes: ArrayBuffer): LivePoints {
-  const view = new DataView(bytes);
-  const count = view.getUint32(4, true);
-  if (bytes.byteLength !== 8 + POINT_BYTES * count) throw new Error("live.points is truncated");
-  const points = {
-    revision: view.getUint32(0, true),
-    keyframe: new Int32Array(count),
-    position: new Float32Array(3 * count),
-    color: new Uint8Array(3 * count),
-  };
-  for (let i = 0; i < count; ++i) {
-    const at = 8 + POINT_BYTES * i;
-    points.keyframe[i] = view.getInt32(at, true);
-    for (let axis = 0; axis < 3; ++axis) {
-      points.position[3 * i + axis] = view.getFloat32(at + 4 + 4 * axis, true);
-      points.color[3 * i + axis] = view.getUint8(at + 16 + axis);
-    }
+  const reader = new ByteReader(bytes, "live.points");
+  const revision = reader.uint32();
+  const groups = Array.from({ length: reader.uint32() }, () => ({
+    id: reader.int32(),
+    pose: null,
+    ...reader.points(),
+  }));
+  return { revision, groups };
+}
+
+/** `since`: number of views that the page has. */
+export async function liveCloud(since: number): Promise<LiveCloud> {
+  return readLiveCloud(await (await get(`live.cloud?since=${since}`)).arrayBuffer());
+}
+
+export function readLiveCloud(bytes: ArrayBuffer): LiveCloud {
+  const reader = new ByteReader(bytes, "live.cloud");
+  const numViews = reader.uint32();
+  const maxOfView = reader.uint32();
+  const views: CameraPoints[] = [];
+  while (!reader.isAtEnd) {
+    views.push({ id: reader.int32(), pose: reader.floats(7), ...reader.points() });
   }
-  return points;
+  return { numViews, maxOfView, views };
 }
 
 /** Asks the run to do something. */

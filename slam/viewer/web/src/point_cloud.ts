@@ -12,7 +12,10 @@ import {
 import { FailedNodes } from "./failed_nodes";
 import { chooseNodes, type Choice } from "./node_choice";
 import { makePointMaterial, makeVisibleTexture, VISIBLE_WIDTH } from "./point_material";
-import { SourceError, type Source } from "./source";
+import { SourceError } from "./source";
+
+/** Where the bytes of an octree come from (Source). */
+export type OctreeSource = (begin: number, end: number) => Promise<ArrayBuffer>;
 
 /** Requests at once: as many as browsers make to a server. */
 const MAX_REQUESTS = 6;
@@ -42,9 +45,10 @@ export class PointCloud {
   private readonly failed: FailedNodes;
   private numLoaded = 0;
   private pass = 0;
+  private readonly cloudFromWorld = new THREE.Matrix4();
 
   private constructor(
-    private readonly source: Source,
+    private readonly source: OctreeSource,
     readonly header: OctreeHeader,
     readonly nodes: OctreeNode[],
     private readonly onChange: () => void,
@@ -60,15 +64,37 @@ export class PointCloud {
 
   /** Reads header, index and root. */
   static async open(
-    source: Source,
+    source: OctreeSource,
     onChange: () => void,
     onError: (error: Error) => void,
   ): Promise<PointCloud> {
-    const header = readHeader(await source.octree(0, HEADER_BYTES));
-    const index = await source.octree(header.indexOffset, header.fileSize);
+    const header = readHeader(await source(0, HEADER_BYTES));
+    const index = await source(header.indexOffset, header.fileSize);
     const cloud = new PointCloud(source, header, readIndex(index, header), onChange, onError);
     await cloud.load(0);
     return cloud;
+  }
+
+  /** Puts the cloud of another run into the world, whose units it may not have. */
+  setTransform(worldFromCloud: THREE.Matrix4): void {
+    this.group.matrixAutoUpdate = false;
+    this.group.matrix.copy(worldFromCloud);
+    this.group.updateMatrixWorld(true);
+    for (const { object } of this.loaded.values()) object.updateMatrixWorld(true);
+    this.cloudFromWorld.copy(worldFromCloud).invert();
+    const { uniforms } = this.material;
+    uniforms.cloudFromWorld.value.copy(this.cloudFromWorld);
+    const { side, cellsPerSide } = this.header;
+    uniforms.rootSpacing.value = (worldFromCloud.getMaxScaleOnAxis() * side) / cellsPerSide;
+  }
+
+  /** A view of the world as one of the cloud. */
+  private inCloud(camera: THREE.PerspectiveCamera): THREE.PerspectiveCamera {
+    const inside = camera.clone();
+    inside.matrixWorld.premultiply(this.cloudFromWorld);
+    inside.matrixWorldInverse.copy(inside.matrixWorld).invert();
+    inside.position.setFromMatrixPosition(inside.matrixWorld);
+    return inside;
   }
 
   /** Whether nodes that the view wants are still to come. */
@@ -86,9 +112,9 @@ export class PointCloud {
     const pixelsPerRadian = heightInPixels / (2 * Math.tan((camera.fov * Math.PI) / 360));
     this.material.uniforms.pixelsPerRadian.value = pixelsPerRadian;
     const choice: Choice = chooseNodes(this.nodes, {
-      camera,
+      camera: this.inCloud(camera),
       pixelsPerRadian,
-      clip,
+      clip: clip && clip.clone().applyMatrix4(this.cloudFromWorld),
       budget: this.pointBudget,
       cellsPerSide: this.header.cellsPerSide,
       isLoaded: (place) => this.loaded.has(place),
@@ -129,7 +155,7 @@ export class PointCloud {
     try {
       const bytes =
         node.pointCount > 0
-          ? await this.source.octree(node.offset, node.offset + nodeBytes(node))
+          ? await this.source(node.offset, node.offset + nodeBytes(node))
           : new ArrayBuffer(0);
       this.add(place, readPoints(bytes, node));
       this.failed.loaded(place);
@@ -154,11 +180,11 @@ export class PointCloud {
     object.position.set(...node.min);
     object.scale.set(scale, scale, scale);
     object.updateMatrix();
-    object.updateMatrixWorld();
     object.matrixAutoUpdate = false;
     object.frustumCulled = false;
     object.visible = false;
     this.group.add(object);
+    object.updateMatrixWorld(true);
     this.loaded.set(place, { node, object, points, lastShown: this.pass });
     this.numLoaded += node.pointCount;
   }

@@ -21,6 +21,8 @@ in uvec4 steps;      // position in the node, normal
 in vec4 tint;        // red, green, blue, confidence
 uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
 uniform vec3 rootMin;
+uniform mat4 cloudFromWorld;
+uniform vec4 overlay;  // a colour, and how much of it is mixed in
 uniform float rootSide, rootSpacing, pixelsPerRadian, pointScale, minSize, maxSize, ground, voxel;
 uniform float leafSpacing, leastConfidence;
 uniform usampler2D visibleNodes;  // masks of shown and of hidden children, place of the first shown
@@ -66,7 +68,7 @@ void main() {
   }
   vec4 inView = viewMatrix * world;
   gl_Position = projectionMatrix * inView;
-  float size = spacingAt(world.xyz) * pointScale * pixelsPerRadian / max(-inView.z, 1e-6);
+  float size = spacingAt((cloudFromWorld * world).xyz) * pointScale * pixelsPerRadian / max(-inView.z, 1e-6);
   gl_PointSize = clamp(size, minSize, maxSize);
   color = tint.rgb;
   if (colorBy != ${ColorBy.Image}) {
@@ -76,6 +78,7 @@ void main() {
     float place = (value - colorRange.x) / max(colorRange.y - colorRange.x, 1e-9);
     color = texture(colorMap, vec2(clamp(place, 0.002, 0.998), 0.5)).rgb;
   }
+  color = mix(color, overlay.rgb, overlay.a);
 }
 `;
 
@@ -99,6 +102,8 @@ export function makePointMaterial(): PointMaterial {
     fragmentShader: FRAGMENT,
     uniforms: {
       rootMin: { value: new THREE.Vector3() },
+      cloudFromWorld: { value: new THREE.Matrix4() },
+      overlay: { value: new THREE.Vector4(0, 0, 0, 0) },
       rootSide: { value: 1 },
       rootSpacing: { value: 1 },
       pixelsPerRadian: { value: 1 },

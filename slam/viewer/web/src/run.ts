@@ -21,6 +21,30 @@ export interface Run {
   images: number[];
   views: number[];
   missing: string[];
+  /** With another path. */
+  comparison?: Comparison | null;
+}
+
+/** A run against another path (slam/viewer/comparison.h). */
+export interface Comparison {
+  name: string;
+  isTruth: boolean;
+  isRigid: boolean;
+  /** Of the similarity from the other world to that of the run. */
+  scale: number;
+  rotation: [number, number, number, number];
+  translation: Vector;
+  /** Positions of the other path in the world of the run. */
+  path: number[];
+  hasCloud: boolean;
+  /** Of errors. */
+  unit: "m" | "units";
+  time: number[];
+  error: number[];
+  rmse: number;
+  mean: number;
+  median: number;
+  max: number;
 }
 
 /** summary.json; an older run may lack any of it. */

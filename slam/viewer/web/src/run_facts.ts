@@ -51,6 +51,11 @@ export function factTiles(run: Run): HTMLElement {
   add(number(s.loops), s.loops === 1 ? "loop closed" : "loops closed");
   add(number(s.lost), "times lost");
   if (s.cloud?.points) add(short(s.cloud.points), "points in the cloud");
+  const { comparison } = run;
+  if (comparison) {
+    add(length(comparison.rmse, comparison.unit), "absolute trajectory error (root mean square)");
+    add(length(comparison.max, comparison.unit), "largest error of a position");
+  }
   if ((s.maps ?? 1) > 1) add(number(s.maps), "maps");
   if (s.frames_per_second) add(s.frames_per_second.toFixed(1), "frames a second");
   if (s.seconds !== undefined) add(duration(s.seconds), "tracking and mapping");

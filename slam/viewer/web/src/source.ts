@@ -12,6 +12,8 @@ export interface Source {
   run(): Promise<Run>;
   /** Bytes `begin` to before `end` of the octree. */
   octree(begin: number, end: number): Promise<ArrayBuffer>;
+  /** The same of the run with which it is compared; a report has none. */
+  otherOctree(begin: number, end: number): Promise<ArrayBuffer>;
   /** JPEG of a frame of the input; an address for an image element. */
   inputImage(frame: number): string;
   /** JPEG of a view; an address for an image element. */
@@ -67,8 +69,16 @@ class ServerSource implements Source {
   }
 
   async octree(begin: number, end: number): Promise<ArrayBuffer> {
+    return this.part("cloud.octree", begin, end);
+  }
+
+  async otherOctree(begin: number, end: number): Promise<ArrayBuffer> {
+    return this.part("other.octree", begin, end);
+  }
+
+  private async part(name: string, begin: number, end: number): Promise<ArrayBuffer> {
     const range = `bytes=${begin}-${end - 1}`;
-    const bytes = await bytesOf(await request("cloud.octree", { Range: range }));
+    const bytes = await bytesOf(await request(name, { Range: range }));
     if (bytes.byteLength !== end - begin) {
       throw new SourceError("the octree has changed; load the page again", false);
     }
@@ -119,6 +129,10 @@ class EmbeddedSource implements Source {
   async octree(begin: number, end: number): Promise<ArrayBuffer> {
     this.bytes ??= fromBase64(embeddedText("embedded-octree"));
     return this.bytes.slice(begin, end);
+  }
+
+  async otherOctree(): Promise<ArrayBuffer> {
+    throw new Error("a report has one cloud only");
   }
 
   inputImage(frame: number): string {

@@ -3,6 +3,7 @@
 export interface CanvasColors {
   background: string;
   path: string;
+  other: string;
   keyframe: string;
   selected: string;
   link: string;
@@ -17,6 +18,7 @@ export function canvasColors(): CanvasColors {
   return {
     background: read("background"),
     path: read("path"),
+    other: read("other"),
     keyframe: read("keyframe"),
     selected: read("selected"),
     link: read("link"),

@@ -6,6 +6,9 @@ import { orientationOf, positionOf, type Run } from "./run";
 import type { CanvasColors } from "./theme";
 
 const MARK_PIXELS = 9;
+const PATH_PIXELS = 3;
+/** With colours that mean something. */
+const COLORED_PATH_PIXELS = 6;
 
 const MARK_VERTEX = `
 uniform float size;
@@ -33,6 +36,7 @@ void main() {
 export class WideLines {
   readonly object: LineSegments2;
   private readonly material: LineMaterial;
+  private color = "#ffffff";
 
   constructor(width: number) {
     this.material = new LineMaterial({ linewidth: width, worldUnits: false });
@@ -49,7 +53,20 @@ export class WideLines {
   }
 
   setColor(color: string): void {
-    this.material.color.set(color);
+    this.color = color;
+    if (!this.material.vertexColors) this.material.color.set(color);
+  }
+
+  /** Colours of the ends of segments, 3 numbers in 0..1 each; null: the one of setColor. */
+  setColors(colors: number[] | null): void {
+    if (colors) this.object.geometry.setColors(colors);
+    this.material.vertexColors = colors !== null;
+    this.material.color.set(colors ? "#ffffff" : this.color);
+    this.material.needsUpdate = true;
+  }
+
+  setWidth(pixels: number): void {
+    this.material.linewidth = pixels;
   }
 
   setOpacity(opacity: number): void {
@@ -71,15 +88,16 @@ export class WideLines {
 /** Path, keyframes, their graph and the loops. */
 export class TrajectoryLayer {
   readonly group = new THREE.Group();
-  readonly path = new WideLines(3);
+  readonly path = new WideLines(PATH_PIXELS);
   readonly loops = new WideLines(3);
   readonly links: THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>;
   readonly keyframes: THREE.Points<THREE.BufferGeometry, THREE.ShaderMaterial>;
   private readonly heading = new WideLines(4);
   private selected: number | null = null;
+  private pathColor = "#ffffff";
 
   constructor(private readonly run: Run) {
-    this.path.setSegments(this.pathSegments());
+    this.path.setSegments(this.segmentFrames().flatMap((frame) => positionOf(run, frame)));
     this.loops.setSegments(
       run.loops.flatMap(([a, b]) => [...positionOf(run, a), ...positionOf(run, b)]),
     );
@@ -126,7 +144,24 @@ export class TrajectoryLayer {
     this.heading.setSegments([...from.toArray(), ...to.toArray()]);
   }
 
+  /**
+   * Colours the path by frame, red, green and blue in 0..255; false: in one colour. Where the
+   * function gives null, and at steps without a colour at either end, it has that one as well.
+   */
+  colorPath(colorOf: false | ((frame: number) => [number, number, number] | null)): void {
+    this.path.setWidth(colorOf ? COLORED_PATH_PIXELS : PATH_PIXELS);
+    if (!colorOf) {
+      this.path.setColors(null);
+      return;
+    }
+    const plain = new THREE.Color(this.pathColor).multiplyScalar(255).toArray();
+    this.path.setColors(
+      this.segmentFrames().flatMap((frame) => (colorOf(frame) ?? plain).map((c) => c / 255)),
+    );
+  }
+
   setColors(colors: CanvasColors): void {
+    this.pathColor = colors.path;
     this.path.setColor(colors.path);
     this.loops.setColor(colors.loop);
     this.links.material.color.set(colors.link);
@@ -141,15 +176,14 @@ export class TrajectoryLayer {
     for (const lines of [this.path, this.loops, this.heading]) lines.resize(width, height);
   }
 
-  /** Steps from one map to the next are not drawn: that motion is assumed. */
-  private pathSegments(): number[] {
+  /** The frames at both ends of each step. Those from one map to the next are assumed. */
+  private segmentFrames(): number[] {
     const { index, map } = this.run.frames;
-    const segments: number[] = [];
+    const frames: number[] = [];
     for (let i = 1; i < index.length; ++i) {
-      if (map[i] !== map[i - 1]) continue;
-      segments.push(...positionOf(this.run, i - 1), ...positionOf(this.run, i));
+      if (map[i] === map[i - 1]) frames.push(i - 1, i);
     }
-    return segments;
+    return frames;
   }
 
   private makeLinks(): THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial> {

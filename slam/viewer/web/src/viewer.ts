@@ -6,11 +6,12 @@ import { Labels } from "./labels";
 import { centerMessage, togglePanel, type Layout } from "./layout";
 import { Measure, type MeasureMode } from "./measure";
 import { addCloudSections, fillPanel, showSection } from "./panel";
-import { Panorama } from "./panorama";
+import { ComparisonView } from "./comparison_view";
+import { KeyframeTour } from "./keyframe_tour";
 import { pickMark, pickPoint, type PickedPoint } from "./pick";
 import { PointCloud } from "./point_cloud";
 import { listenToPointer } from "./pointer";
-import { orientationOf, type Run } from "./run";
+import type { Run } from "./run";
 import type { Source } from "./source";
 import { canvasColors, followTheme } from "./theme";
 import { makeToolbar, type Toolbar } from "./toolbar";
@@ -20,10 +21,6 @@ import { viewportKeys } from "./viewport_keys";
 
 const PICK_PIXELS = 8;
 const MARK_PIXELS = 12;
-/**
- * From where a keyframe is looked at while the user goes from one to the next, units of the world.
- */
-const FOLLOW_DISTANCE = 25;
 
 export interface ViewerEvents {
   /** Points could not be loaded. */
@@ -37,12 +34,11 @@ export class Viewer {
   private readonly layer: TrajectoryLayer;
   private readonly labels: Labels;
   private readonly measure: Measure;
-  private readonly panorama: Panorama;
+  private readonly tour: KeyframeTour;
   private readonly toolbar: Toolbar;
   private cloud: PointCloud | null = null;
   private clipBox: ClipBox | null = null;
-  private selected: number | null = null;
-  private readonly marks: THREE.Vector3[];
+  private readonly comparison: ComparisonView | null;
 
   constructor(
     private readonly run: Run,
@@ -53,15 +49,10 @@ export class Viewer {
     this.viewport = new Viewport(page.canvas);
     this.labels = new Labels(page.labels, this.viewport);
     this.layer = new TrajectoryLayer(run);
-    this.marks = run.keyframes.map((_, i) => this.layer.positionOf(i));
     this.measure = new Measure(run, this.labels, () => this.viewport.invalidate());
-    this.panorama = new Panorama(run, source, {
-      onStep: (by) => this.step(by),
-      onClose: () => this.select(null),
-      onTurn: (forward, frame) => this.turned(forward, frame),
-      onGo: () => this.standAtSelected(),
-    });
-    page.stage.append(this.panorama.element);
+    this.tour = new KeyframeTour(run, source, page.stage, this.viewport, this.layer, () =>
+      this.headingLength(),
+    );
     this.viewport.overlay.add(this.layer.group, this.measure.group);
     this.toolbar = makeToolbar(page.toolbar, {
       onHome: () => this.viewport.flyTo(obliquePose(this.box(), this.viewport.camera)),
@@ -72,6 +63,10 @@ export class Viewer {
       onHelp: events.onHelp,
     });
     page.toolbar.hidden = false;
+    fillPanel(run, page, this.layer, () => this.viewport.invalidate());
+    this.comparison = run.comparison
+      ? new ComparisonView(run, run.comparison, page, this.layer, this.viewport)
+      : null;
     this.viewport.onDrawn = () => this.drawn();
     this.viewport.onResize = (width, height) => this.resized(width, height);
     const box = this.box();
@@ -81,6 +76,7 @@ export class Viewer {
     followTheme((colors) => {
       this.viewport.background.set(colors.background);
       this.layer.setColors(colors);
+      this.comparison?.setColor(colors.other);
       this.measure.setColor(colors.measure);
       this.clipBox?.setColor(colors.box);
       this.viewport.invalidate();
@@ -90,7 +86,6 @@ export class Viewer {
       onDoubleClick: (x, y) => this.doubleClicked(x, y),
       onHover: (x, y) => this.hovered(x, y),
     });
-    fillPanel(run, page, this.layer, () => this.viewport.invalidate());
   }
 
   /** Loads the cloud, as far as the run has one. */
@@ -100,7 +95,7 @@ export class Viewer {
       return;
     }
     const cloud = await PointCloud.open(
-      this.source,
+      (begin, end) => this.source.octree(begin, end),
       () => this.viewport.invalidate(),
       this.events.onFailure,
     );
@@ -114,7 +109,8 @@ export class Viewer {
     this.viewport.setExtent(
       whole.union(this.box()).getSize(new THREE.Vector3()).length() / Math.sqrt(3),
     );
-    this.viewport.setCloud(cloud);
+    this.viewport.addCloud(cloud);
+    this.comparison?.addCloud(this.source, cloud, this.events.onFailure);
     if (this.run.frames.index.length === 0)
       this.viewport.setPose(obliquePose(this.box(), this.viewport.camera));
     this.clipBox = new ClipBox(box, cloud, this.run.unit, () => this.clipChanged());
@@ -127,6 +123,7 @@ export class Viewer {
   /** The server answers again. */
   reconnected(): void {
     this.cloud?.retry();
+    this.comparison?.retry();
   }
 
   /** Handles a key; true if it had a meaning. */
@@ -139,8 +136,8 @@ export class Viewer {
       g: () => this.toolbar.toggleMode("height"),
       c: () => this.toolbar.toggleClip(),
       p: () => togglePanel(),
-      "[": () => this.step(-1),
-      "]": () => this.step(1),
+      "[": () => this.tour.step(-1),
+      "]": () => this.tour.step(1),
       Escape: () => this.escape(),
     };
     const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
@@ -148,48 +145,11 @@ export class Viewer {
     return action !== undefined;
   }
 
-  /** Opens a keyframe, by its place among the keyframes; null closes the panorama. */
-  select(keyframe: number | null): void {
-    this.selected = keyframe;
-    this.layer.select(keyframe, this.headingLength());
-    document.body.classList.toggle("with-panorama", keyframe !== null);
-    if (keyframe === null) this.panorama.hide();
-    else void this.panorama.show(keyframe);
-    this.makeRoom();
-    this.viewport.invalidate();
-  }
-
-  private step(by: number): void {
-    const count = this.run.keyframes.length;
-    if (count === 0) return;
-    const next = this.selected === null ? (by > 0 ? 0 : count - 1) : this.selected + by;
-    this.select((next + count) % count);
-    this.follow(this.marks[this.selected!]);
-  }
-
-  /** Moves along with a keyframe, and nearer where the whole run is in view. */
-  private follow(target: THREE.Vector3): void {
-    const offset = this.viewport.camera.position.clone().sub(this.viewport.controls.target);
-    offset.clampLength(0, FOLLOW_DISTANCE);
-    this.viewport.flyTo({ eye: target.clone().add(offset), target: target.clone() });
-  }
-
-  /** Moves the middle of the view out of the panorama's way. */
-  private makeRoom(): void {
-    const { offsetWidth, offsetHeight } = this.panorama.element;
-    const isBeside = this.page.stage.clientWidth > 2 * offsetWidth;
-    const isOpen = this.panorama.isOpen;
-    this.viewport.setShift(
-      isOpen && isBeside ? offsetWidth / 2 : 0,
-      isOpen && !isBeside ? offsetHeight / 2 : 0,
-    );
-  }
-
   private escape(): void {
     if (this.measure.mode) {
       this.measure.endLine();
       this.toolbar.toggleMode(this.measure.mode);
-    } else if (this.panorama.isOpen) this.select(null);
+    } else if (this.tour.panorama.isOpen) this.tour.select(null);
   }
 
   private setMode(mode: MeasureMode | null): void {
@@ -209,25 +169,6 @@ export class Viewer {
 
   private headingLength(): number {
     return Math.max(0.03 * this.box().getSize(new THREE.Vector3()).length(), 0.5);
-  }
-
-  private turned(forward: THREE.Vector3, frame: number): void {
-    const place = this.run.frames.index.indexOf(frame);
-    if (this.selected === null || place < 0) return;
-    const orientation = new THREE.Quaternion(...orientationOf(this.run, place));
-    const direction = forward.clone().applyQuaternion(orientation);
-    this.layer.showHeading(direction, this.headingLength());
-    this.viewport.invalidate();
-  }
-
-  private standAtSelected(): void {
-    if (this.selected === null) return;
-    const eye = this.marks[this.selected].clone();
-    const forward = this.layer.forwardOf(this.selected);
-    this.viewport.flyTo({
-      eye: eye.clone().addScaledVector(forward, -0.02),
-      target: eye.addScaledVector(forward, 2),
-    });
   }
 
   private box(): THREE.Box3 {
@@ -254,7 +195,7 @@ export class Viewer {
     }
     const isMark =
       this.layer.keyframes.visible &&
-      pickMark(this.viewport, this.marks, x, y, MARK_PIXELS) !== null;
+      pickMark(this.viewport, this.tour.marks, x, y, MARK_PIXELS) !== null;
     this.page.canvas.classList.toggle("pointing", isMark);
   }
 
@@ -265,8 +206,8 @@ export class Viewer {
       return;
     }
     if (!this.layer.keyframes.visible) return;
-    const mark = pickMark(this.viewport, this.marks, x, y, MARK_PIXELS);
-    if (mark !== null) this.select(mark);
+    const mark = pickMark(this.viewport, this.tour.marks, x, y, MARK_PIXELS);
+    if (mark !== null) this.tour.select(mark);
   }
 
   private lookAt(target: THREE.Vector3): void {
@@ -278,17 +219,20 @@ export class Viewer {
     this.layer.resize(width, height);
     this.measure.resize(width, height);
     this.clipBox?.lines.resize(width, height);
-    this.makeRoom();
+    this.comparison?.resize(width, height);
+    this.tour.makeRoom();
   }
 
   private drawn(): void {
     this.labels.update();
     const { canvas, counter, progress } = this.page;
     const shown = this.cloud?.shownPoints ?? 0;
+    const isLoading = (this.cloud?.isLoading ?? false) || (this.comparison?.isLoading ?? false);
     canvas.dataset.points = String(shown);
-    canvas.dataset.loading = String(this.cloud?.isLoading ?? false);
+    canvas.dataset.otherPoints = String(this.comparison?.shownPoints ?? 0);
+    canvas.dataset.loading = String(isLoading);
     if (!this.cloud) return;
-    progress.hidden = !this.cloud.isLoading;
+    progress.hidden = !isLoading;
     const total = this.cloud.header.pointCount;
     counter.textContent = `${short(shown)} of ${short(total)} points`;
   }

@@ -20,14 +20,16 @@ export class Viewport {
   readonly overlay = new THREE.Scene();
   readonly eyeDome = new EyeDome();
   readonly background = new THREE.Color();
-  cloud: PointCloud | null = null;
+  /** The cloud of the run, and of one with which it is compared. */
+  private readonly clouds: PointCloud[] = [];
   clip: THREE.Box3 | null = null;
   /** Called after every drawing. */
   onDrawn: () => void = () => {};
   /** Called when the size of the canvas has changed. */
   onResize: (width: number, height: number) => void = () => {};
   readonly renderer: THREE.WebGLRenderer;
-  private readonly points = new THREE.Scene();
+  /** What is drawn with eye-dome lighting. */
+  readonly points = new THREE.Scene();
   private isQueued = false;
   private flight: { from: Pose; to: Pose; begin: number } | null = null;
   private extent = 10;
@@ -52,8 +54,8 @@ export class Viewport {
     this.resize();
   }
 
-  setCloud(cloud: PointCloud): void {
-    this.cloud = cloud;
+  addCloud(cloud: PointCloud): void {
+    this.clouds.push(cloud);
     this.points.add(cloud.group);
     this.invalidate();
   }
@@ -187,7 +189,10 @@ export class Viewport {
     this.camera.far = 3 * this.extent + 2 * distance;
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
-    this.cloud?.update(this.camera, this.canvas.height, this.clip);
+    for (const cloud of this.clouds) {
+      cloud.pointBudget = this.clouds[0].pointBudget;
+      if (cloud.group.visible) cloud.update(this.camera, this.canvas.height, this.clip);
+    }
     this.eyeDome.render(this.renderer, this.points, this.camera, this.background);
     this.renderer.render(this.overlay, this.camera);
     this.onDrawn();

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -33,6 +34,28 @@ std::tuple<int, std::uint32_t, std::uint32_t, std::uint32_t> KeyOf(const OctreeN
   return {node.level, node.cell[0], node.cell[1], node.cell[2]};
 }
 
+/// Tells the cell of a level in which a position lies.
+class CellFinder {
+ public:
+  CellFinder(const OctreeHeader& header, int level)
+      : header_(header), cell_(std::ldexp(header.side, -level) / header.cells_per_side) {}
+
+  std::array<int, 3> operator()(const Eigen::Vector3f& position) const {
+    std::array<int, 3> at{};
+    for (int axis = 0; axis < 3; ++axis) {
+      // The point at the upper end is in the last cell.
+      at[axis] =
+          std::min(static_cast<int>(std::floor((position[axis] - header_.min[axis]) / cell_)),
+                   static_cast<int>(std::lround(header_.side / cell_)) - 1);
+    }
+    return at;
+  }
+
+ private:
+  const OctreeHeader& header_;
+  const double cell_;
+};
+
 class OctreeTest : public testing::Test {
  protected:
   void Write(int count) {
@@ -66,6 +89,32 @@ TEST_F(OctreeTest, HasEveryPointInExactlyOneNodeWithItsValues) {
   EXPECT_THAT(seen, testing::Each(1));
 }
 
+TEST_F(OctreeTest, ShowsTheMostConfidentPointOfEachCell) {
+  Write(200000);
+  const OctreeFile octree(folder_ / "a.octree");
+  const OctreeHeader& header = octree.header();
+  for (int level = 0; level < 3; ++level) {
+    const CellFinder cell_of(header, level);
+    const auto stored = [](const SurfacePoint& point) {
+      return std::lround(255 * point.confidence);
+    };
+    std::map<std::array<int, 3>, long> best;
+    for (const SurfacePoint& point : points_) {
+      long& confidence = best[cell_of(point.position)];
+      confidence = std::max(confidence, stored(point));
+    }
+    std::map<std::array<int, 3>, long> shown;
+    for (const OctreeNode& node : octree.nodes()) {
+      if (node.level > level) continue;
+      for (const SurfacePoint& read : octree.ReadPoints(node)) {
+        long& confidence = shown[cell_of(points_[NumberOf(read)].position)];
+        confidence = std::max(confidence, stored(read));
+      }
+    }
+    EXPECT_EQ(shown, best) << "level " << level;
+  }
+}
+
 TEST_F(OctreeTest, HalvesTheSpacingOnEachLevel) {
   Write(200000);
   const OctreeFile octree(folder_ / "a.octree");
@@ -74,14 +123,7 @@ TEST_F(OctreeTest, HalvesTheSpacingOnEachLevel) {
   for (const OctreeNode& node : octree.nodes()) deepest = std::max<int>(deepest, node.level);
   ASSERT_GE(deepest, 3);
   for (int level = 0; level < deepest; ++level) {
-    const double cell = std::ldexp(header.side, -level) / header.cells_per_side;
-    const auto cell_of = [&](const Eigen::Vector3f& position) {
-      std::array<int, 3> at{};
-      for (int axis = 0; axis < 3; ++axis) {
-        at[axis] = static_cast<int>(std::floor((position[axis] - header.min[axis]) / cell));
-      }
-      return at;
-    };
+    const CellFinder cell_of(header, level);
     // No cell has two points of inner nodes down to this level, and each that has a point at all
     // has one of them, or lies in a leaf that is not coarser. Positions near a border are left out,
     // where quantization may have moved them into the next cell.

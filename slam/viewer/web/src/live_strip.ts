@@ -1,0 +1,52 @@
+import { h } from "./dom";
+import { grouped } from "./format";
+import type { LiveImage } from "./live_source";
+
+const MATCHED = "#4be08a";
+const UNMATCHED = "#ffffff90";
+
+/** The present image of a run with its features. */
+export class LiveStrip {
+  private readonly canvas = h("canvas", {
+    role: "img",
+    "aria-label": "Present image with its features: those that agree with the map are filled",
+  });
+  readonly element = h("div", { class: "live-image", hidden: true }, this.canvas);
+  /** Index of the frame that is shown; -1: none. */
+  frame = -1;
+  /** Matched features in words. */
+  matched = "";
+
+  /** `onAppear` is called when the first image takes its room. */
+  constructor(private readonly onAppear: () => void) {}
+
+  async show({ frame, features, jpeg }: LiveImage): Promise<void> {
+    const image = await createImageBitmap(new Blob([jpeg], { type: "image/jpeg" }));
+    this.frame = frame;
+    const numMatched = features.filter((value, i) => i % 3 === 2 && value === 1).length;
+    this.matched = `${grouped(numMatched)} of ${grouped(features.length / 3)}`;
+    this.canvas.width = image.width;
+    this.canvas.height = image.height;
+    this.canvas.getContext("2d")!.drawImage(image, 0, 0);
+    image.close();
+    if (this.element.hidden) {
+      this.element.hidden = false;
+      this.onAppear();
+    }
+    this.drawFeatures(features);
+  }
+
+  private drawFeatures(features: Float32Array): void {
+    const context = this.canvas.getContext("2d")!;
+    const { width, height } = this.canvas;
+    const radius = Math.max(2, width / 400);
+    for (let i = 0; i < features.length; i += 3) {
+      const isMatched = features[i + 2] === 1;
+      context.beginPath();
+      context.arc(features[i] * width, features[i + 1] * height, radius, 0, 2 * Math.PI);
+      context.fillStyle = context.strokeStyle = isMatched ? MATCHED : UNMATCHED;
+      if (isMatched) context.fill();
+      else context.stroke();
+    }
+  }
+}

@@ -1,0 +1,122 @@
+// A run that goes on, in a real browser (ORB360_RUN: a finished run, beside which runs are written,
+// ORB360_TOWN: its input).
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { coverage, launch, serveLive } from "./page.mjs";
+
+const out = join(process.env.ORB360_RUN, "..");
+const town = process.env.ORB360_TOWN;
+let browser;
+
+before(async () => {
+  browser = await launch();
+});
+
+after(() => browser.close());
+
+async function openLive(url) {
+  const page = await browser.newPage();
+  page.problems = [];
+  page.on("pageerror", (error) => page.problems.push(error.message));
+  page.on("console", (message) => message.type() === "error" && page.problems.push(message.text()));
+  await page.emulateMediaFeatures([
+    { name: "prefers-color-scheme", value: "dark" },
+    { name: "prefers-reduced-motion", value: "reduce" },
+  ]);
+  await page.goto(url);
+  return page;
+}
+
+function clickButton(page, name) {
+  return page.evaluate(
+    (text) =>
+      [...document.querySelectorAll(".live-buttons button")]
+        .find((button) => button.textContent === text)
+        .click(),
+    name,
+  );
+}
+
+/** What the page tells of the view, such as the number of the frame. */
+function numberOf(page, name) {
+  return page.$eval("#view", (canvas, key) => Number(canvas.dataset[key]), name);
+}
+
+function waitFor(page, name, least) {
+  return page.waitForFunction(
+    (key, value) => Number(document.querySelector("#view").dataset[key]) >= value,
+    { timeout: 120_000 },
+    name,
+    least,
+  );
+}
+
+test("shows, steps and finishes a run that goes on", async () => {
+  const live = await serveLive(town, join(out, "live"));
+  const page = await openLive(live.url);
+  const frameNow = () => numberOf(page, "frame");
+  const click = (name) => clickButton(page, name);
+  await click("One frame");
+  await page.waitForFunction(() => document.body.dataset.state === "ready");
+  for (let i = 0; i < 4; ++i) {
+    const before = await frameNow();
+    await click("One frame");
+    await page.waitForFunction(
+      (frame) => Number(document.querySelector("#view").dataset.frame) === frame + 1,
+      {},
+      before,
+    );
+  }
+  assert.equal(await page.$eval(".chip", (chip) => chip.textContent), "paused");
+  assert.equal(
+    await page.$eval("#view", (canvas) => canvas.dataset.imageFrame),
+    String(await frameNow()),
+  );
+  const isFollowing = () => page.$eval(".check input", (input) => input.checked);
+  assert.ok(await isFollowing());
+  await page.focus("#view");
+  await page.keyboard.press("ArrowLeft");
+  assert.ok(!(await isFollowing()), "keys move the camera, which then follows no more");
+  await click("Go on");
+  await page.waitForFunction(
+    () =>
+      Number(document.querySelector("#view").dataset.keyframes) > 3 &&
+      Number(document.querySelector("#view").dataset.landmarks) > 100,
+  );
+  assert.ok(await page.$eval(".live-image canvas", (canvas) => canvas.width > 300));
+  assert.deepEqual(page.problems, []);
+  await click("Finish early");
+  assert.equal(await live.ended, 0);
+  await page.waitForFunction(() => document.body.dataset.connection === "lost");
+  assert.match(await page.$eval("#banner", (banner) => banner.textContent), /has ended/);
+  await page.close();
+});
+
+test("shows the dense cloud as depth is computed", async () => {
+  const live = await serveLive(town, join(out, "live_dense"), ["--cloud-quality", "draft"]);
+  const page = await openLive(live.url);
+  await clickButton(page, "One frame");
+  await page.waitForFunction(() => document.body.dataset.state === "ready");
+  await clickButton(page, "Go on");
+  await waitFor(page, "keyframes", 8);
+  await clickButton(page, "Finish early");
+  await page.waitForFunction(
+    () => /^computing depth: \d+ of \d+ frames$/.test(document.querySelector(".chip").textContent),
+    { timeout: 120_000 },
+  );
+  assert.ok(
+    await page.$$eval(".live-buttons button", (all) => all.every((button) => button.disabled)),
+    "there is nothing left to pause",
+  );
+  await waitFor(page, "densePoints", 1000);
+  const few = await numberOf(page, "densePoints");
+  assert.ok(few <= 5000 * 40, `${few} points at once`);
+  assert.ok(await page.$eval(".live-image", (strip) => strip.hidden), "the image hides the cloud");
+  await waitFor(page, "densePoints", few + 5000);
+  assert.ok((await coverage(page)) > 0.02);
+  assert.match(await page.$eval(".tiles", (tiles) => tiles.textContent), /points of depth maps/);
+  assert.deepEqual(page.problems, []);
+  assert.equal(await live.ended, 0);
+  await page.close();
+});
