@@ -23,7 +23,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "benchmarks/slam/sequence_folder.h"
-#include "slam/pipeline/moving_object_pass.h"
+#include "slam/pipeline/view_depth.h"
 #include "slam/pipeline/view_selection.h"
 #include <orb360/slam/io/depth_image.h>
 #include <orb360/slam/io/trajectory.h>
@@ -89,16 +89,19 @@ void Measure(const fs::path& sequence, const fs::path& run, const std::optional<
     after.confidence = after.confidence.clone();
     int count = 0;
     if (ground) {
-      const orb360::MovingObjectPassOptions options;
-      std::vector<double> distances = options.distances;
+      const orb360::ViewCompletionOptions options;
+      std::vector<double> distances = options.ground_distances;
       for (double& distance : distances) distance *= std::exp(ground->log_height);
       std::vector<const orb360::DepthView*> others;
       for (const size_t other :
            orb360::ChooseViewsByDistance(views, i, all, distances, options.max_distance_ratio)) {
         others.push_back(&read[other].view);
       }
-      count = orb360::PlaceMovingObjects(orb360::FindBelowGround(read[i].view, *ground, {}),
-                                         read[i].view, *ground, others, {}, &after);
+      const auto objects =
+          orb360::FindMovingObjects(orb360::FindBelowGround(read[i].view, *ground, options.objects),
+                                    read[i].view, *ground, others, options.objects);
+      orb360::PlaceOnGround(objects, *ground, options.objects, &after);
+      count = static_cast<int>(objects.size());
     }
     cv::Mat shown;
     if (images) cv::cvtColor(orb360::ReadGray(sequence, read[i].index), shown, cv::COLOR_GRAY2BGR);

@@ -11,6 +11,7 @@
 
 #include "nn/base/statistics.h"
 #include <orb360/nn/base/check.h>
+#include <orb360/slam/geometry/camera.h>
 
 namespace orb360 {
 namespace {
@@ -75,26 +76,27 @@ cv::Mat Turned(const cv::Mat& image, int first) {
   return turned;
 }
 
-/// A column of an object.
-struct ObjectColumn {
-  std::vector<int> rows;  ///< Those below the ground, downward.
-  double distance;        ///< Of the place where it touches the ground, horizontally.
+/// A column of a region below the ground.
+struct RegionColumn {
+  int column;
+  std::vector<int> rows;  ///< Downward.
+  double distance;        ///< Of the ground at its lowest row, horizontally.
   float median_range;
 };
 
 /// The rows above the highest one of a column whose ranges are like its own, downward from there.
-int CountRowsAbove(const DepthView& view, int column, const ObjectColumn& object,
-                   const Plane& plane, double max_height) {
+int CountRowsAbove(const DepthView& view, const RegionColumn& region, const Plane& plane,
+                   double max_height) {
   constexpr float kMaxRatio = 1.5F;  // of the ranges of one object
   constexpr float kFarther = 1.1F;   // of a range that is not right yet
   int count = 0;
-  for (int row = object.rows.front() - 1; row >= 0; --row, ++count) {
-    const float range = view.range(row, column);
-    const double fall = plane.Fall(view.BearingOf(row, column));
-    const double placed = object.distance / std::sqrt(1 - fall * fall);
+  for (int row = region.rows.front() - 1; row >= 0; --row, ++count) {
+    const float range = view.range(row, region.column);
+    const double fall = plane.Fall(view.BearingOf(row, region.column));
+    const double placed = region.distance / std::sqrt(1 - fall * fall);
     if (plane.height - placed * fall > max_height * plane.height) break;
     if (!(range > kFarther * placed)) break;
-    if (range > kMaxRatio * object.median_range || range * kMaxRatio < object.median_range) break;
+    if (range > kMaxRatio * region.median_range || range * kMaxRatio < region.median_range) break;
   }
   return count;
 }
@@ -121,14 +123,15 @@ cv::Mat FindBelowGround(const DepthView& view, const DenseGround& ground,
   return below;
 }
 
-int PlaceMovingObjects(const cv::Mat& below_ground, const DepthView& view,
-                       const DenseGround& ground, std::span<const DepthView* const> others,
-                       const MovingObjectOptions& options, DenseDepth* depth) {
-  ORB360_CHECK(below_ground.type() == CV_8U && below_ground.size() == depth->range.size() &&
-                   below_ground.size() == cv::Size(view.width(), view.height()),
-               below_ground.size(), depth->range.size());
+std::vector<MovingObject> FindMovingObjects(const cv::Mat& below_ground, const DepthView& view,
+                                            const DenseGround& ground,
+                                            std::span<const DepthView* const> others,
+                                            const MovingObjectOptions& options) {
+  ORB360_CHECK(
+      below_ground.type() == CV_8U && below_ground.size() == cv::Size(view.width(), view.height()),
+      below_ground.type(), below_ground.size());
   const std::optional<int> start = EmptyColumn(below_ground);
-  if (!start) return 0;  // There is no ground around the camera.
+  if (!start) return {};  // There is no ground around the camera.
   const Plane plane(ground);
   std::vector<Rigid3> other_from_view;
   for (const DepthView* other : others) {
@@ -140,8 +143,7 @@ int PlaceMovingObjects(const cv::Mat& below_ground, const DepthView& view,
   const int count =
       cv::connectedComponentsWithStats(Turned(below_ground, *start), labels, boxes, centroids);
   const double pixel_angle = std::numbers::pi / view.height();
-  const auto confidence = static_cast<float>(1 / (1 + options.stated_error));
-  int num_objects = 0;
+  std::vector<MovingObject> objects;
   for (int label = 1; label < count; ++label) {
     const cv::Rect box(
         boxes.at<int>(label, cv::CC_STAT_LEFT), boxes.at<int>(label, cv::CC_STAT_TOP),
@@ -149,7 +151,7 @@ int PlaceMovingObjects(const cv::Mat& below_ground, const DepthView& view,
     Sightings sightings;
     double solid_angle = 0;
     std::vector<float> ratios;  // of the ranges to those of the ground
-    std::vector<ObjectColumn> columns;
+    std::vector<RegionColumn> columns;
     for (int x = box.x; x < box.x + box.width; ++x) {
       const int column = (x + *start) % view.width();
       std::vector<int> rows;
@@ -168,27 +170,46 @@ int PlaceMovingObjects(const cv::Mat& below_ground, const DepthView& view,
         }
       }
       const double fall = plane.Fall(view.BearingOf(rows.back(), column));
-      columns.push_back({rows, plane.height * std::sqrt(1 - fall * fall) / fall, Median(ranges)});
+      columns.push_back(
+          {column, rows, plane.height * std::sqrt(1 - fall * fall) / fall, Median(ranges)});
     }
     if (solid_angle < options.min_solid_angle || sightings.ground == 0) continue;
     if (Median(ratios) < options.min_range_ratio) continue;
     if (sightings.ground < options.min_ground_ratio * sightings.through) continue;
-    ++num_objects;
-    for (size_t i = 0; i < columns.size(); ++i) {
-      const int column = (box.x + static_cast<int>(i) + *start) % view.width();
-      const ObjectColumn& object = columns[i];
-      std::vector<int> rows = object.rows;
-      const int above = CountRowsAbove(view, column, object, plane, options.max_height);
-      for (int k = 1; k <= above; ++k) rows.push_back(object.rows.front() - k);
-      for (const int row : rows) {
-        const double fall = plane.Fall(view.BearingOf(row, column));
-        depth->range.at<float>(row, column) =
-            static_cast<float>(object.distance / std::sqrt(1 - fall * fall));
-        depth->confidence.at<float>(row, column) = confidence;
+    MovingObject& object = objects.emplace_back();
+    for (const RegionColumn& region : columns) {
+      const int above = CountRowsAbove(view, region, plane, options.max_height);
+      object.columns.push_back(
+          {region.column, region.rows.front() - above, region.rows.back(), region.distance});
+    }
+  }
+  return objects;
+}
+
+cv::Mat MaskOf(std::span<const MovingObject> objects, cv::Size size) {
+  cv::Mat mask = cv::Mat::zeros(size, CV_8U);
+  for (const MovingObject& object : objects) {
+    for (const MovingObject::Column& column : object.columns) {
+      mask(cv::Rect(column.column, column.top, 1, column.bottom + 1 - column.top)) = 255;
+    }
+  }
+  return mask;
+}
+
+void PlaceOnGround(std::span<const MovingObject> objects, const DenseGround& ground,
+                   const MovingObjectOptions& options, DenseDepth* depth) {
+  const EquirectangularCamera camera(depth->range.cols, depth->range.rows);
+  const auto confidence = static_cast<float>(1 / (1 + options.stated_error));
+  for (const MovingObject& object : objects) {
+    for (const MovingObject::Column& column : object.columns) {
+      for (int row = column.top; row <= column.bottom; ++row) {
+        const double fall = ground.up.dot(camera.Bearing({column.column + 0.5, row + 0.5}));
+        depth->range.at<float>(row, column.column) =
+            static_cast<float>(column.distance / std::sqrt(1 - fall * fall));
+        depth->confidence.at<float>(row, column.column) = confidence;
       }
     }
   }
-  return num_objects;
 }
 
 }  // namespace orb360

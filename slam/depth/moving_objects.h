@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include <opencv2/core.hpp>
 
@@ -39,17 +40,36 @@ struct MovingObjectOptions {
 cv::Mat FindBelowGround(const DepthView& view, const DenseGround& ground,
                         const MovingObjectOptions& options);
 
-/// Corrects the ranges of objects that move along with the camera. Returns their number.
+/// An object in an image of the whole sphere.
+struct MovingObject {
+  struct Column {
+    int column;
+    int top;          ///< First row.
+    int bottom;       ///< Last row, where it touches the ground.
+    double distance;  ///< Horizontal, of the ground there, in the unit of the depth.
+  };
+  std::vector<Column> columns;
+};
+
+/// Returns the objects in a view that move along with the camera.
 ///
 /// At a constant velocity the images of such an object agree with a point at rest in every view. If
 /// it moves the same way as the camera, that point is farther away than the object, and below the
 /// ground for the lower part of it. No comparison of ranges finds this; only the ground on which
 /// the object stands does. `others`, which should be far enough apart for an object to have left
 /// its place, tell whether there is ground: a connected region of `below_ground` (FindBelowGround)
-/// is an object if they see it. The object is put upright where it touches the ground: its pixels
-/// get the distance of that, and so do those above as long as their ranges are like its own.
-int PlaceMovingObjects(const cv::Mat& below_ground, const DepthView& view,
-                       const DenseGround& ground, std::span<const DepthView* const> others,
-                       const MovingObjectOptions& options, DenseDepth* depth);
+/// is an object if they see it. What is above the region belongs to it as long as its ranges are
+/// like those of the region.
+std::vector<MovingObject> FindMovingObjects(const cv::Mat& below_ground, const DepthView& view,
+                                            const DenseGround& ground,
+                                            std::span<const DepthView* const> others,
+                                            const MovingObjectOptions& options);
+
+/// Returns the pixels of objects, CV_8U, 255 there.
+cv::Mat MaskOf(std::span<const MovingObject> objects, cv::Size size);
+
+/// Puts objects upright where they touch the ground, with the error that is stated for them.
+void PlaceOnGround(std::span<const MovingObject> objects, const DenseGround& ground,
+                   const MovingObjectOptions& options, DenseDepth* depth);
 
 }  // namespace orb360

@@ -5,14 +5,14 @@
 #include <map>
 
 #include "slam/pipeline/dense_views.h"
-#include "slam/pipeline/moving_object_pass.h"
 #include "slam/pipeline/view_depth.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
 DenseMapper::DenseMapper(const std::filesystem::path& weights, const std::filesystem::path& folder,
                          const DepthOptions& options, int num_threads, const nn::Device& device)
-    : options_(options),
+    : folder_(folder),
+      options_(options),
       num_threads_(num_threads),
       depth_maps_(folder),
       completer_(
@@ -50,14 +50,10 @@ ViewDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished, std::s
                            .keeps_completed = options_.completion};
   if (!options_.stereo) options.baselines.clear();
   try {
-    ViewDepthReport report =
-        orb360::ComputeDepth(covisible.views(), neighbours_of, landmarks_of, options,
-                             images_.store(), &completer_, num_threads_, depth_maps_, callbacks);
-    if (finished.up) {
-      report.with_moving_objects = CorrectMovingObjects(
-          covisible.views(), neighbours_of, *finished.up, {}, depth_maps_, callbacks.progress);
-    }
-    return report;
+    const DepthMapStore first(folder_ / "first");
+    return orb360::ComputeDepth(covisible.views(), neighbours_of, landmarks_of, finished.up,
+                                options, images_.store(), &completer_, num_threads_, first,
+                                depth_maps_, callbacks);
   } catch (const UserError&) {
     images_.Clear();
     throw;

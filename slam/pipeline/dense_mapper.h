@@ -58,6 +58,7 @@ class DenseMapper {
   std::optional<KnownGround> Ground() const;
 
  private:
+  const std::filesystem::path folder_;
   const DepthOptions options_;
   const int num_threads_;
   std::vector<DenseGround> grounds_;

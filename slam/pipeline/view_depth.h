@@ -1,10 +1,16 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "slam/depth/dense_cloud.h"
+#include "slam/depth/dense_ground.h"
+#include "slam/depth/moving_objects.h"
+#include "slam/depth/reprojected_points.h"
 #include "slam/io/depth_map_store.h"
 #include "slam/io/image_store.h"
 #include "slam/stereo/spherical_stereo.h"
@@ -13,6 +19,21 @@
 #include <orb360/slam/pipeline/view_depth_report.h>
 
 namespace orb360 {
+
+/// Of the second pass (CompleteViews).
+struct ViewCompletionOptions {
+  /// Distances of the views whose points a view gets, as multiples of the median of its ranges, on
+  /// each side of the path.
+  std::vector<double> distances = {0.4, 0.8, 1.6, 3.2, 6.4};
+  /// Distances of the views that tell whether there is ground where an object is, in heights of the
+  /// camera. A car has left its place on the way.
+  std::vector<double> ground_distances = {3, 4.5, 6.5, 9};
+  /// Largest ratio between a distance and the one wanted.
+  double max_distance_ratio = 1.42;
+  ReprojectionOptions reprojection = {};
+  MovingObjectOptions objects = {};
+  DenseGroundOptions ground = {};
+};
 
 struct ViewDepthOptions {
   /// Least distance between two reference views that follow each other, as a multiple of the median
@@ -45,6 +66,7 @@ struct ViewDepthOptions {
   /// Whether the depth has what the network completes. Otherwise it has what stereo measures.
   bool keeps_completed = true;
   SphericalStereoOptions stereo = {};
+  ViewCompletionOptions second = {};
 };
 
 /// Returns those of `neighbours` of a view from which its ranges are measured (ViewDepthOptions):
@@ -59,16 +81,23 @@ using NeighbourFinder = std::function<std::vector<size_t>(size_t view)>;
 /// Returns the landmarks that a view sees (ProjectLandmarks), in the unit of its pose.
 using LandmarkProjector = std::function<std::vector<SparsePoint>(const DenseView& view)>;
 
-/// Chooses reference views along the path by their distance over the range of the surroundings,
-/// computes their depth and puts it into `store`. Ranges are measured by multi-view stereo with the
-/// final poses of the views around them; the network completes the rest from these and from
-/// landmarks. What is seen is kept. A view that gets no depth counts for the distance like any
-/// other. After the progress has returned false, the rest is left to the network. `views` are
-/// ordered by frame, and their images are in `images`. The result does not depend on the number of
-/// threads. Throws UserError where the disk fails.
+/// Computes the depth of reference views and puts it into `store`, in two passes.
+///
+/// 1. Reference views are chosen along the path by their distance over the range of the
+///    surroundings. Their ranges are measured by multi-view stereo with the final poses of the
+///    views around them; the network completes the rest from these and from landmarks. The result
+///    goes into `first`. A view that gets no depth counts for the distance like any other.
+/// 2. Each is completed anew with what was measured in the views around it (CompleteViews; `up` is
+///    the normal of the ground in the world, if it is known).
+///
+/// What is measured is kept. After the progress, which counts both passes, has returned false, the
+/// rest is left to the network. `views` are ordered by frame, and their images are in `images`. The
+/// result does not depend on the number of threads. Throws UserError where the disk fails.
 ViewDepthReport ComputeDepth(std::span<const DenseView> views, const NeighbourFinder& neighbours_of,
-                             const LandmarkProjector& landmarks_of, const ViewDepthOptions& options,
-                             const ImageStore& images, DepthCompleter* completer, int num_threads,
+                             const LandmarkProjector& landmarks_of,
+                             const std::optional<Eigen::Vector3d>& up,
+                             const ViewDepthOptions& options, const ImageStore& images,
+                             DepthCompleter* completer, int num_threads, const DepthMapStore& first,
                              const DepthMapStore& store, const ViewDepthCallbacks& callbacks = {});
 
 }  // namespace orb360

@@ -63,6 +63,7 @@ struct DrivingScene {
         const double on_box = RangeOfBox(camera_x, ray);
         const double range = on_box > 0 ? on_box / (1 - box->speed) : RangeAtRest(ray);
         depth.range.at<float>(row, column) = static_cast<float>(range);
+        if (range == kSky) depth.confidence.at<float>(row, column) = 0.1F;
       }
     }
     return depth;

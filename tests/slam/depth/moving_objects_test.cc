@@ -32,8 +32,12 @@ Result PlaceFrom(const DrivingScene& scene, const std::vector<double>& others_at
   const DepthView view(result.before, scene.CameraAt(0), 0.01);
   const DenseGround ground{Eigen::Vector3d::UnitZ(), std::log(DrivingScene::kHeight), 0.01};
   const MovingObjectOptions options;
-  result.num_objects = PlaceMovingObjects(FindBelowGround(view, ground, options), view, ground,
-                                          others, options, &result.after);
+  const std::vector<MovingObject> objects =
+      FindMovingObjects(FindBelowGround(view, ground, options), view, ground, others, options);
+  PlaceOnGround(objects, ground, options, &result.after);
+  const cv::Mat mask = MaskOf(objects, result.after.range.size());
+  EXPECT_EQ(cv::countNonZero((result.before.range != result.after.range) & ~mask), 0);
+  result.num_objects = static_cast<int>(objects.size());
   return result;
 }
 
@@ -62,7 +66,7 @@ bool IsUnchanged(const Result& result) {
          cv::countNonZero(result.before.confidence != result.after.confidence) == 0;
 }
 
-TEST(PlaceMovingObjects, PutsACarThatMovesAlongWhereItTouchesTheGround) {
+TEST(FindMovingObjects, PutsACarThatMovesAlongWhereItTouchesTheGround) {
   const DrivingScene scene = CarAt(-2, 4, 0.75);
   const Result result = PlaceFrom(scene);
   EXPECT_EQ(result.num_objects, 1);
@@ -80,7 +84,7 @@ TEST(PlaceMovingObjects, PutsACarThatMovesAlongWhereItTouchesTheGround) {
   }
 }
 
-TEST(PlaceMovingObjects, AnObjectMayLieAcrossTheEdgeOfTheImage) {
+TEST(FindMovingObjects, AnObjectMayLieAcrossTheEdgeOfTheImage) {
   // The edge of the image is behind the camera, which looks along -x.
   const DrivingScene scene{.box = MovingBox{{5, -1, -DrivingScene::kHeight}, {4, 2, 1.5}, 0.8}};
   const Result result = PlaceFrom(scene);
@@ -88,7 +92,7 @@ TEST(PlaceMovingObjects, AnObjectMayLieAcrossTheEdgeOfTheImage) {
   EXPECT_GT(FractionRight(scene, result.after), 0.9);
 }
 
-TEST(PlaceMovingObjects, LeavesTheLandBesideARoadThatFallsAway) {
+TEST(FindMovingObjects, LeavesTheLandBesideARoadThatFallsAway) {
   for (const double fall : {0.8, 3.0}) {
     const Result result = PlaceFrom({.edge = 4.0, .fall = fall});
     EXPECT_EQ(result.num_objects, 0);
@@ -96,20 +100,20 @@ TEST(PlaceMovingObjects, LeavesTheLandBesideARoadThatFallsAway) {
   }
 }
 
-TEST(PlaceMovingObjects, LeavesWhatNoOtherViewTellsToBeGround) {
+TEST(FindMovingObjects, LeavesWhatNoOtherViewTellsToBeGround) {
   const DrivingScene scene = CarAt(-2, 4, 0.75);
   EXPECT_TRUE(IsUnchanged(PlaceFrom(scene, {})));
   // From here the car hides the same ground.
   EXPECT_TRUE(IsUnchanged(PlaceFrom(scene, {-0.1, 0.1})));
 }
 
-TEST(PlaceMovingObjects, LeavesObjectsAtRestAndSlowOnes) {
+TEST(FindMovingObjects, LeavesObjectsAtRestAndSlowOnes) {
   for (const double speed : {0.0, 0.2}) {
     EXPECT_TRUE(IsUnchanged(PlaceFrom(CarAt(-2, 4, speed)))) << speed;
   }
 }
 
-TEST(PlaceMovingObjects, LeavesAViewWithoutGroundAroundIt) {
+TEST(FindMovingObjects, LeavesAViewWithoutGroundAroundIt) {
   DrivingScene scene;
   scene.edge = -1e9;
   scene.fall = 2.0;

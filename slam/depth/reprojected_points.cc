@@ -1,0 +1,121 @@
+#include "slam/depth/reprojected_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
+
+#include <orb360/nn/base/check.h>
+#include <orb360/slam/geometry/camera.h>
+
+namespace orb360 {
+namespace {
+
+/// What another view measured, in a square of this one.
+struct Candidate {
+  int square;
+  int view;
+  cv::Point pixel;
+  float range;
+  float relative_error;
+};
+
+std::vector<Candidate> Project(const DepthView& other, int index, const Rigid3& world_from_camera,
+                               const EquirectangularCamera& camera, int squares_across,
+                               const ReprojectionOptions& options) {
+  const Rigid3 camera_from_other = world_from_camera.Inverse() * other.world_from_camera();
+  std::vector<Candidate> candidates;
+  for (int row = options.step / 2; row < other.height(); row += options.step) {
+    const double latitude = std::numbers::pi * (0.5 - (row + 0.5) / other.height());
+    const int across = options.step * ColumnStep(std::cos(latitude));
+    for (int column = 0; column < other.width(); column += across) {
+      const float range = other.range(row, column);
+      if (!(range > 0) || other.error(row, column) > options.max_error) continue;
+      const Eigen::Vector3d point =
+          camera_from_other *
+          Eigen::Vector3d((range * other.BearingOf(row, column)).cast<double>());
+      const double distance = point.norm();
+      if (!(distance > 0)) continue;
+      const Eigen::Vector2d at = camera.Project(point);
+      const cv::Point pixel(std::clamp(static_cast<int>(at.x()), 0, camera.width() - 1),
+                            std::clamp(static_cast<int>(at.y()), 0, camera.height() - 1));
+      candidates.push_back({pixel.y / options.spacing * squares_across + pixel.x / options.spacing,
+                            index, pixel, static_cast<float>(distance),
+                            static_cast<float>(range * other.error(row, column) / distance)});
+    }
+  }
+  return candidates;
+}
+
+/// The nearest one on which two views agree. They are ordered by range.
+std::optional<Candidate> NearestAgreed(std::span<const Candidate> candidates, double max_ratio) {
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    for (size_t j = i + 1; j < candidates.size(); ++j) {
+      if (candidates[j].range > max_ratio * candidates[i].range) break;
+      if (candidates[j].view != candidates[i].view) return candidates[i];
+    }
+  }
+  return std::nullopt;
+}
+
+/// The nearest range of each square, and infinity where it has no point.
+cv::Mat NearestOfSquares(const cv::Mat& range, int spacing) {
+  cv::Mat nearest((range.rows + spacing - 1) / spacing, (range.cols + spacing - 1) / spacing,
+                  CV_32F, cv::Scalar(std::numeric_limits<float>::infinity()));
+  for (int row = 0; row < range.rows; ++row) {
+    for (int column = 0; column < range.cols; ++column) {
+      const float value = range.at<float>(row, column);
+      float& least = nearest.at<float>(row / spacing, column / spacing);
+      if (value > 0) least = std::min(least, value);
+    }
+  }
+  return nearest;
+}
+
+}  // namespace
+
+void AddReprojectedPoints(const Rigid3& world_from_camera, std::span<const DepthView* const> others,
+                          const ReprojectionOptions& options, SparseDepth* sparse,
+                          int num_threads) {
+  ORB360_CHECK(options.spacing > 0 && options.step > 0, options.spacing, options.step);
+  const EquirectangularCamera camera(sparse->range.cols, sparse->range.rows);
+  const cv::Mat own = NearestOfSquares(sparse->range, options.spacing);
+  cv::Mat around;  // The nearest within two squares.
+  cv::erode(own, around, cv::Mat::ones(5, 5, CV_8U));
+  const auto count = static_cast<int>(others.size());
+  std::vector<std::vector<Candidate>> projected(others.size());
+#pragma omp parallel for num_threads(num_threads) schedule(dynamic)
+  for (int i = 0; i < count; ++i) {
+    projected[static_cast<size_t>(i)] =
+        Project(*others[static_cast<size_t>(i)], i, world_from_camera, camera, own.cols, options);
+  }
+  std::vector<Candidate> candidates;
+  for (const std::vector<Candidate>& of_view : projected) {
+    candidates.insert(candidates.end(), of_view.begin(), of_view.end());
+  }
+  std::ranges::sort(candidates, [](const Candidate& a, const Candidate& b) {
+    return std::tuple(a.square, a.range, a.view, a.pixel.y, a.pixel.x) <
+           std::tuple(b.square, b.range, b.view, b.pixel.y, b.pixel.x);
+  });
+  for (size_t begin = 0, end = 0; begin < candidates.size(); begin = end) {
+    const int square = candidates[begin].square;
+    while (end < candidates.size() && candidates[end].square == square) ++end;
+    const cv::Point at(square % own.cols, square / own.cols);
+    if (std::isfinite(own.at<float>(at))) continue;
+    const std::optional<Candidate> point =
+        NearestAgreed(std::span(candidates).subspan(begin, end - begin), options.max_ratio);
+    if (!point) continue;
+    if (point->range > static_cast<float>(options.max_hidden_ratio) * around.at<float>(at))
+      continue;
+    const double confidence = SparseConfidence(point->relative_error, options.sparse);
+    if (confidence < options.sparse.min_confidence) continue;
+    sparse->range.at<float>(point->pixel) = point->range;
+    sparse->confidence.at<float>(point->pixel) = static_cast<float>(confidence);
+  }
+}
+
+}  // namespace orb360

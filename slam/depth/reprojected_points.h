@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+
+#include <opencv2/core.hpp>
+
+#include "slam/depth/depth_view.h"
+#include <orb360/slam/depth/sparse_depth.h>
+
+namespace orb360 {
+
+struct ReprojectionOptions {
+  /// Side of the squares of pixels that get at most one point, pixels.
+  int spacing = 6;
+  /// Every such pixel of a view, in both directions, is looked at.
+  int step = 4;
+  /// Largest expected error of ln(range) of a pixel that is taken.
+  double max_error = 0.0625;
+  /// Two ranges in a square agree if their ratio is at most this. Two views must agree.
+  double max_ratio = 1.1;
+  /// A point farther away than the nearest one that is known within two squares, by more than this
+  /// ratio, is taken to be hidden.
+  double max_hidden_ratio = 1.5;
+  /// The confidence of a point follows from its error as that of a landmark.
+  SparseDepthOptions sparse = {};
+};
+
+/// Adds points that other views measured to the sparse depth of a view at `world_from_camera`: in
+/// each square without a point the nearest range on which two of them agree.
+void AddReprojectedPoints(const Rigid3& world_from_camera, std::span<const DepthView* const> others,
+                          const ReprojectionOptions& options, SparseDepth* sparse,
+                          int num_threads = 1);
+
+}  // namespace orb360

@@ -1,0 +1,141 @@
+#include "slam/pipeline/view_completion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <memory>
+#include <utility>
+
+#include "slam/depth/dense_ground.h"
+#include "slam/pipeline/view_ranges.h"
+#include "slam/pipeline/view_selection.h"
+
+namespace orb360 {
+namespace {
+
+constexpr double kMinError = 0.01;  // of ln(range); a measured pixel is told from others by more
+
+/// The views of the first pass that were used last.
+class RecentViews {
+ public:
+  RecentViews(std::span<const DenseView> views, const DepthMapStore& store)
+      : views_(views), store_(store) {}
+
+  std::shared_ptr<const DepthView> Get(size_t index) {
+    const auto found = std::ranges::find(recent_, index, &Entry::index);
+    if (found != recent_.end()) return found->view;
+    if (recent_.size() >= kCapacity) recent_.pop_front();
+    const DenseView& view = views_[index];
+    recent_.push_back(
+        {index, std::make_shared<const DepthView>(store_.Get(view.frame_index),
+                                                  view.world_from_camera, kMinError)});
+    return recent_.back().view;
+  }
+
+ private:
+  static constexpr size_t kCapacity = 48;  // 2.5 MB each for 1024 x 512 pixels
+
+  struct Entry {
+    size_t index;
+    std::shared_ptr<const DepthView> view;
+  };
+
+  std::span<const DenseView> views_;
+  const DepthMapStore& store_;
+  std::deque<Entry> recent_;
+};
+
+/// Views that a function looks at, which live as long as this.
+struct LoadedViews {
+  std::vector<std::shared_ptr<const DepthView>> kept;
+  std::vector<const DepthView*> views;
+};
+
+LoadedViews LoadByDistance(std::span<const DenseView> views, size_t reference,
+                           std::span<const size_t> neighbours, std::vector<double> distances,
+                           double unit, double max_ratio, RecentViews* recent) {
+  for (double& distance : distances) distance *= unit;
+  LoadedViews loaded;
+  for (const size_t i : ChooseViewsByDistance(views, reference, neighbours, distances, max_ratio)) {
+    loaded.kept.push_back(recent->Get(i));
+    loaded.views.push_back(loaded.kept.back().get());
+  }
+  return loaded;
+}
+
+InverseRanges NothingMeasured(cv::Size size) {
+  return {cv::Mat::zeros(size, CV_32F), cv::Mat::zeros(size, CV_32F)};
+}
+
+}  // namespace
+
+int CompleteViews(std::span<const DenseView> views, const NeighbourFinder& neighbours_of,
+                  const LandmarkProjector& landmarks_of, const std::optional<Eigen::Vector3d>& up,
+                  const ViewDepthOptions& options, const ImageStore& images,
+                  DepthCompleter* completer, int num_threads, const DepthMapStore& first,
+                  const DepthMapStore& store, const ViewDepthCallbacks& callbacks) {
+  const ViewCompletionOptions& second = options.second;
+  const bool has_stereo = !options.baselines.empty();
+  RecentViews recent(views, first);
+  const auto count = static_cast<int>(views.size());
+  bool is_interrupted = false;
+  int num_with_objects = 0;
+  for (size_t i = 0; i < views.size(); ++i) {
+    const DenseView& view = views[i];
+    if (callbacks.progress && !callbacks.progress(count + static_cast<int>(i), 2 * count)) {
+      is_interrupted = true;
+    }
+    if (!first.Contains(view.frame_index)) continue;
+    DenseDepth depth = first.Get(view.frame_index);
+    InverseRanges measured = has_stereo ? MeasuredOf(depth) : NothingMeasured(depth.range.size());
+    std::vector<size_t> neighbours = neighbours_of(i);
+    std::erase_if(neighbours, [&](size_t n) { return !first.Contains(views[n].frame_index); });
+    const auto near = [&](const std::vector<double>& distances, double unit) {
+      return LoadByDistance(views, i, neighbours, distances, unit, second.max_distance_ratio,
+                            &recent);
+    };
+    std::optional<DenseGround> ground;
+    if (up && !is_interrupted) {
+      ground = FindGround(depth, view.world_from_camera.rotation.inverse() * *up, second.ground);
+    }
+    std::vector<MovingObject> objects;
+    if (ground) {
+      const std::shared_ptr<const DepthView> seen = recent.Get(i);
+      const cv::Mat below = FindBelowGround(*seen, *ground, second.objects);
+      if (cv::countNonZero(below) > 0) {
+        objects = FindMovingObjects(
+            below, *seen, *ground,
+            near(second.ground_distances, std::exp(ground->log_height)).views, second.objects);
+      }
+    }
+    const cv::Mat moving = MaskOf(objects, depth.range.size());
+    measured.value.setTo(0, moving);
+    SparseDepth sparse = RenderSparseDepth(landmarks_of(view), completer->camera());
+    SampleSquares(measured, options.sparse_spacing, 0, options.sparse, &sparse);
+    if (has_stereo && !is_interrupted) {
+      AddReprojectedPoints(
+          view.world_from_camera,
+          near(second.distances, TrustedRange(depth, options.min_trusted_confidence)).views,
+          second.reprojection, &sparse, num_threads);
+    }
+    sparse.range.setTo(0, moving);
+    sparse.confidence.setTo(0, moving);
+    if (callbacks.sink) {
+      callbacks.sink({images.Get(view.frame_index), sparse, view.frame_index, view.timestamp,
+                      view.world_from_camera});
+    }
+    if (has_stereo && !is_interrupted) {
+      depth = completer->Complete(images.Get(view.frame_index), sparse);
+      Distrust(options.completion_error_factor, &depth);
+      PutMeasured(measured, &depth);
+    }
+    if (ground) PlaceOnGround(objects, *ground, second.objects, &depth);
+    num_with_objects += objects.empty() ? 0 : 1;
+    if (!options.keeps_completed) depth.confidence.setTo(0, ~(measured.value > 0));
+    if (callbacks.watcher) callbacks.watcher(view.frame_index, view.world_from_camera, depth);
+    store.Put(view.frame_index, depth);
+  }
+  return num_with_objects;
+}
+
+}  // namespace orb360

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "slam/pipeline/view_depth.h"
+
+namespace orb360 {
+
+/// The second pass of ComputeDepth: completes each view anew with what the first has measured in
+/// the views around it, and puts the result into `store`.
+///
+/// - Objects that move along with the camera (FindMovingObjects) are put where they touch the
+///   ground; their measured ranges are dropped. `up`, the normal of the ground in the world, is
+///   needed for this.
+/// - Where a view has no point, it gets those that other views measured (AddReprojectedPoints).
+///
+/// `first` has the depth of the first pass, of the views that have any. Views are handled in their
+/// order. After `callbacks.progress` has returned false, the rest keeps the depth of the first
+/// pass. Returns in how many views there were such objects. The result does not depend on the
+/// number of threads.
+int CompleteViews(std::span<const DenseView> views, const NeighbourFinder& neighbours_of,
+                  const LandmarkProjector& landmarks_of, const std::optional<Eigen::Vector3d>& up,
+                  const ViewDepthOptions& options, const ImageStore& images,
+                  DepthCompleter* completer, int num_threads, const DepthMapStore& first,
+                  const DepthMapStore& store, const ViewDepthCallbacks& callbacks);
+
+}  // namespace orb360

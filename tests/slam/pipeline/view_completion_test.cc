@@ -1,0 +1,134 @@
+#include "slam/pipeline/view_completion.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/slam/depth/driving_scene.h"
+#include "tests/slam/io/temp_folder.h"
+#include "tests/slam/pipeline/propagation_network.h"
+
+namespace orb360 {
+namespace {
+
+const EquirectangularCamera kCamera(256, 128);
+
+// Nine views 2 m apart. A car drives beside the camera; the fifth view is at the origin.
+class CompleteViewsTest : public testing::Test {
+ protected:
+  CompleteViewsTest()
+      : first_(folder_ / "first"),
+        store_(folder_ / "depth"),
+        images_(folder_ / "images"),
+        completer_(WritePropagation(folder_),
+                   {.size = {kCamera.width(), kCamera.height()}, .threads = 1}) {
+    for (int i = 0; i < 9; ++i) {
+      const double x = 2.0 * (i - 4);
+      views_.push_back(
+          {.frame_index = 10 * i, .world_from_camera = scene_.CameraAt(x), .neighbours = {}});
+      images_.Put(10 * i, cv::Mat(kCamera.height(), kCamera.width(), CV_8UC3, cv::Scalar::all(90)));
+      if (i != 7) first_.Put(10 * i, scene_.Render(kCamera, x));
+    }
+  }
+
+  int Complete(const std::optional<Eigen::Vector3d>& up, const ViewDepthCallbacks& callbacks = {},
+               const ViewDepthOptions& options = {}) {
+    const auto all_others = [this](size_t view) {
+      std::vector<size_t> others;
+      for (size_t i = 0; i < views_.size(); ++i) {
+        if (i != view) others.push_back(i);
+      }
+      return others;
+    };
+    return CompleteViews(
+        views_, all_others, [](const DenseView&) { return std::vector<SparsePoint>(); }, up,
+        options, images_, &completer_, 2, first_, store_, callbacks);
+  }
+
+  // The depth at the origin in the direction of a point.
+  float RangeAt(const Eigen::Vector3d& point, const DepthMapStore& store) const {
+    const Eigen::Vector2d pixel = kCamera.Project(point);
+    return store.Get(40).range.at<float>(static_cast<int>(pixel.y()), static_cast<int>(pixel.x()));
+  }
+
+  static inline const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
+  static inline const Eigen::Vector3d kOnCar{0, 4, -0.5};
+  TempFolder folder_;
+  DepthMapStore first_;
+  DepthMapStore store_;
+  ImageStore images_;
+  DepthCompleter completer_;
+  DrivingScene scene_{.box = MovingBox{{-2, 4, -DrivingScene::kHeight}, {4.5, 1.8, 1.5}, 0.75}};
+  std::vector<DenseView> views_;
+};
+
+TEST_F(CompleteViewsTest, AnObjectThatMovesAlongIsPutOnTheGround) {
+  EXPECT_GT(RangeAt(kOnCar, first_), 15);
+  EXPECT_GT(Complete(kUp), 4);
+  EXPECT_NEAR(RangeAt(kOnCar, store_), kOnCar.norm(), 0.5);
+  EXPECT_FALSE(store_.Contains(70));
+}
+
+TEST_F(CompleteViewsTest, WithoutAKnownGroundItStaysWhereStereoSeesIt) {
+  EXPECT_EQ(Complete(std::nullopt), 0);
+  EXPECT_EQ(RangeAt(kOnCar, store_), RangeAt(kOnCar, first_));
+}
+
+TEST_F(CompleteViewsTest, WhatWasMeasuredStays) {
+  Complete(kUp);
+  const Eigen::Vector3d on_ground(1, -3, -DrivingScene::kHeight);
+  EXPECT_EQ(RangeAt(on_ground, store_), RangeAt(on_ground, first_));
+}
+
+TEST_F(CompleteViewsTest, AViewGetsPointsThatOthersMeasured) {
+  // The first pass saw nothing at the right and has put it near.
+  DenseDepth depth = scene_.Render(kCamera, 0);
+  const cv::Rect right(150, 70, 40, 40);
+  depth.range(right) = 0.5;
+  depth.confidence(right) = 0.6;
+  first_.Put(40, depth);
+  int num_points = 0;
+  Complete(kUp, {.sink = [&](const SparseSample& sample) {
+             if (sample.frame_index != 40) return;
+             for (int row = right.y; row < right.br().y; ++row) {
+               for (int column = right.x; column < right.br().x; ++column) {
+                 const float range = sample.sparse.range.at<float>(row, column);
+                 if (!(range > 0)) continue;
+                 ++num_points;
+                 // A pixel is 1.4 degrees high.
+                 const double truth = scene_.Range(0, kCamera.Bearing({column + 0.5, row + 0.5}));
+                 EXPECT_NEAR(range / truth, 1, 0.1) << row << " " << column;
+               }
+             }
+           }});
+  EXPECT_GT(num_points, 10);
+}
+
+TEST_F(CompleteViewsTest, WithoutStereoNothingIsTakenToBeMeasured) {
+  int num_points = 0;
+  Complete(std::nullopt,
+           {.sink =
+                [&](const SparseSample& sample) {
+                  num_points += cv::countNonZero(sample.sparse.range);
+                }},
+           {.baselines = {}});
+  EXPECT_EQ(num_points, 0);
+  EXPECT_EQ(RangeAt(kOnCar, store_), RangeAt(kOnCar, first_));
+}
+
+TEST_F(CompleteViewsTest, AnInterruptKeepsTheDepthOfTheFirstPass) {
+  int num_calls = 0;
+  EXPECT_EQ(Complete(kUp, {.progress =
+                               [&](int done, int count) {
+                                 EXPECT_EQ(done, 9 + num_calls++);
+                                 EXPECT_EQ(count, 18);
+                                 return false;
+                               }}),
+            0);
+  EXPECT_EQ(num_calls, 9);
+  EXPECT_EQ(RangeAt(kOnCar, store_), RangeAt(kOnCar, first_));
+}
+
+}  // namespace
+}  // namespace orb360
