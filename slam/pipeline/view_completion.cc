@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -67,6 +68,25 @@ InverseRanges NothingMeasured(cv::Size size) {
   return {cv::Mat::zeros(size, CV_32F), cv::Mat::zeros(size, CV_32F)};
 }
 
+/// The objects that move along in a view, and the ground on which they stand.
+struct ObjectsOnGround {
+  std::vector<MovingObject> objects;
+  std::optional<DenseGround> ground;
+};
+
+/// `others_at` gives the views at distances in heights of the camera, whose length is given.
+ObjectsOnGround FindObjects(const DenseDepth& depth, const DepthView& view,
+                            const Eigen::Vector3d& up, const ViewCompletionOptions& options,
+                            const std::function<LoadedViews(double height)>& others_at) {
+  const std::optional<DenseGround> ground =
+      FindGround(depth, view.world_from_camera().rotation.inverse() * up, options.ground);
+  if (!ground) return {};
+  const cv::Mat below = FindBelowGround(view, *ground, options.objects);
+  if (cv::countNonZero(below) == 0) return {};
+  const LoadedViews others = others_at(std::exp(ground->log_height));
+  return {FindMovingObjects(below, view, *ground, others.views, options.objects), ground};
+}
+
 }  // namespace
 
 int CompleteViews(std::span<const DenseView> views, const NeighbourFinder& neighbours_of,
@@ -90,47 +110,40 @@ int CompleteViews(std::span<const DenseView> views, const NeighbourFinder& neigh
     InverseRanges measured = has_stereo ? MeasuredOf(depth) : NothingMeasured(depth.range.size());
     std::vector<size_t> neighbours = neighbours_of(i);
     std::erase_if(neighbours, [&](size_t n) { return !first.Contains(views[n].frame_index); });
-    const auto near = [&](const std::vector<double>& distances, double unit) {
+    const auto load = [&](const std::vector<double>& distances, double unit) {
       return LoadByDistance(views, i, neighbours, distances, unit, second.max_distance_ratio,
                             &recent);
     };
-    std::optional<DenseGround> ground;
+    ObjectsOnGround found;
     if (up && !is_interrupted) {
-      ground = FindGround(depth, view.world_from_camera.rotation.inverse() * *up, second.ground);
+      found = FindObjects(depth, *recent.Get(i), *up, second,
+                          [&](double height) { return load(second.ground_distances, height); });
     }
-    std::vector<MovingObject> objects;
-    if (ground) {
-      const std::shared_ptr<const DepthView> seen = recent.Get(i);
-      const cv::Mat below = FindBelowGround(*seen, *ground, second.objects);
-      if (cv::countNonZero(below) > 0) {
-        objects = FindMovingObjects(
-            below, *seen, *ground,
-            near(second.ground_distances, std::exp(ground->log_height)).views, second.objects);
-      }
-    }
-    const cv::Mat moving = MaskOf(objects, depth.range.size());
+    const cv::Mat moving = MaskOf(found.objects, depth.range.size());
     measured.value.setTo(0, moving);
     SparseDepth sparse = RenderSparseDepth(landmarks_of(view), completer->camera());
     SampleSquares(measured, options.sparse_spacing, 0, options.sparse, &sparse);
-    if (has_stereo && !is_interrupted) {
-      AddReprojectedPoints(
-          view.world_from_camera,
-          near(second.distances, TrustedRange(depth, options.min_trusted_confidence)).views,
-          second.reprojection, &sparse, num_threads);
+    const bool is_completed = has_stereo && !is_interrupted;
+    if (is_completed) {
+      const double range = TrustedRange(depth, options.min_trusted_confidence);
+      AddReprojectedPoints(view.world_from_camera, load(second.distances, range).views,
+                           second.reprojection, &sparse, num_threads);
     }
     sparse.range.setTo(0, moving);
     sparse.confidence.setTo(0, moving);
+    const cv::Mat color = images.Get(view.frame_index);
     if (callbacks.sink) {
-      callbacks.sink({images.Get(view.frame_index), sparse, view.frame_index, view.timestamp,
-                      view.world_from_camera});
+      callbacks.sink({color, sparse, view.frame_index, view.timestamp, view.world_from_camera});
     }
-    if (has_stereo && !is_interrupted) {
-      depth = completer->Complete(images.Get(view.frame_index), sparse);
+    if (is_completed) {
+      depth = completer->Complete(color, sparse);
       Distrust(options.completion_error_factor, &depth);
       PutMeasured(measured, &depth);
     }
-    if (ground) PlaceOnGround(objects, *ground, second.objects, &depth);
-    num_with_objects += objects.empty() ? 0 : 1;
+    if (!found.objects.empty()) {
+      PlaceOnGround(found.objects, *found.ground, second.objects, &depth);
+      ++num_with_objects;
+    }
     if (!options.keeps_completed) depth.confidence.setTo(0, ~(measured.value > 0));
     if (callbacks.watcher) callbacks.watcher(view.frame_index, view.world_from_camera, depth);
     store.Put(view.frame_index, depth);
