@@ -14,7 +14,7 @@ class OneDnn : public Contender {
   OneDnn(const Problem& problem, DataType type, int threads)
       : engine_(dnnl::engine::kind::cpu, 0), stream_(engine_), threads_(threads) {
     const auto [name, in, out, kernel, stride, reduction, may_tile] = problem.layer;
-    const auto as = type == DataType::kFloat ? memory::data_type::f32 : memory::data_type::bf16;
+    const auto as = type != DataType::kBFloat16 ? memory::data_type::f32 : memory::data_type::bf16;
     const memory::dims in_dims{1, in, problem.height, problem.width};
     const memory::dims weight_dims{out, in, kernel, kernel};
     out_dims_ = {1, out, problem.out_height(), problem.out_width()};

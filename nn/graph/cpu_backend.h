@@ -25,8 +25,8 @@ struct Step {
 /// The backend that uses the kernels of nn/kernels.
 class CpuBackend : public Backend {
  public:
-  /// `precision` is the type in which convolutions multiply; they always sum in floats. Throws
-  /// UserError for kBFloat16 if the processor does not support it.
+  /// `precision` is the type in which convolutions multiply; they sum in floats, and 8 bits
+  /// exactly. Throws UserError for a type that the processor does not support.
   explicit CpuBackend(int threads, DataType precision = DataType::kFloat);
 
   NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const override;

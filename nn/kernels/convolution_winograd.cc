@@ -243,16 +243,49 @@ void StoreBlock(const WinogradConvolution& run, Tile tile, int block, const floa
   }
 }
 
+// Computes all products of `count` tiles for one group of output channels.
+void MultiplyGroup(const WinogradConvolution& run, int blocks, const float* weight, int count,
+                   const float* inputs, float* products) {
+  HWY_ALIGN static constexpr float kZeros[kMaxGroup * kBlock] = {};
+  const int in_channels = run.input.shape.channels;
+  const ptrdiff_t plane = ptrdiff_t{count} * kBlock;
+  const ptrdiff_t in_stride = ProductStride(run.input.planes(), count);
+  const ptrdiff_t out_stride = ProductStride(blocks, count);
+  const MultiplyFunction* functions = MultiplyFunctions(blocks);
+  const int parts = (count + MaxPixels(blocks) - 1) / MaxPixels(blocks);
+  for (int product = 0; product < kProducts; ++product) {
+    const TileSource source{1, in_channels, 0, plane, weight, kZeros};
+    for (int part = 0; part < parts; ++part) {
+      const int t = part * count / parts;
+      const int end = (part + 1) * count / parts;
+      functions[end - t - 1](source, inputs + product * in_stride + t * kBlock,
+                             products + product * out_stride + t * kBlock, plane);
+    }
+    weight += ptrdiff_t{in_channels} * blocks * kBlock;
+  }
+}
+
+// Where the products of a batch begin in its scratch memory, behind the inputs.
+float* ProductsIn(float* scratch, int in_blocks) {
+  return scratch + kProducts * ProductStride(in_blocks, kMaxWinogradTiles);
+}
+
+void MultiplyTiles(const WinogradConvolution& run, int count, float* scratch) {
+  const float* weight = run.weight;
+  for (const int blocks : *run.groups) {
+    MultiplyGroup(run, blocks, weight, count, scratch, ProductsIn(scratch, run.input.planes()));
+    weight += ptrdiff_t{kProducts} * run.input.shape.channels * blocks * kBlock;
+  }
+}
+
 std::uint32_t RunWinogradTiles(const WinogradConvolution& run, int first, int last,
                                float* scratch) {
-  HWY_ALIGN static constexpr float kZeros[kMaxGroup * kBlock] = {};
   const int count = last - first;
   const int across = (run.output.shape.width + kOut - 1) / kOut;
-  const int in_channels = run.input.shape.channels;
   const int in_blocks = run.input.planes();
   const ptrdiff_t in_stride = ProductStride(in_blocks, count);
   float* const inputs = scratch;
-  float* const products = scratch + kProducts * ProductStride(in_blocks, kMaxWinogradTiles);
+  float* const products = ProductsIn(scratch, in_blocks);
   const ptrdiff_t plane = ptrdiff_t{count} * kBlock;
   const auto tile = [&](int t) { return Tile{(first + t) / across, (first + t) % across}; };
   std::uint32_t left_out = 0;
@@ -264,19 +297,9 @@ std::uint32_t RunWinogradTiles(const WinogradConvolution& run, int first, int la
   const float* weight = run.weight;
   int first_block = 0;
   for (const int blocks : *run.groups) {
-    const MultiplyFunction* functions = MultiplyFunctions(blocks);
     const ptrdiff_t out_stride = ProductStride(blocks, count);
-    const int parts = (count + MaxPixels(blocks) - 1) / MaxPixels(blocks);
-    for (int product = 0; product < kProducts; ++product) {
-      const TileSource source{1, in_channels, 0, plane, weight, kZeros};
-      for (int part = 0; part < parts; ++part) {
-        const int t = part * count / parts;
-        const int end = (part + 1) * count / parts;
-        functions[end - t - 1](source, inputs + product * in_stride + t * kBlock,
-                               products + product * out_stride + t * kBlock, plane);
-      }
-      weight += ptrdiff_t{in_channels} * blocks * kBlock;
-    }
+    MultiplyGroup(run, blocks, weight, count, inputs, products);
+    weight += ptrdiff_t{kProducts} * run.input.shape.channels * blocks * kBlock;
     for (int block = 0; block < blocks; ++block) {
       for (int t = 0; t < count; ++t) {
         if ((left_out >> t & 1) != 0) continue;
@@ -297,6 +320,7 @@ HWY_AFTER_NAMESPACE();
 namespace orb360::nn {
 
 HWY_EXPORT(RunWinogradTiles);
+HWY_EXPORT(MultiplyTiles);
 
 AlignedVector<float> PackWinograd(std::span<const float> weight, int out_channels, int in_channels,
                                   const std::vector<int>& groups) {
@@ -363,6 +387,10 @@ std::size_t WinogradScratchBytes(int in_channels) {
 std::uint32_t RunWinograd(const WinogradConvolution& run, int first, int last, std::byte* scratch) {
   return HWY_DYNAMIC_DISPATCH(RunWinogradTiles)(run, first, last,
                                                 reinterpret_cast<float*>(scratch));
+}
+
+void RunWinogradProducts(const WinogradConvolution& run, int count, std::byte* scratch) {
+  HWY_DYNAMIC_DISPATCH(MultiplyTiles)(run, count, reinterpret_cast<float*>(scratch));
 }
 
 }  // namespace orb360::nn

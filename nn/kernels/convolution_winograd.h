@@ -47,4 +47,8 @@ std::size_t WinogradScratchBytes(int in_channels);
 /// result is set if tile first + i is one of them.
 std::uint32_t RunWinograd(const WinogradConvolution& run, int first, int last, std::byte* scratch);
 
+/// Only the products of RunWinograd for `count` tiles, from whatever is in `scratch` and to there.
+/// For benchmarks.
+void RunWinogradProducts(const WinogradConvolution& run, int count, std::byte* scratch);
+
 }  // namespace orb360::nn

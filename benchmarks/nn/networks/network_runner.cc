@@ -49,16 +49,17 @@ int Main(int argc, char** argv) {
   app.add_option("FILE", options.file, "network, as weights_tools writes it")->required();
   app.add_option("--height", options.height, "of the panorama, pixels");
   app.add_option("--threads", options.threads)->check(CLI::PositiveNumber);
-  app.add_option("--precision", options.precision)->check(CLI::IsMember({"float", "bf16"}));
+  app.add_option("--precision", options.precision)->check(CLI::IsMember({"float", "bf16", "int8"}));
   app.add_option("--known", options.known, "fraction of the pixels that have a depth");
   CLI11_PARSE(app, argc, argv);
 
   std::vector<double> load, pack;
   Graph graph;
   Time([&] { graph = ReadNetwork(options.file); }, &load);
-  const ExecutorOptions how{
-      .threads = options.threads,
-      .precision = options.precision == "bf16" ? DataType::kBFloat16 : DataType::kFloat};
+  const ExecutorOptions how{.threads = options.threads,
+                            .precision = options.precision == "bf16"   ? DataType::kBFloat16
+                                         : options.precision == "int8" ? DataType::kInt8
+                                                                       : DataType::kFloat};
   std::unique_ptr<Executor> executor;
   Time(
       [&] {
