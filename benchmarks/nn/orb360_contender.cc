@@ -42,6 +42,9 @@ class Orb360 : public Contender {
   void Run() override {
     Time([&] { convolution_.Run(input_, nullptr, output_, scratch_, threads_); }, &milliseconds_);
   }
+  double RunProducts() override {
+    return static_cast<double>(convolution_.RunProducts(input_, scratch_, threads_));
+  }
   std::vector<double> Milliseconds() override { return milliseconds_; }
   std::vector<float> Answer() override {
     const TensorFormat planar{output_.shape, Layout::kPlanar, DataType::kFloat, 0};

@@ -163,25 +163,9 @@ Step MakeConvolution(const Graph& graph, const FusedNode& fused, int height, int
   const auto weight = [&](std::size_t i) -> const Weight& {
     return graph.weights[static_cast<std::size_t>(fused.node.weights[i])];
   };
-  const auto& op = std::get<ConvolutionOp>(fused.node.operation);
-  // If a panorama is turned by the smallest step to which the network is equivariant, it must be
-  // turned by whole tiles here too, so that the result is turned bit for bit.
-  const int halvings =
-      graph.tensors[static_cast<std::size_t>(fused.node.outputs[0])].extent.halvings;
-  const int step = graph.size_multiple >> std::max(halvings, 0);
-  const ConvolutionSpec spec{
-      .in_channels = weight(0).shape[1],
-      .out_channels = weight(0).shape[0],
-      .kernel = weight(0).shape[3],
-      .stride = op.stride,
-      .padding = op.padding,
-      .slope = fused.slope,
-      .type = ConvolutionType(graph, fused, precision),
-      .may_tile = op.padding == Padding::kZero || step % kConvolutionTile == 0,
-      .minimum = fused.node.input_range.value_or(InputRange{}).minimum,
-      .maximum = fused.node.input_range.value_or(InputRange{}).maximum};
   const Tensor& input = graph.tensors[static_cast<std::size_t>(fused.node.inputs[0])];
-  const auto kernel = std::make_shared<const Convolution>(spec, weight(0).values, weight(1).values);
+  const auto kernel = std::make_shared<const Convolution>(
+      CpuConvolutionSpec(graph, fused, precision), weight(0).values, weight(1).values);
   return {[kernel, adds = fused.adds_residual, threads](Views in, Views out, Scratch scratch) {
             kernel->Run(in[0], adds ? &in[1] : nullptr, out[0], scratch, threads);
           },
@@ -208,6 +192,27 @@ Step MakeCopy(const ChannelCopy& copy, int threads) {
 }
 
 }  // namespace
+
+ConvolutionSpec CpuConvolutionSpec(const Graph& graph, const FusedNode& fused, DataType precision) {
+  const std::vector<int>& shape =
+      graph.weights[static_cast<std::size_t>(fused.node.weights[0])].shape;
+  const auto& op = std::get<ConvolutionOp>(fused.node.operation);
+  // If a panorama is turned by the smallest step to which the network is equivariant, it must be
+  // turned by whole tiles here too, so that the result is turned bit for bit.
+  const int halvings =
+      graph.tensors[static_cast<std::size_t>(fused.node.outputs[0])].extent.halvings;
+  const int step = graph.size_multiple >> std::max(halvings, 0);
+  return {.in_channels = shape[1],
+          .out_channels = shape[0],
+          .kernel = shape[3],
+          .stride = op.stride,
+          .padding = op.padding,
+          .slope = fused.slope,
+          .type = ConvolutionType(graph, fused, precision),
+          .may_tile = op.padding == Padding::kZero || step % kConvolutionTile == 0,
+          .minimum = fused.node.input_range.value_or(InputRange{}).minimum,
+          .maximum = fused.node.input_range.value_or(InputRange{}).maximum};
+}
 
 CpuBackend::CpuBackend(int threads, DataType precision) : threads_(threads), precision_(precision) {
   if (precision == DataType::kBFloat16 && BestBFloat16Unit() == BFloat16Unit::kNone) {

@@ -8,6 +8,7 @@
 
 #include "nn/graph/backend.h"
 #include "nn/graph/lowering.h"
+#include "nn/kernels/convolution.h"
 
 namespace orb360::nn {
 
@@ -21,6 +22,9 @@ struct Step {
   /// Bytes of memory, aligned to kAlignment, that one run needs for itself.
   std::size_t scratch_bytes = 0;
 };
+
+/// Returns the parameters of a convolution's kernel when `precision` is requested.
+ConvolutionSpec CpuConvolutionSpec(const Graph& graph, const FusedNode& fused, DataType precision);
 
 /// The backend that uses the kernels of nn/kernels.
 class CpuBackend : public Backend {

@@ -110,6 +110,11 @@ void RunInBytes(const Int8Convolution& run, int band, std::byte* scratch, std::s
 
 }  // namespace
 
+bool ConvolutionSpec::is_winograd() const {
+  return type == DataType::kFloat && kernel == 3 && stride == 1 &&
+         std::min(in_channels, out_channels) >= kFewestWinogradChannels && may_tile;
+}
+
 Convolution::Convolution(const ConvolutionSpec& spec, std::span<const float> weight,
                          std::span<const float> bias, BFloat16Unit unit)
     : spec_(spec), unit_(unit) {
@@ -136,16 +141,10 @@ Convolution::Convolution(const ConvolutionSpec& spec, std::span<const float> wei
   } else {
     groups_ = DirectGroups(channels);
     weight_ = PackDirect(spec, weight, groups_);
-    if (is_winograd()) {
+    if (spec_.is_winograd()) {
       filters_ = PackWinograd(weight, spec.out_channels, spec.in_channels, groups_);
     }
   }
-}
-
-bool Convolution::is_winograd() const {
-  return spec_.type == DataType::kFloat && spec_.kernel == 3 && spec_.stride == 1 &&
-         std::min(spec_.in_channels, spec_.out_channels) >= kFewestWinogradChannels &&
-         spec_.may_tile;
 }
 
 std::size_t Convolution::ScratchBytes(const Shape& input, int threads) const {
@@ -153,7 +152,7 @@ std::size_t Convolution::ScratchBytes(const Shape& input, int threads) const {
     const int band = RowsInByteBand(spec_, input, OutputShape(input).height, threads);
     return threads * Int8ScratchBytes(input, spec_.kernel, spec_.stride, band);
   }
-  return is_winograd() ? threads * WinogradScratchBytes(spec_.in_channels) : 0;
+  return spec_.is_winograd() ? threads * WinogradScratchBytes(spec_.in_channels) : 0;
 }
 
 Shape Convolution::OutputShape(const Shape& input) const {
@@ -183,7 +182,7 @@ void Convolution::CheckTensors(const TensorView& input, const TensorView* residu
 
 std::int64_t Convolution::RunProducts(const TensorView& input, std::span<std::byte> scratch,
                                       int threads) const {
-  if (!is_winograd()) return 0;
+  if (!spec_.is_winograd()) return 0;
   ORB360_CHECK(scratch.size() >= ScratchBytes(input.shape, threads), scratch.size());
   const WinogradConvolution run{1, &groups_, filters_.data(), bias_.data(), input, {}, {}};
   const int tiles = CountWinogradTiles(OutputShape(input.shape));
@@ -209,7 +208,7 @@ void Convolution::Run(const TensorView& input, const TensorView* residual, const
   const TensorView added = residual == nullptr ? TensorView{} : *residual;
   const DirectConvolution direct{spec_.kernel, spec_.stride, spec_.slope, &groups_, weight_.data(),
                                  bias_.data(), input,        added,       output};
-  if (is_winograd()) {
+  if (spec_.is_winograd()) {
     RunByTiles({spec_.slope, &groups_, filters_.data(), bias_.data(), input, added, output}, direct,
                scratch.data(), threads);
     return;

@@ -33,6 +33,9 @@ struct ConvolutionSpec {
   /// becomes the upper end.
   float minimum = 0;
   float maximum = 1;
+
+  /// True if the convolution is computed in tiles by Winograd's method.
+  bool is_winograd() const;
 };
 
 constexpr int kConvolutionTile = 4;
@@ -83,8 +86,6 @@ class Convolution {
   bool is_bfloat16_stem() const {
     return spec_.type == DataType::kBFloat16 && spec_.in_channels <= kMaxPlanarChannels;
   }
-  // True if the convolution is computed in tiles by Winograd's method.
-  bool is_winograd() const;
   void CheckTensors(const TensorView& input, const TensorView* residual,
                     const TensorView& output) const;
 

@@ -32,6 +32,9 @@ AlignedVector<float> PackWinograd(std::span<const float> weight, int out_channel
 /// Number of outputs of a tile in a row.
 constexpr int kWinogradTile = 4;
 
+/// Products of a tile over those of its definition.
+constexpr double kWinogradProductFraction = 36.0 / 144;
+
 /// Returns the number of tiles that cover the output; they are counted row by row.
 int CountWinogradTiles(const Shape& output);
 

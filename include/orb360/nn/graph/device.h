@@ -24,7 +24,7 @@ struct Device {
   /// Its name for people, such as "cpu" or "vulkan:0 (NAME OF THE DEVICE)".
   std::string name = "cpu";
   /// What runs networks there; null for the CPU.
-  std::shared_ptr<const Backend> backend;
+  std::shared_ptr<const Backend> backend = nullptr;
   /// In which type convolutions multiply where the CPU runs the network, also in the place of a
   /// device that has failed.
   Precision precision = Precision::kFloat;
