@@ -41,9 +41,7 @@ class Needs {
     PortNeeds input{.layouts = is_image ? Layouts::kPlanar : Layouts::kBlocked,
                     .halo = KernelSize(graph_, fused_.node) / 2};
     PortNeeds output = kTied;
-    const DataType type = ConvolutionType(graph_, fused_, precision_);
-    if (type == DataType::kInt8) output = {.layouts = Layouts::kBlocked};
-    if (type == DataType::kBFloat16) {
+    if (ConvolutionType(graph_, fused_, precision_) == DataType::kBFloat16) {
       if (is_image)
         return {{input}, {{.layouts = Layouts::kBlocked, .types = Types::kBFloat16}}, {}};
       input.types = Types::kBFloat16;

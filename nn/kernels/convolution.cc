@@ -170,7 +170,6 @@ void Convolution::CheckTensors(const TensorView& input, const TensorView* residu
                    : takes_floats && spec_.in_channels <= kMaxPlanarChannels &&
                          spec_.type != DataType::kInt8,
                spec_.in_channels);
-  ORB360_CHECK(spec_.type != DataType::kInt8 || output.layout == Layout::kBlocked);
   ORB360_CHECK(output.shape == OutputShape(input.shape));
   ORB360_CHECK(output.type == DataType::kFloat
                    ? !is_bfloat16_stem()

@@ -53,7 +53,7 @@ constexpr int kMaxPlanarChannels = 12;
 /// | float | float, blocked; up to kMaxPlanarChannels also planar | float, blocked or planar |
 /// | bfloat16 | bfloat16, blocked | bfloat16, blocked; float, blocked or planar |
 /// | bfloat16, up to kMaxPlanarChannels | float, planar, and not rounded | bfloat16, blocked |
-/// | 8 bits | float, blocked | float, blocked |
+/// | 8 bits | float, blocked | float, blocked or planar |
 class Convolution {
  public:
   /// `weight` is out_channels x in_channels x kernel x kernel, row by row. `bias` has out_channels

@@ -54,7 +54,7 @@ struct Int8Convolution {
   const float* bias = nullptr;  // of all channels of all blocks of the output
   TensorView input;             // floats, kBlocked, with their padding in the halo
   TensorView residual;          // data is null if there is none
-  TensorView output;            // floats, kBlocked
+  TensorView output;            // floats
 };
 
 /// Bytes of memory in which RunVnni rounds the input of `rows` rows of the output.

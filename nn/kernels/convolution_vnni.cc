@@ -15,7 +15,9 @@ namespace {
 
 // As in convolution_direct.cc: 2 vectors of output channels x 14 pixels in registers.
 constexpr int kPixels = 14;
-constexpr __mmask16 kAll = 0xffff;  // GCC 12 warns about the placeholders of the other forms
+// All lanes. GCC 12 warns about the placeholders of the forms without a mask.
+constexpr __mmask16 kAll = 0xffff;
+constexpr __mmask8 kEight = 0xff;
 
 // Bytes of the input: [block][row][pixel][channel].
 struct Bytes {
@@ -47,6 +49,79 @@ struct Row {
   int first_channel;
   int y;
 };
+
+// NaN, which a residual may have, fails the comparison and stays NaN.
+ORB360_VNNI __m512 Activate(__m512 value, __m512 slope) {
+  return _mm512_mask_mul_ps(value, _mm512_cmp_ps_mask(value, _mm512_setzero_ps(), _CMP_NGT_UQ),
+                            value, slope);
+}
+
+// Writes `count` pixels of one block after residual and activation: [pixel][channel].
+ORB360_VNNI void StoreBlocked(const Int8Convolution& run, int channel, int y, int x, int count,
+                              const float* values) {
+  const __m512 slope = _mm512_set1_ps(run.slope);
+  // Channels that fill up the last block are zero.
+  const int exist = std::clamp(run.output.shape.channels - channel, 0, kInt8Half);
+  const auto mask = static_cast<__mmask16>((1u << exist) - 1);
+  const int plane = channel / kInt8Half;
+  const std::ptrdiff_t at = std::ptrdiff_t{x} * kInt8Half;
+  float* out = run.output.row<float>(plane, y) + at;
+  const float* added =
+      run.residual.data == nullptr ? nullptr : run.residual.row<float>(plane, y) + at;
+  for (int p = 0; p < count; ++p) {
+    __m512 value = _mm512_load_ps(values + p * kInt8Half);
+    if (added != nullptr) value = _mm512_add_ps(value, _mm512_loadu_ps(added + p * kInt8Half));
+    _mm512_storeu_ps(out + p * kInt8Half, _mm512_maskz_mov_ps(mask, Activate(value, slope)));
+  }
+}
+
+// Exchanges rows and columns of 16 x 16 floats.
+ORB360_VNNI void Transpose(__m512 (&rows)[16]) {
+  __m512 half[16];
+  for (int i = 0; i < 16; i += 4) {  // 4 x 4 in every 128 bits
+    const __m512d low01 = _mm512_castps_pd(_mm512_maskz_unpacklo_ps(kAll, rows[i], rows[i + 1]));
+    const __m512d high01 = _mm512_castps_pd(_mm512_maskz_unpackhi_ps(kAll, rows[i], rows[i + 1]));
+    const __m512d low23 =
+        _mm512_castps_pd(_mm512_maskz_unpacklo_ps(kAll, rows[i + 2], rows[i + 3]));
+    const __m512d high23 =
+        _mm512_castps_pd(_mm512_maskz_unpackhi_ps(kAll, rows[i + 2], rows[i + 3]));
+    half[i] = _mm512_castpd_ps(_mm512_maskz_unpacklo_pd(kEight, low01, low23));
+    half[i + 1] = _mm512_castpd_ps(_mm512_maskz_unpackhi_pd(kEight, low01, low23));
+    half[i + 2] = _mm512_castpd_ps(_mm512_maskz_unpacklo_pd(kEight, high01, high23));
+    half[i + 3] = _mm512_castpd_ps(_mm512_maskz_unpackhi_pd(kEight, high01, high23));
+  }
+  for (int i = 0; i < 4; ++i) {  // 4 x 4 of these squares
+    const __m512 even01 = _mm512_maskz_shuffle_f32x4(kAll, half[i], half[i + 4], 0x88);
+    const __m512 odd01 = _mm512_maskz_shuffle_f32x4(kAll, half[i], half[i + 4], 0xdd);
+    const __m512 even23 = _mm512_maskz_shuffle_f32x4(kAll, half[i + 8], half[i + 12], 0x88);
+    const __m512 odd23 = _mm512_maskz_shuffle_f32x4(kAll, half[i + 8], half[i + 12], 0xdd);
+    rows[i] = _mm512_maskz_shuffle_f32x4(kAll, even01, even23, 0x88);
+    rows[i + 4] = _mm512_maskz_shuffle_f32x4(kAll, odd01, odd23, 0x88);
+    rows[i + 8] = _mm512_maskz_shuffle_f32x4(kAll, even01, even23, 0xdd);
+    rows[i + 12] = _mm512_maskz_shuffle_f32x4(kAll, odd01, odd23, 0xdd);
+  }
+}
+
+// The same to planes.
+ORB360_VNNI void StorePlanar(const Int8Convolution& run, int channel, int y, int x, int count,
+                             const float* values) {
+  const __m512 slope = _mm512_set1_ps(run.slope);
+  __m512 rows[16];
+  for (int p = 0; p < 16; ++p) {
+    rows[p] = p < count ? _mm512_load_ps(values + p * kInt8Half) : _mm512_setzero_ps();
+  }
+  Transpose(rows);
+  const auto mask = static_cast<__mmask16>((1u << count) - 1);
+  const int exist = std::min(run.output.shape.channels - channel, kInt8Half);
+  for (int c = 0; c < exist; ++c) {
+    __m512 value = rows[c];
+    if (run.residual.data != nullptr) {
+      value = _mm512_add_ps(
+          value, _mm512_maskz_loadu_ps(mask, run.residual.row<float>(channel + c, y) + x));
+    }
+    _mm512_mask_storeu_ps(run.output.row<float>(channel + c, y) + x, mask, Activate(value, slope));
+  }
+}
 
 // Computes kCount pixels from column x on of kHalves * 16 output channels.
 template <int kHalves, int kCount, int kStride>
@@ -90,28 +165,21 @@ ORB360_VNNI void Compute(const Row& row, int x, const std::int8_t* weight) {
       }
     }
   }
-  const __m512 slope = _mm512_set1_ps(run.slope);
 #pragma GCC unroll 2
   for (int h = 0; h < kHalves; ++h) {
     const int channel = row.first_channel + h * kInt8Half;
-    const int exist = std::clamp(run.output.shape.channels - channel, 0, kInt8Half);
-    const auto mask = static_cast<__mmask16>((1u << exist) - 1);
     const __m512 scale = _mm512_loadu_ps(run.weights->scale.data() + channel);
     const __m512 bias = _mm512_loadu_ps(run.bias + channel);
-    const int plane = channel / kInt8Half;
-    const std::ptrdiff_t at = std::ptrdiff_t{x} * kInt8Half;
-    float* out = run.output.row<float>(plane, row.y) + at;
-    const float* added =
-        run.residual.data == nullptr ? nullptr : run.residual.row<float>(plane, row.y) + at;
+    alignas(kAlignment) float values[kPixels * kInt8Half];
 #pragma GCC unroll 14
     for (int p = 0; p < kCount; ++p) {
-      __m512 value = _mm512_fmadd_ps(_mm512_maskz_cvtepi32_ps(kAll, sum[h][p]), scale, bias);
-      if (added != nullptr) value = _mm512_add_ps(value, _mm512_loadu_ps(added + p * kInt8Half));
-      // NaN of the residual fails the comparison and stays NaN.
-      value = _mm512_mask_mul_ps(value, _mm512_cmp_ps_mask(value, _mm512_setzero_ps(), _CMP_NGT_UQ),
-                                 value, slope);
-      // Channels that fill up the last block are zero.
-      _mm512_storeu_ps(out + p * kInt8Half, _mm512_maskz_mov_ps(mask, value));
+      const __m512 value = _mm512_fmadd_ps(_mm512_maskz_cvtepi32_ps(kAll, sum[h][p]), scale, bias);
+      _mm512_store_ps(values + p * kInt8Half, value);
+    }
+    if (run.output.layout == Layout::kBlocked) {
+      StoreBlocked(run, channel, row.y, x, kCount, values);
+    } else {
+      StorePlanar(run, channel, row.y, x, kCount, values);
     }
   }
 }
@@ -150,7 +218,7 @@ void RunVnni(const Int8Convolution& run, int first, int last, std::byte* scratch
   }
   const int tiles = (width + kPixels - 1) / kPixels;
   const std::int8_t* weight = run.weights->weight.data();
-  const int channels = run.output.planes() * kInt8Half;
+  const int channels = (run.output.shape.channels + kInt8Half - 1) / kInt8Half * kInt8Half;
   for (int channel = 0; channel < channels; channel += kInt8Group) {
     const int halves = std::min(kInt8Group, channels - channel) / kInt8Half;
     const Function* functions = Functions(halves, run.stride);

@@ -29,6 +29,7 @@ def export(
     plain = {**operations.OPERATIONS, "median_log": _median_log}
     with (
         mock.patch.object(operations, "pad", _pad),
+        mock.patch.object(torch, "where", _where),
         mock.patch.dict(operations.OPERATIONS, plain),
         warnings.catch_warnings(),
         torch.no_grad(),
@@ -38,6 +39,16 @@ def export(
             Model(), tuple(inputs.values()), path, opset_version=_OPSET,
             input_names=list(inputs), output_names=names,
         )  # fmt: skip
+
+
+_torch_where = torch.where
+
+
+def _where(condition: Tensor, a: Tensor | float, b: Tensor | float) -> Tensor:
+    """With numbers as floats; exported, they would have double precision."""
+    like = a if isinstance(a, Tensor) else b
+    a, b = (v if isinstance(v, Tensor) else torch.full_like(like, v) for v in (a, b))
+    return _torch_where(condition, a, b)
 
 
 def _pad(x: Tensor, width: int, padding: str) -> Tensor:

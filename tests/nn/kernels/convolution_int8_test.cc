@@ -77,6 +77,8 @@ TEST_F(Int8Convolution, IsTheExactSumForEveryKernelStrideAndPadding) {
           ExpectExact(c);
           c.with_residual = true;
           ExpectExact(c);
+          c.output_layout = Layout::kPlanar;
+          ExpectExact(c);
         }
       }
     }
@@ -95,6 +97,9 @@ TEST_F(Int8Convolution, IsTheExactSumForEveryNumberOfChannels) {
   for (const int in : {1, 3, 4, 15, 16, 33, 80}) {
     for (const int out : {1, 15, 16, 17, 32, 33, 48, 97}) {
       ExpectExact(OfIntegers({in, out, 3}, 7, 15));
+      Case planar = OfIntegers({in, out, 1}, 3, 31);
+      planar.output_layout = Layout::kPlanar;
+      ExpectExact(planar);
       ExpectExact(OfIntegers({in, out, 1}, 2, 29));
     }
   }
