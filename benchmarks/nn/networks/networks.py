@@ -167,7 +167,9 @@ def measure(subject: Subject, arguments: argparse.Namespace) -> dict[str, Any]:
             if precision == "float":
                 facts = about
         for device in arguments.device:
-            _, contenders[device] = stack.enter_context(program(*own, "--device", device))
+            about, once = stack.enter_context(program(*own, "--device", device))
+            if about["device"] != "cpu":  # `auto` where there is no GPU
+                contenders[about["device"].split()[0]] = once
         times = {contender: [] for contender in contenders}
         for _ in range(arguments.turns):
             for contender, once in contenders.items():
@@ -242,7 +244,7 @@ def main() -> None:
                         choices=[*descriptions, "released"])  # fmt: skip
     parser.add_argument("--float-only", action="store_true", help="no bfloat16, no 8-bit integers")
     parser.add_argument("--onnxruntime", type=Path, help="path of libonnxruntime.so")
-    parser.add_argument("--device", nargs="*", default=[], help="others than the CPU: vulkan:0 ...")
+    parser.add_argument("--device", nargs="*", default=[], help="others than the CPU: vulkan:0, or auto ...")
     parser.add_argument("--best", action="store_true",
                         help="minima, for a busy machine, and without PyTorch")  # fmt: skip
     parser.add_argument("--programs", type=Path, default=Path("build"), help="folder of the runners")
