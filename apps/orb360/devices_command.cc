@@ -80,9 +80,8 @@ nlohmann::json Measure(const nn::Graph& graph, const DevicesOptions& options,
                        const std::string& name, bool uses_halves = false) {
   try {
     // As runs do.
-    const nn::DataType precision = name == "cpu"
-                                       ? nn::ChoosePrecision(nn::Precision::kAuto, graph)
-                                       : nn::DataType::kFloat;
+    const nn::DataType precision =
+        name == "cpu" ? nn::ChoosePrecision(nn::Precision::kAuto, graph) : nn::DataType::kFloat;
     const nn::ExecutorOptions how{.threads = ThreadsOf(options),
                                   .precision = precision,
                                   .device = nn::OpenDevice(name, uses_halves)};
