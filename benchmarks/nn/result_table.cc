@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <limits>
+#include <string>
 
 #include <orb360/nn/graph/precision.h>
 
@@ -15,23 +17,42 @@ double TotalMilliseconds(const Result& result) {
   return sum;
 }
 
+namespace {
+
+/// Text of a number in a column of that width; blank where there is none.
+std::string Column(int width, int decimals, double value, const char* unit = "") {
+  if (std::isnan(value)) return std::string(static_cast<std::size_t>(width) + 1, ' ');
+  char text[64];
+  std::snprintf(text, sizeof text, " %*.*f%s", width - static_cast<int>(std::strlen(unit)),
+                decimals, value, unit);
+  return text;
+}
+
+}  // namespace
+
 void PrintTable(const std::vector<Result>& results) {
-  std::printf("%-16s %-13s %-8s %4s %7s %8s %8s %8s %8s %7s %9s %8s %8s\n", "network", "layer",
+  std::printf("%-16s %-13s %-8s %4s %8s %8s %8s %8s %8s %8s %8s %8s %8s\n", "network", "layer",
               "type", "rows", "MMAC", "orb360", "oneDNN", "ORT", "GFLOP/s", "of peak", "products",
               "/oneDNN", "/ORT");
+  constexpr int kWidth = 8;
   for (const Result& result : results) {
-    const auto& times = result.milliseconds;
-    const auto column = [&](const char* name, double scale) {
-      return times.contains(name) ? times.at(name) * scale : std::nan("");
+    const auto time = [&](const char* name) {
+      const auto found = result.milliseconds.find(name);
+      return found != result.milliseconds.end() ? found->second : std::nan("");
     };
-    const double own = times.at("orb360");
-    std::printf(
-        "%-16s %-13s %-8s %4d %7.1f %8.3f %8.3f %8.3f %8.1f %6.1f%% %8.1f%% %8.3f %8.3f\n",
-        result.network.c_str(), result.problem.layer.name.c_str(), NameOf(result.type),
-        result.problem.height, result.problem.macs() / 1e6, own, column("oneDNN", 1),
-        column("ORT", 1), result.gflops("orb360"), 100 * result.gflops("orb360") / result.peak,
-        100 * (result.product_gflops > 0 ? result.product_gflops / result.peak : std::nan("")),
-        own / column("oneDNN", 1), own / column("ORT", 1));
+    const double own = time("orb360");
+    const double products =
+        result.product_gflops > 0 ? 100 * result.product_gflops / result.peak : std::nan("");
+    std::string line;
+    line += Column(kWidth, 1, result.problem.macs() / 1e6);
+    for (const char* name : {"orb360", "oneDNN", "ORT"}) line += Column(kWidth, 3, time(name));
+    line += Column(kWidth, 1, result.gflops("orb360"));
+    line += Column(kWidth, 1, 100 * result.gflops("orb360") / result.peak, "%");
+    line += Column(kWidth, 1, products, "%");
+    for (const char* name : {"oneDNN", "ORT"}) line += Column(kWidth, 3, own / time(name));
+    std::printf("%-16s %-13s %-8s %4d%s\n", result.network.c_str(),
+                result.problem.layer.name.c_str(), NameOf(result.type), result.problem.height,
+                line.c_str());
   }
 }
 

@@ -62,6 +62,11 @@ nlohmann::json Work(const Graph& graph, int height, DataType precision) {
         spec.type == DataType::kBFloat16 && spec.in_channels <= kMaxPlanarChannels;
     products[NameOf(is_float ? DataType::kFloat : spec.type)] += 1e-9 * count;
   }
+  for (const Node& node : graph.nodes) {  // which are merged in `nodes`
+    if (!std::holds_alternative<NormalizedConvolutionOp>(node.operation)) continue;
+    products[NameOf(DataType::kFloat)] +=
+        1e-9 * static_cast<double>(MultiplyAdds(graph, node, height, 2 * height));
+  }
   return {{"products", products}, {"gigabytes", 1e-9 * bytes}};
 }
 

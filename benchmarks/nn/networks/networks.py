@@ -9,6 +9,7 @@ import argparse
 import contextlib
 import dataclasses
 import json
+import math
 import statistics
 import subprocess
 import tempfile
@@ -188,12 +189,16 @@ def floor(work: Mapping[str, Any], peaks: Mapping[str, float]) -> float:
     return 1e3 * (products + work["gigabytes"] / peaks["bandwidth"])
 
 
+def _text(ratio: float, width: int) -> str:
+    return " " * width if math.isnan(ratio) else f"{ratio:{width}.2f}"
+
+
 def rows(name: str, height: int, result: Mapping[str, Any], peaks: Mapping[str, float]) -> list[str]:
     """A line for everyone who ran the network."""
     lines = []
     times, slowest = result["times"], result["times"].get("ONNX Runtime", float("nan"))
     for contender, taken in times.items():
-        line = f"{name:16} {height:5} {contender:13} {taken:8.2f} ms {slowest / taken:7.2f}"
+        line = f"{name:16} {height:5} {contender:13} {taken:8.2f} ms {_text(slowest / taken, 7)}"
         if contender in result["work"]:
             least = floor(result["work"][contender], peaks)
             line += f" {least:8.2f} ms {taken / least:7.2f}"
