@@ -29,8 +29,6 @@ from weights_tools.graph import Graph, run
 from weights_tools.network import Network
 from weights_tools.networks import NETWORKS
 
-RUNNER = Path("build/nn_network_runner")
-ONNX_RUNNER = Path("build/nn_onnx_runner")
 RELEASED = Path("weights/depth_completion.h5")
 RUNS_IN_A_TURN = 3
 
@@ -141,7 +139,8 @@ def onnx_command(subject: Subject, model: Path, arguments: argparse.Namespace) -
     onnx_network.export(
         model, subject.graph, subject.weights, random_inputs(subject.graph, arguments.height)
     )
-    command = [ONNX_RUNNER, model, "--onnxruntime", arguments.onnxruntime]
+    runner = arguments.programs / "nn_onnx_runner"
+    command = [runner, model, "--onnxruntime", arguments.onnxruntime]
     for port in subject.graph.inputs:
         command += ["--input", f"{port['name']}={port['channels']}"]
     command += ["--outputs", len(subject.graph.outputs)]
@@ -151,7 +150,8 @@ def onnx_command(subject: Subject, model: Path, arguments: argparse.Namespace) -
 def measure(subject: Subject, arguments: argparse.Namespace) -> dict[str, Any]:
     """Medians in milliseconds by who ran it (minima with --best), what the runner says of the network
     in floats, and what each type multiplies (`work`)."""
-    own = [RUNNER, subject.file, "--height", arguments.height, "--threads", arguments.threads]
+    own = [arguments.programs / "nn_network_runner", subject.file]
+    own += ["--height", arguments.height, "--threads", arguments.threads]
     work = {}
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
         contenders = {} if arguments.best else {"PyTorch": pytorch(subject, arguments.height)}
@@ -256,8 +256,6 @@ def main() -> None:
     parser.add_argument("--json", action="store_true", help="print only the summary, as JSON")
     parser.add_argument("--onto", type=argparse.FileType(), help="JSON to add the summary to")
     arguments = parser.parse_args()
-    global RUNNER, ONNX_RUNNER
-    RUNNER, ONNX_RUNNER = (arguments.programs / path.name for path in (RUNNER, ONNX_RUNNER))
     arguments.precision = ["float"] if arguments.float_only else precisions()
     torch.set_num_threads(arguments.threads)
 
