@@ -104,7 +104,8 @@ def calibrate(
             chosen = torch.from_numpy(random.randint(0, len(x), values))
             ends = torch.stack([x.min(), x.max()])
             drawn.setdefault(node.name, []).append(torch.cat([ends, x[chosen]]).numpy())
-    return {name: best_range(np.concatenate(own)) for name, own in drawn.items()}
+    ranges = {name: best_range(np.concatenate(own)) for name, own in drawn.items()}
+    return {name: ends for name, ends in ranges.items() if ends[1] > 0}  # `nn` takes no others
 
 
 def best_range(values: np.ndarray) -> tuple[float, float]:

@@ -42,6 +42,13 @@ void AddInputRanges(std::string_view json, Graph* graph) {
       throw UserError("\"quantization\": the range of node " + Quoted(name) +
                       " should contain zero and end above it");
     }
+    // Far beyond any network; scales within are normal numbers.
+    constexpr float kNarrowest = 1e-20f, kWidest = 1e20f;
+    const float width = read.maximum - read.minimum;
+    if (!(width >= kNarrowest && width <= kWidest)) {
+      throw UserError("\"quantization\": the range of node " + Quoted(name) +
+                      " should be 1e-20 to 1e20 wide");
+    }
     node->input_range = read;
   }
 }

@@ -62,6 +62,17 @@ class QuantizationTest(unittest.TestCase):
         self.assertLess(high, 1.3)
         self.assertGreater(high, 0.9)
 
+    def test_an_input_that_is_never_positive_gets_no_range(self) -> None:
+        network = Network(networks.coarse_depth_completion(NARROW, 16))
+        weights = {name: value.detach().clone() for name, value in network.weights().items()}
+        for role in ("weight", "bias"):
+            weights[f"encoder1.{role}"].zero_()
+        inputs = collate([plain(drives.frame(2), points_of(drives.frame(2), "1000", 0))]).inputs
+        with torch.no_grad():
+            ranges = quantization.calibrate(network.description.graph, weights, [inputs])
+        self.assertNotIn("encoder2.linear", ranges)
+        self.assertIn("head2", ranges)
+
     def test_a_calibrated_file_runs_near_its_floats(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             path, shard = Path(folder) / "network.h5", Path(folder) / "town1.npz"

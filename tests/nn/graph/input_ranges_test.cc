@@ -63,7 +63,9 @@ TEST(AddInputRanges, RefusesWhatIsNotAllowedInOneLine) {
            {R"({"input_ranges": {"deep": [0, "1"]}})", "two finite numbers"},
            {R"({"input_ranges": {"deep": [0, 0]}})", "contain zero"},
            {R"({"input_ranges": {"deep": [0.5, 1]}})", "contain zero"},
-           {R"({"input_ranges": {"deep": [1, -1]}})", "contain zero"}}) {
+           {R"({"input_ranges": {"deep": [1, -1]}})", "contain zero"},
+           {R"({"input_ranges": {"deep": [0, 1e-40]}})", "wide"},
+           {R"({"input_ranges": {"deep": [-3e38, 3e38]}})", "wide"}}) {
     const std::string refusal = Refusal(json);
     EXPECT_THAT(refusal, HasSubstr(reason)) << json;
     EXPECT_EQ(refusal.find('\n'), std::string::npos) << json;
