@@ -47,7 +47,7 @@ Features FindFeatures() {
   Features features;
   features.avx512 = IsSet(b, 16) && IsSet(b, 17) && IsSet(b, 30) && IsSet(b, 31);
   features.vnni = features.avx512 && IsSet(c, 11);
-  const bool has_amx = IsSet(d, 22) && IsSet(d, 24);                 // BF16, TILE
+  const bool has_amx = IsSet(d, 22) && IsSet(d, 24);  // BF16, TILE
   if (__get_cpuid_count(7, 1, &a, &b, &c, &d) == 0) return features;
   features.bfloat16 = features.avx512 && IsSet(a, 5);
   features.amx = features.bfloat16 && has_amx && (saved & kTiles) == kTiles;
