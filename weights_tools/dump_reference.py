@@ -10,6 +10,7 @@ are stored, then rounded: the same bytes every time.
 """
 
 import argparse
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -50,11 +51,12 @@ def dump(reference: Reference, folder: Path, outputs_only: bool = False) -> Path
         stored = {name: values.astype(np.float32) for name, values in inputs.items()}
         given = {name: torch.from_numpy(v).double()[None] for name, v in stored.items()}
         with torch.backends.mkldnn.flags(enabled=False), torch.no_grad():
-            tensors = {name: _plain(values[0]) for name, values in network.run(given).items()}
+            run = partial(network.run, ranges=reference.ranges)
+            tensors = {name: _plain(values[0]) for name, values in run(given).items()}
         parts = {name: values[: channels(name, values)] for name, values in tensors.items()}
         kept[case] = {name: values for name, values in parts.items() if len(values) > 0}
     path = folder / f"{reference.name}.h5"
-    network_file.write(path, graph, weights, reference.dtype, kept)
+    network_file.write(path, graph, weights, reference.dtype, kept, reference.ranges)
     return path
 
 

@@ -51,10 +51,12 @@ def run(
     inputs: Mapping[str, Tensor],
     bfloat16: bool = False,
     behind: Mapping[str, Callable[[Tensor], Tensor]] = MappingProxyType({}),
+    instead: Mapping[str, Callable[..., Any]] = MappingProxyType({}),
 ) -> dict[str, Tensor]:
     """Every tensor of the network by name: the inputs and what each node wrote. With `bfloat16`
     convolutions multiply in that type, and what follows keeps it until more is needed. `behind`:
-    what is done to the result of a convolution, by the name of its layer."""
+    what is done to the result of a convolution, by the name of its layer. `instead`: what is computed
+    in the place of a node's operation, by the name of the node."""
     tensors = {port["name"]: inputs[port["name"]] for port in graph.inputs}
     slices: dict[str, Tensor] = {}
     for node in graph.nodes:
@@ -73,7 +75,8 @@ def run(
                 slices |= _slices(graph, node.inputs[0], given[0])
             results = slices[node.outputs[0]]
         else:
-            results = OPERATIONS[node.op](*given, **own, **node.attributes)
+            operation = instead.get(node.name, OPERATIONS[node.op])
+            results = operation(*given, **own, **node.attributes)
         layer = node.weights.get("weight", "").removesuffix(".weight")
         if layer in behind:
             results = behind[layer](results)

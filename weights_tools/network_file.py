@@ -16,6 +16,7 @@ import numpy as np
 from torch import Tensor, as_tensor
 
 from weights_tools.graph import Graph, run
+from weights_tools.quantization import Ranges, rounded_convolutions
 
 _HEADER_BYTES = 512  # the smallest user block that HDF5 has
 _MAGIC = b"ORB360NN"
@@ -28,11 +29,12 @@ class NetworkFile(NamedTuple):
     graph: Graph
     weights: dict[str, np.ndarray]
 
-    def run(self, inputs: Mapping[str, Tensor]) -> dict[str, Tensor]:
-        """Every tensor of the network by name, in the inputs' data type."""
+    def run(self, inputs: Mapping[str, Tensor], ranges: Ranges | None = None) -> dict[str, Tensor]:
+        """Every tensor of the network by name, in the inputs' data type; with the convolutions that have
+        a range in 8-bit integers."""
         dtype = next(iter(inputs.values())).dtype
         weights = {name: as_tensor(values).to(dtype) for name, values in self.weights.items()}
-        return run(self.graph, weights, inputs)
+        return run(self.graph, weights, inputs, instead=rounded_convolutions(self.graph, ranges or {}))
 
 
 def write(
@@ -41,8 +43,10 @@ def write(
     weights: Arrays,
     dtype: type[np.floating] = np.float32,
     tensors: Mapping[str, Arrays] | None = None,
+    ranges: Ranges | None = None,
 ) -> None:
-    """Writes weights as `dtype`; and with them, for tests, tensors by case and name."""
+    """Writes weights as `dtype`; with them the ranges that a calibration found; and, for tests, tensors
+    by case and name."""
     temporary = path.with_name(path.name + ".tmp")
     try:
         # The oldest format has no time stamps in groups.
@@ -53,6 +57,8 @@ def write(
             group = file.create_group("weights")
             for name, values in sorted(_narrow(weights, dtype).items()):
                 group.create_dataset(name, data=values, track_times=False)
+            if ranges:
+                _write_text(file, "quantization", _ranges_json(ranges))
             if tensors:
                 _write_tensors(file, tensors)
         _write_checksum(temporary)
@@ -74,6 +80,11 @@ def _write_text(file: h5py.File, name: str, text: str) -> None:
     content = text.encode()
     string = np.array(content, h5py.string_dtype("utf-8", len(content)))
     file.create_dataset(name, data=string, track_times=False)
+
+
+def _ranges_json(ranges: Ranges) -> str:
+    pairs = {name: [float(end) for end in ends] for name, ends in sorted(ranges.items())}
+    return json.dumps({"input_ranges": pairs}, ensure_ascii=False, separators=(",", ":"))
 
 
 def _write_tensors(file: h5py.File, tensors: Mapping[str, Arrays]) -> None:
@@ -111,6 +122,16 @@ def read(path: Path) -> NetworkFile:
         graph = Graph.from_json(file["graph"][()].decode())
         weights = {name: values[()] for name, values in file["weights"].items()}
     return NetworkFile(graph, weights)
+
+
+def read_ranges(path: Path) -> dict[str, tuple[float, float]]:
+    """The ranges of convolutions' inputs, if a calibration has added them."""
+    _check_header(path)
+    with h5py.File(path, "r") as file:
+        if "quantization" not in file:
+            return {}
+        pairs = json.loads(file["quantization"][()].decode())["input_ranges"]
+    return {name: (minimum, maximum) for name, (minimum, maximum) in pairs.items()}
 
 
 def read_tensors(path: Path) -> dict[str, dict[str, np.ndarray]]:

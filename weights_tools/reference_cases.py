@@ -1,7 +1,7 @@
 """Graphs with weights and inputs, for which the tests of `nn` compare with PyTorch."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +21,8 @@ class Reference:
     weights: Arrays
     cases: dict[str, Arrays]  # inputs
     dtype: type[np.floating] = np.float32  # that the weights are stored in
+    # Of the inputs of convolutions, which then are computed in 8-bit integers.
+    ranges: dict[str, tuple[float, float]] = field(default_factory=dict)
 
 
 def references() -> list[Reference]:
@@ -28,6 +30,7 @@ def references() -> list[Reference]:
     return [
         _operation("convolution", _convolution, FLAT, np.float16),
         _operation("convolution_across_poles", _convolution, ACROSS, np.float16),
+        _of_bytes(_operation("convolution_of_bytes", _deep_convolution, FLAT, np.float16)),
         _operation("normalized_convolution", _normalized_convolution, FLAT),
         _operation("normalized_convolution_across_poles", _normalized_convolution, ACROSS),
         _operation("pooling", _pooling, EVEN),
@@ -170,6 +173,25 @@ def _convolution(b: Builder, sizes: Sizes) -> dict[str, list[str]]:
                     y = Symbol(f"{layer.name}_stride{stride}_{padding}", outputs, stride // 2)
                     b.node("convolution", [x], [y], layer, stride=stride, padding=padding)
     return {"not_finite": ["few", "many"]}
+
+
+def _deep_convolution(b: Builder, sizes: Sizes) -> dict[str, list[str]]:
+    """So many channels that `nn` multiplies in bytes; they fill no block."""
+    x = b.input("deep", 18)
+    for size in (1, 3, 5):
+        layer = b.layer(Layer(f"deep{size}", (37, x.channels, size, size)))
+        for stride in (1, 2):
+            for padding in sizes.paddings:
+                y = Symbol(f"{layer.name}_stride{stride}_{padding}", 37, stride // 2)
+                b.node("convolution", [x], [y], layer, stride=stride, padding=padding)
+    return {}
+
+
+def _of_bytes(reference: Reference) -> Reference:
+    """With ranges that some of the inputs, from -2 to 2, exceed, and one of which begins at zero."""
+    names = [node.name for node in reference.graph.nodes]
+    ranges = {name: (-1.5 * (i > 0), 1.9 + i / 16) for i, name in enumerate(names)}
+    return replace(reference, ranges=ranges)
 
 
 def _normalized_convolution(b: Builder, sizes: Sizes) -> dict[str, list[str]]:

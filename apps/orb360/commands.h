@@ -6,6 +6,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include <orb360/nn/graph/device.h>
+#include <orb360/nn/graph/precision.h>
+
 namespace orb360 {
 
 /// The work of a subcommand after the command line has been parsed. Returns the exit status of the
@@ -22,24 +25,18 @@ inline const CLI::Validator kIsNumber(
     },
     "");
 
-/// The processor of the network, as nn::OpenDevice takes it.
+/// The processor of the network, as nn::OpenDevice takes it, and in which type the CPU multiplies.
 struct DeviceOptions {
   std::string name = "cpu";
   bool uses_halves = false;
+  nn::Precision precision = nn::Precision::kAuto;
+
+  /// Opens the processor. Throws UserError where it cannot be used.
+  nn::Device Open() const;
 };
 
 /// Adds the options for it.
-inline void AddDeviceOptions(CLI::App* command, DeviceOptions* device) {
-  command
-      ->add_option("--device", device->name,
-                   "Processor of the network: cpu; auto, the first GPU or else the CPU; vulkan or "
-                   "vulkan:N, a device of `orb360 devices`")
-      ->type_name("cpu|auto|vulkan[:N]")
-      ->capture_default_str();
-  command->add_flag("--float16", device->uses_halves,
-                    "Keep results of convolutions as 16-bit floats on a GPU: less traffic of its "
-                    "memory, and less exact");
-}
+void AddDeviceOptions(CLI::App* command, DeviceOptions* device);
 
 /// Each of these adds a subcommand with its options to `app`. When the user chooses the subcommand,
 /// `*chosen` receives the command to run.

@@ -21,7 +21,6 @@
 #include "slam/io/sparse_file.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/nn/models/default_weights.h>
-#include <orb360/nn/vulkan/devices.h>
 #include <orb360/slam/depth/depth_completer.h>
 #include <orb360/slam/io/depth_image.h>
 
@@ -34,7 +33,6 @@ struct CompleteOptions {
   std::string weights;
   std::string out;
   int threads = 0;  // 0: as many as the machine has
-  bool uses_bfloat16 = false;
   DeviceOptions device;
   bool json = false;
 };
@@ -86,12 +84,7 @@ void WriteFractionImage(const std::filesystem::path& path, const cv::Mat& fracti
 class Completer {
  public:
   explicit Completer(const CompleteOptions& options)
-      : options_(options),
-        device_(nn::OpenDevice(options.device.name, options.device.uses_halves)) {
-    if (device_.backend != nullptr && options.uses_bfloat16) {
-      throw UserError("--bfloat16 is for the CPU: leave it out, or use --device cpu");
-    }
-  }
+      : options_(options), device_(options.device.Open()) {}
 
   DenseDepth Complete(const cv::Mat& image, const SparseDepth& sparse) {
     if (!completer_ || completer_->camera().width() != image.cols ||
@@ -101,12 +94,14 @@ class Completer {
     DenseDepth dense = completer_->Complete(image, sparse);
     if (!completer_->device_failure().empty() && device_.backend != nullptr) {
       std::cerr << "orb360: warning: " << completer_->device_failure() << '\n';
-      device_ = {};
+      device_ = {.precision = device_.precision};
     }
     return dense;
   }
   /// Returns the name of the processor that completed the last image.
   const std::string& device() const { return completer_->device(); }
+  /// Returns in which type its convolutions multiplied.
+  std::string precision() const { return completer_->precision(); }
 
  private:
   void Prepare(cv::Size size) {
@@ -114,10 +109,8 @@ class Completer {
                             ? options_.threads
                             : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     completer_.reset();
-    completer_.emplace(options_.weights, DepthCompleterOptions{.size = size,
-                                                               .threads = threads,
-                                                               .bfloat16 = options_.uses_bfloat16,
-                                                               .device = device_});
+    completer_.emplace(options_.weights,
+                       DepthCompleterOptions{.size = size, .threads = threads, .device = device_});
   }
 
   const CompleteOptions options_;
@@ -153,7 +146,8 @@ nlohmann::json CompleteOne(const CompleteOptions& options, const std::filesystem
   nlohmann::json result = {{"sparse", sparse_path.string()},
                            {"depth", out.string()},
                            {"confidence", write_fraction("_confidence", dense.confidence)},
-                           {"device", completer->device()}};
+                           {"device", completer->device()},
+                           {"precision", completer->precision()}};
   if (!dense.ground.empty()) result["ground"] = write_fraction("_ground", dense.ground);
   if (dense.log_camera_height) {
     result["camera_height_guess"] = std::exp(*dense.log_camera_height);
@@ -241,8 +235,6 @@ void AddCompleteCommand(CLI::App* app, Command* chosen) {
   command->add_option("--threads", options->threads, "0: as many as the machine has")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  command->add_flag("--bfloat16", options->uses_bfloat16,
-                    "Convolve in bfloat16: faster and less exact, on processors that have it");
   AddDeviceOptions(command, &options->device);
   command->callback([options, chosen] {
     *chosen = [options] {

@@ -79,9 +79,16 @@ int ThreadsOf(const DevicesOptions& options) {
 nlohmann::json Measure(const nn::Graph& graph, const DevicesOptions& options,
                        const std::string& name, bool uses_halves = false) {
   try {
+    // As runs do.
+    const nn::DataType precision =
+        name == "cpu" ? nn::ChoosePrecision(nn::Precision::kAuto, graph) : nn::DataType::kFloat;
     const nn::ExecutorOptions how{.threads = ThreadsOf(options),
+                                  .precision = precision,
                                   .device = nn::OpenDevice(name, uses_halves)};
-    return {{"milliseconds", MeasureMs(graph, {options.size[1], options.size[0]}, how)}};
+    nlohmann::json measured = {
+        {"milliseconds", MeasureMs(graph, {options.size[1], options.size[0]}, how)}};
+    if (name == "cpu") measured["precision"] = nn::NameOf(precision);
+    return measured;
   } catch (const nn::DeviceError& error) {
     return {{"milliseconds", nullptr}, {"problem", error.what()}};
   } catch (const UserError& error) {
@@ -129,7 +136,8 @@ void Print(const nlohmann::json& devices) {
                 << device["subgroup_size"] << ", " << (device["float16"].get<bool>() ? "" : "no ")
                 << "16-bit floats";
     } else {
-      std::cout << "  " << device["threads"] << " threads";
+      std::cout << "  " << device["threads"] << " threads, "
+                << device["precision"].get<std::string>();
     }
     std::cout << ": " << TimeText(device) << '\n';
   }

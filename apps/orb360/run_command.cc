@@ -33,7 +33,6 @@
 #include "slam/pipeline/make_sparse_model.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/nn/base/option_schema.h>
-#include <orb360/nn/vulkan/devices.h>
 #include <orb360/slam/depth/depth_completer.h>
 #include <orb360/slam/io/config.h>
 #include <orb360/slam/io/map_file.h>
@@ -187,7 +186,7 @@ void RequireInRange(const ScaleOptions& scale, const std::string& input) {
 }
 
 int Run(const RunOptions& options) {
-  const nn::Device device = nn::OpenDevice(options.device.name, options.device.uses_halves);
+  const nn::Device device = options.device.Open();
   Options system_options;
   if (!options.config.empty()) {
     OptionSchema schema;
@@ -270,7 +269,8 @@ int Run(const RunOptions& options) {
   const nlohmann::json summary = Summarize(
       reconstruction, record, dense,
       {options.input, options.sequence.lens, fps, options.mask, masked_fraction, options.weights,
-       completer != nullptr ? completer->device() : "none", threads, placed.description});
+       completer != nullptr ? completer->device() : "none",
+       completer != nullptr ? completer->precision() : "none", threads, placed.description});
   output.Finish(reconstruction, summary, dense);
   if (!options.map_out.empty()) {
     WriteLargestMap(options.map_out, size.width, file_world_from_map, system);

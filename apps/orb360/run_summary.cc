@@ -114,6 +114,7 @@ nlohmann::json Summarize(const Reconstruction& reconstruction, const RunRecord& 
       {"threads", description.threads},
       {"weights", description.weights},
       {"device", description.device},
+      {"precision", description.precision},
       {"positions", description.positions},
       {"interrupted", CaughtInterrupt() != 0 || record.failure != nullptr},
       {"warnings", record.warnings},

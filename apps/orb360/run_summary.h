@@ -44,6 +44,7 @@ struct RunDescription {
   double masked_fraction = 0;  ///< Fraction of the sphere's solid angle.
   std::string weights;
   std::string device;  ///< On which the network ran (nn::Device::name); "none" without a network.
+  std::string precision;  ///< In which its convolutions multiplied; "none" without a network.
   int threads = 0;
   nlohmann::json positions;  ///< DescribePositions; null where there were none.
 };

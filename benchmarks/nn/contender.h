@@ -38,6 +38,9 @@ class Contender {
   virtual std::vector<double> Milliseconds() = 0;
   /// Of the last run, row by row and channel by channel.
   virtual std::vector<float> Answer() = 0;
+  /// Where the convolution is computed in tiles, runs only the products and returns their number;
+  /// 0 elsewhere.
+  virtual double RunProducts() { return 0; }
 };
 
 std::unique_ptr<Contender> MakeOrb360(const Problem& problem, DataType type, int threads);

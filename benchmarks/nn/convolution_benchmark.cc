@@ -14,9 +14,14 @@
 #include <nlohmann/json.hpp>
 
 #include "benchmarks/nn/contender.h"
+#include "benchmarks/nn/device_peaks.h"
 #include "benchmarks/nn/fma_peak.h"
 #include "benchmarks/nn/layers.h"
+#include "benchmarks/nn/result_table.h"
+#include "benchmarks/nn/stopwatch.h"
+#include "nn/kernels/convolution.h"
 #include <orb360/nn/base/check.h>
+#include <orb360/nn/graph/precision.h>
 
 namespace orb360::nn {
 namespace {
@@ -25,7 +30,7 @@ struct Options {
   std::vector<std::string> networks = {"completion"};
   std::vector<int> heights = {512, 1024};  // of the panorama
   std::string layer;                       // only layers whose name has this in it
-  std::string type = "float";
+  std::vector<std::string> types = {"float"};
   std::string onnxruntime;
   int threads = 2;
   int runs = 20;
@@ -33,6 +38,7 @@ struct Options {
   int rounds = 2;
   bool best = false;  // minima instead of medians
   bool avx2 = false;
+  bool peaks = false;
   bool json = false;
 };
 
@@ -72,22 +78,20 @@ double Difference(const std::vector<float>& left, const std::vector<float>& righ
   return worst / std::sqrt(square / static_cast<double>(left.size()));
 }
 
-struct Result {
-  std::string network;
-  Problem problem;  // without its numbers
-  std::map<std::string, double> milliseconds;
-  double peak = 0;  // GFLOP/s
-  double gflops(const std::string& who) const {
-    return 2e-6 * problem.macs() / milliseconds.at(who);
-  }
-};
+// 10^9 operations per second of all threads, with the instruction that multiplies that type.
+double MeasurePeak(DataType type, int threads) {
+  if (type == DataType::kBFloat16) return MeasureBFloat16Peak(threads);
+  return type == DataType::kInt8 ? MeasureBytePeak(threads) : MeasureFmaPeak(threads);
+}
 
-Result Measure(const std::string& network, const Layer& layer, int panorama_height,
+Result Measure(const std::string& network, const Layer& layer, int panorama_height, DataType type,
                const Options& options) {
   Problem problem = MakeProblem(layer, panorama_height);
-  const DataType type = options.type == "bf16" ? DataType::kBFloat16 : DataType::kFloat;
   std::map<std::string, std::unique_ptr<Contender>> contenders;
-  contenders["orb360"] = MakeOrb360(problem, type, options.threads);
+  std::unique_ptr<Contender> made = MakeOrb360(problem, type, options.threads);
+  Contender* const own = made.get();
+  const bool is_in_tiles = own->RunProducts() > 0;
+  contenders["orb360"] = std::move(made);
   contenders["oneDNN"] = MakeOneDnn(problem, type, options.threads);
   if (!options.onnxruntime.empty() && type == DataType::kFloat) {
     contenders["ORT"] = MakeOnnxRuntime(problem, options.onnxruntime, options.threads);
@@ -96,22 +100,27 @@ Result Measure(const std::string& network, const Layer& layer, int panorama_heig
   for (const auto& [name, contender] : contenders) contender->Run();  // answers, and warms up
   const std::vector<float> answer = contenders["orb360"]->Answer();
   for (const auto& [name, contender] : contenders) {
-    // Sums of a few thousand terms in another order; bfloat16 has 8 bits.
-    const double tolerance = type == DataType::kFloat ? 1e-4 : 3e-2;
+    // Sums of a few thousand terms in another order; short types have 8 bits.
+    const double tolerance =
+        type == DataType::kFloat ? 1e-4 : (type == DataType::kInt8 ? 0.1 : 3e-2);
     const double difference = Difference(answer, contender->Answer());
     if (!(difference < tolerance)) {
       throw std::runtime_error(layer.name + ": " + name + " gives another answer, by " +
                                std::to_string(difference));
     }
   }
-  std::vector<double> peaks;
+  std::vector<double> peaks, product_times;
+  double products = 0;
   const auto start = std::chrono::steady_clock::now();
   const auto is_over = [&] {
     return std::chrono::steady_clock::now() - start >
            std::chrono::duration<double>(options.seconds);
   };
   for (int run = 0; run < options.runs || !is_over(); ++run) {
-    peaks.push_back(1 / MeasureFmaPeak(options.threads));
+    peaks.push_back(1 / MeasurePeak(type, options.threads));
+    if (is_in_tiles) {
+      Time([&] { products = own->RunProducts(); }, &product_times);
+    }
     for (const auto& [name, contender] : contenders) {
       // OpenMP's threads wait busily for a while after their work; another library's turn must
       // begin after that (scripts/bench makes the while short).
@@ -119,7 +128,10 @@ Result Measure(const std::string& network, const Layer& layer, int panorama_heig
       contender->Run();
     }
   }
-  Result result{network, std::move(problem), {}, 1 / Typical(peaks, options.best)};
+  Result result{network, type, std::move(problem), {}, 1 / Typical(peaks, options.best)};
+  if (is_in_tiles) {
+    result.product_gflops = 2e-6 * products / Typical(std::move(product_times), options.best);
+  }
   result.problem.weight = result.problem.bias = result.problem.input = {};
   for (const auto& [name, contender] : contenders) {
     // The first run was to warm up.
@@ -130,67 +142,16 @@ Result Measure(const std::string& network, const Layer& layer, int panorama_heig
   return result;
 }
 
-/// Over all libraries: what else the machine does makes it larger.
-double TotalMilliseconds(const Result& result) {
-  double sum = 0;
-  for (const auto& [name, time] : result.milliseconds) sum += time;
-  return sum;
-}
-
-void PrintTable(const std::vector<Result>& results) {
-  std::printf("%-16s %-18s %5s %9s %8s %8s %8s %9s %6s %8s %8s\n", "network", "layer", "rows",
-              "MMAC", "orb360", "oneDNN", "ORT", "GFLOP/s", "peak", "/oneDNN", "/ORT");
-  for (const Result& result : results) {
-    const auto& times = result.milliseconds;
-    const auto column = [&](const char* name, double scale) {
-      return times.contains(name) ? times.at(name) * scale : std::nan("");
-    };
-    const double own = times.at("orb360");
-    std::printf("%-16s %-18s %5d %9.1f %8.3f %8.3f %8.3f %9.1f %5.1f%% %8.3f %8.3f\n",
-                result.network.c_str(), result.problem.layer.name.c_str(), result.problem.height,
-                result.problem.macs() / 1e6, own, column("oneDNN", 1), column("ORT", 1),
-                result.gflops("orb360"), 100 * result.gflops("orb360") / result.peak,
-                own / column("oneDNN", 1), own / column("ORT", 1));
-  }
-}
-
-nlohmann::json Summary(const std::vector<Result>& results) {
-  std::map<std::string, double> log_ratio;
-  std::map<std::string, int> count;
-  double worst = 0, lowest = 1;
-  for (const Result& result : results) {
-    const double own = result.milliseconds.at("orb360");
-    double best = std::numeric_limits<double>::infinity();
-    for (const auto& [name, time] : result.milliseconds) {
-      if (name == "orb360") continue;
-      log_ratio[name] += std::log(own / time);
-      ++count[name];
-      best = std::min(best, time);
-    }
-    constexpr double kWorthComparing = 20e6;  // MACs: below, the start of the threads is measured
-    if (result.problem.macs() >= kWorthComparing) worst = std::max(worst, own / best);
-    const Layer& layer = result.problem.layer;
-    if (layer.kernel == 3 && std::min(layer.in_channels, layer.out_channels) >= 32) {
-      lowest = std::min(lowest, result.gflops("orb360") / result.peak);
-    }
-  }
-  nlohmann::json summary;
-  if (count["oneDNN"] > 0) {
-    summary["conv_vs_onednn_geomean"] = std::exp(log_ratio["oneDNN"] / count["oneDNN"]);
-  }
-  if (count["ORT"] > 0) summary["conv_vs_ort_geomean"] = std::exp(log_ratio["ORT"] / count["ORT"]);
-  summary["conv_vs_best_worst_layer"] = worst;
-  summary["peak_fraction"] = lowest;
-  return summary;
-}
-
 int Main(int argc, char** argv) {
   Options options;
   CLI::App app("Convolutions of the networks' layers beside oneDNN and ONNX Runtime");
   app.add_option("--network", options.networks, "completion, encoder-decoder, multi-stream");
   app.add_option("--height", options.heights, "heights of the panorama in pixels");
   app.add_option("--layer", options.layer, "only layers with this in their name");
-  app.add_option("--type", options.type)->check(CLI::IsMember({"float", "bf16"}));
+  app.add_option("--type", options.types,
+                 "float, bf16, int8; what the processor has not is left out")
+      ->check(CLI::IsMember({"float", "bf16", "int8"}));
+  app.add_flag("--peaks", options.peaks, "print only what the processor can do at most, as JSON");
   app.add_option("--onnxruntime", options.onnxruntime, "path of libonnxruntime.so");
   app.add_option("--threads", options.threads)->check(CLI::PositiveNumber);
   app.add_option("--runs", options.runs, "at least")->check(CLI::PositiveNumber);
@@ -206,12 +167,30 @@ int Main(int argc, char** argv) {
     hwy::DisableTargets(HWY_AVX2 - 1);  // a better set of instructions has a lower bit
     dnnl::set_max_cpu_isa(dnnl::cpu_isa::avx2);
   }
+  if (options.peaks) {
+    const Peaks peaks = MeasurePeaks(options.threads);
+    const nlohmann::json json = {{"float", peaks.fma},
+                                 {"bfloat16", peaks.bfloat16},
+                                 {"int8", peaks.bytes},
+                                 {"bandwidth", peaks.bandwidth}};
+    std::cout << json.dump() << '\n';
+    return 0;
+  }
+  const MatrixUnits units = FindMatrixUnits();
+  std::vector<DataType> types;
+  for (const std::string& name : options.types) {
+    if (name == "float") types.push_back(DataType::kFloat);
+    if (name == "bf16" && units.avx512_bfloat16) types.push_back(DataType::kBFloat16);
+    if (name == "int8" && units.avx512_vnni) types.push_back(DataType::kInt8);
+  }
   std::vector<Result> results;
   for (int round = 0; round < options.rounds; ++round) {
     std::size_t next = 0;
-    const auto measure = [&](const LayerList& list, const Layer& layer, int height) {
+    const auto measure = [&](const LayerList& list, const Layer& layer, int height, DataType type) {
       if (layer.name.find(options.layer) == std::string::npos) return;
-      Result result = Measure(list.network, layer, height, options);
+      // Images are multiplied as floats.
+      if (type == DataType::kInt8 && layer.in_channels <= kMaxPlanarChannels) return;
+      Result result = Measure(list.network, layer, height, type, options);
       if (next == results.size()) {
         results.push_back(std::move(result));
       } else if (TotalMilliseconds(result) < TotalMilliseconds(results[next])) {
@@ -223,7 +202,9 @@ int Main(int argc, char** argv) {
     for (const LayerList& list : {kCompletionLayers, kEncoderDecoderLayers, kMultiStreamLayers}) {
       if (std::count(options.networks.begin(), options.networks.end(), list.network) == 0) continue;
       for (const int height : options.heights) {
-        for (const Layer& layer : list.layers) measure(list, layer, height);
+        for (const Layer& layer : list.layers) {
+          for (const DataType type : types) measure(list, layer, height, type);
+        }
       }
     }
   }
@@ -232,7 +213,7 @@ int Main(int argc, char** argv) {
     std::cerr << '\n';
     PrintTable(results);
   }
-  std::cout << Summary(results).dump(2) << '\n';
+  std::cout << Summarize(results).dump(2) << '\n';
   return 0;
 }
 

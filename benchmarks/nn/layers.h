@@ -44,7 +44,7 @@ inline const LayerList kCompletionLayers = {"completion",
                                              {"L1", 64, 32, 1, 1, 4},
                                              {"D1", 32, 32, 3, 1, 2},
                                              {"H1", 32, 32, 3, 1, 2},
-                                             {"H2", 32, 38, 1, 1, 2}}};
+                                             {"H2", 32, 40, 1, 1, 2}}};
 
 /// The published guided encoder-decoder.
 inline const LayerList kEncoderDecoderLayers = {"encoder-decoder",

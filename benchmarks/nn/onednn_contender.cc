@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <dnnl.hpp>
 #include <omp.h>
 
@@ -14,7 +16,20 @@ class OneDnn : public Contender {
   OneDnn(const Problem& problem, DataType type, int threads)
       : engine_(dnnl::engine::kind::cpu, 0), stream_(engine_), threads_(threads) {
     const auto [name, in, out, kernel, stride, reduction, may_tile] = problem.layer;
-    const auto as = type == DataType::kFloat ? memory::data_type::f32 : memory::data_type::bf16;
+    const bool is_int8 = type == DataType::kInt8;
+    const auto as =
+        is_int8 ? memory::data_type::s8
+                : (type == DataType::kFloat ? memory::data_type::f32 : memory::data_type::bf16);
+    const auto result = is_int8 ? memory::data_type::f32 : as;
+    // Inputs are from -1 to 1. One scale for all weights does for a comparison of times.
+    const float largest = *std::max_element(problem.weight.begin(), problem.weight.end());
+    const float in_steps = is_int8 ? 127 : 1;
+    const float weight_steps = is_int8 ? 127 / largest : 1;
+    const auto scaled = [](float factor) {
+      dnnl::primitive_attr attributes;
+      if (factor != 1) attributes.set_output_scales(0, {factor});
+      return attributes;
+    };
     const memory::dims in_dims{1, in, problem.height, problem.width};
     const memory::dims weight_dims{out, in, kernel, kernel};
     out_dims_ = {1, out, problem.out_height(), problem.out_width()};
@@ -27,26 +42,27 @@ class OneDnn : public Contender {
     const dnnl::convolution_forward::desc description(
         dnnl::prop_kind::forward_inference, dnnl::algorithm::convolution_auto, {in_dims, as, any},
         {weight_dims, as, any}, {{out}, memory::data_type::f32, memory::format_tag::a},
-        {out_dims_, as, any}, {stride, stride}, {reach, reach},
+        {out_dims_, result, any}, {stride, stride}, {reach, reach},
         {beyond(problem.out_height(), problem.height), beyond(problem.out_width(), problem.width)});
-    const dnnl::convolution_forward::primitive_desc primitive(description, engine_);
+    const dnnl::convolution_forward::primitive_desc primitive(
+        description, scaled(1 / (in_steps * weight_steps)), engine_);
     convolution_ = dnnl::convolution_forward(primitive);
     const auto fill = [&](const std::vector<float>& values, const memory::dims& dims,
-                          memory::format_tag tag, const memory::desc& wanted) {
+                          memory::format_tag tag, const memory::desc& wanted, float steps) {
       memory plain({dims, memory::data_type::f32, tag}, engine_, const_cast<float*>(values.data()));
       memory filled(wanted, engine_);
-      dnnl::reorder(plain, filled).execute(stream_, plain, filled);
+      dnnl::reorder(plain, filled, scaled(steps)).execute(stream_, plain, filled);
       stream_.wait();
       return filled;
     };
     output_ = memory(primitive.dst_desc(), engine_);
-    arguments_ = {
-        {DNNL_ARG_SRC,
-         fill(problem.input, in_dims, memory::format_tag::nchw, primitive.src_desc())},
-        {DNNL_ARG_WEIGHTS,
-         fill(problem.weight, weight_dims, memory::format_tag::oihw, primitive.weights_desc())},
-        {DNNL_ARG_BIAS, fill(problem.bias, {out}, memory::format_tag::a, primitive.bias_desc())},
-        {DNNL_ARG_DST, output_}};
+    arguments_ = {{DNNL_ARG_SRC, fill(problem.input, in_dims, memory::format_tag::nchw,
+                                      primitive.src_desc(), in_steps)},
+                  {DNNL_ARG_WEIGHTS, fill(problem.weight, weight_dims, memory::format_tag::oihw,
+                                          primitive.weights_desc(), weight_steps)},
+                  {DNNL_ARG_BIAS, fill(problem.bias, {out}, memory::format_tag::a,
+                                       primitive.bias_desc(), in_steps * weight_steps)},
+                  {DNNL_ARG_DST, output_}};
   }
 
   void Run() override {

@@ -13,14 +13,16 @@ class Orb360 : public Contender {
   Orb360(const Problem& problem, DataType type, int threads)
       : threads_(threads),
         convolution_({problem.layer.in_channels, problem.layer.out_channels, problem.layer.kernel,
-                      problem.layer.stride, Padding::kZero, 1, type, problem.layer.may_tile},
+                      problem.layer.stride, Padding::kZero, 1, type, problem.layer.may_tile, -1, 1},
                      problem.weight, problem.bias) {
     const Shape shape{problem.layer.in_channels, problem.height, problem.width};
     const bool is_stem = shape.channels <= kMaxPlanarChannels;
     const TensorFormat planar{shape, Layout::kPlanar, DataType::kFloat, 0};
     const TensorFormat input{shape, is_stem ? Layout::kPlanar : Layout::kBlocked,
-                             is_stem ? DataType::kFloat : type, problem.layer.kernel / 2};
-    const TensorFormat output{convolution_.OutputShape(shape), Layout::kBlocked, type, 0};
+                             is_stem || type == DataType::kInt8 ? DataType::kFloat : type,
+                             problem.layer.kernel / 2};
+    const TensorFormat output{convolution_.OutputShape(shape), Layout::kBlocked,
+                              type == DataType::kInt8 ? DataType::kFloat : type, 0};
     AlignedVector<std::byte> planar_memory(planar.bytes());
     const TensorView plain = planar.View(planar_memory.data());
     const float* next = problem.input.data();
@@ -29,7 +31,7 @@ class Orb360 : public Contender {
         std::copy_n(next, shape.width, plain.row<float>(c, y));
       }
     }
-    scratch_.resize(convolution_.ScratchBytes(threads));
+    scratch_.resize(convolution_.ScratchBytes(shape, threads));
     input_memory_.resize(input.bytes());
     output_memory_.resize(output.bytes());
     input_ = input.View(input_memory_.data());
@@ -39,6 +41,9 @@ class Orb360 : public Contender {
 
   void Run() override {
     Time([&] { convolution_.Run(input_, nullptr, output_, scratch_, threads_); }, &milliseconds_);
+  }
+  double RunProducts() override {
+    return static_cast<double>(convolution_.RunProducts(input_, scratch_, threads_));
   }
   std::vector<double> Milliseconds() override { return milliseconds_; }
   std::vector<float> Answer() override {

@@ -28,28 +28,45 @@ bool AskForTiles() {
   return syscall(SYS_arch_prctl, kRequestPermission, kTileData) == 0;
 }
 
-BFloat16Unit FindBFloat16Unit() {
+struct Features {
+  bool avx512 = false;  // F, DQ, BW and VL, and the operating system saves its registers
+  bool vnni = false;
+  bool bfloat16 = false;
+  bool amx = false;  // and the operating system saves its tiles
+};
+
+Features FindFeatures() {
   unsigned a = 0, b = 0, c = 0, d = 0;
   constexpr int kOsSavesState = 27;  // of leaf 1, ecx
-  if (__get_cpuid(1, &a, &b, &c, &d) == 0 || !IsSet(c, kOsSavesState)) return BFloat16Unit::kNone;
+  if (__get_cpuid(1, &a, &b, &c, &d) == 0 || !IsSet(c, kOsSavesState)) return {};
   constexpr std::uint64_t kVectors = 0xe6;   // SSE, AVX and AVX-512
   constexpr std::uint64_t kTiles = 0x60000;  // configuration and data
   const std::uint64_t saved = SavedState();
-  if ((saved & kVectors) != kVectors) return BFloat16Unit::kNone;
-  if (__get_cpuid_count(7, 0, &a, &b, &c, &d) == 0) return BFloat16Unit::kNone;
-  const bool has_avx512 =
-      IsSet(b, 16) && IsSet(b, 17) && IsSet(b, 30) && IsSet(b, 31);  // F DQ BW VL
-  const bool has_amx = IsSet(d, 22) && IsSet(d, 24);                 // BF16, TILE
-  if (__get_cpuid_count(7, 1, &a, &b, &c, &d) == 0) return BFloat16Unit::kNone;
-  const bool has_avx512_bf16 = IsSet(a, 5);
-  if (!has_avx512 || !has_avx512_bf16) return BFloat16Unit::kNone;
-  const bool saves_tiles = (saved & kTiles) == kTiles;
-  return has_amx && saves_tiles && AskForTiles() ? BFloat16Unit::kAmx : BFloat16Unit::kAvx512;
+  if ((saved & kVectors) != kVectors) return {};
+  if (__get_cpuid_count(7, 0, &a, &b, &c, &d) == 0) return {};
+  Features features;
+  features.avx512 = IsSet(b, 16) && IsSet(b, 17) && IsSet(b, 30) && IsSet(b, 31);
+  features.vnni = features.avx512 && IsSet(c, 11);
+  const bool has_amx = IsSet(d, 22) && IsSet(d, 24);  // BF16, TILE
+  if (__get_cpuid_count(7, 1, &a, &b, &c, &d) == 0) return features;
+  features.bfloat16 = features.avx512 && IsSet(a, 5);
+  features.amx = features.bfloat16 && has_amx && (saved & kTiles) == kTiles;
+  return features;
 }
+
+BFloat16Unit FindBFloat16Unit() {
+  const Features features = FindFeatures();
+  if (!features.bfloat16) return BFloat16Unit::kNone;
+  return features.amx && AskForTiles() ? BFloat16Unit::kAmx : BFloat16Unit::kAvx512;
+}
+
+bool FindVnni() { return FindFeatures().vnni; }
 
 #else
 
 BFloat16Unit FindBFloat16Unit() { return BFloat16Unit::kNone; }
+
+bool FindVnni() { return false; }
 
 #endif
 
@@ -58,6 +75,11 @@ BFloat16Unit FindBFloat16Unit() { return BFloat16Unit::kNone; }
 BFloat16Unit BestBFloat16Unit() {
   static const BFloat16Unit unit = FindBFloat16Unit();
   return unit;
+}
+
+bool HasVnni() {
+  static const bool has = FindVnni();
+  return has;
 }
 
 }  // namespace orb360::nn

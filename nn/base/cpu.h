@@ -17,4 +17,8 @@ enum class BFloat16Unit : std::uint8_t {
 /// Returns the best unit that this processor has and that the operating system allows.
 BFloat16Unit BestBFloat16Unit();
 
+/// Returns whether this processor has AVX-512's VPDPBUSD, which adds products of bytes up as
+/// integers (Intel since Cascade Lake, AMD since Zen 4), and the operating system allows it.
+bool HasVnni();
+
 }  // namespace orb360::nn

@@ -158,30 +158,18 @@ Step MakeChain(const Graph& graph, const FusedNode& fused, int width, int thread
           chain->ScratchBytes(width, threads)};
 }
 
-Step MakeConvolution(const Graph& graph, const FusedNode& fused, DataType precision, int threads) {
+Step MakeConvolution(const Graph& graph, const FusedNode& fused, int height, int width,
+                     DataType precision, int threads) {
   const auto weight = [&](std::size_t i) -> const Weight& {
     return graph.weights[static_cast<std::size_t>(fused.node.weights[i])];
   };
-  const auto& op = std::get<ConvolutionOp>(fused.node.operation);
-  // If a panorama is turned by the smallest step to which the network is equivariant, it must be
-  // turned by whole tiles here too, so that the result is turned bit for bit.
-  const int halvings =
-      graph.tensors[static_cast<std::size_t>(fused.node.outputs[0])].extent.halvings;
-  const int step = graph.size_multiple >> std::max(halvings, 0);
-  const ConvolutionSpec spec{
-      .in_channels = weight(0).shape[1],
-      .out_channels = weight(0).shape[0],
-      .kernel = weight(0).shape[3],
-      .stride = op.stride,
-      .padding = op.padding,
-      .slope = fused.slope,
-      .type = ConvolutionType(graph, fused, precision),
-      .may_tile = op.padding == Padding::kZero || step % kConvolutionTile == 0};
-  const auto kernel = std::make_shared<const Convolution>(spec, weight(0).values, weight(1).values);
+  const Tensor& input = graph.tensors[static_cast<std::size_t>(fused.node.inputs[0])];
+  const auto kernel = std::make_shared<const Convolution>(
+      CpuConvolutionSpec(graph, fused, precision), weight(0).values, weight(1).values);
   return {[kernel, adds = fused.adds_residual, threads](Views in, Views out, Scratch scratch) {
             kernel->Run(in[0], adds ? &in[1] : nullptr, out[0], scratch, threads);
           },
-          kernel->ScratchBytes(threads)};
+          kernel->ScratchBytes(ShapeFor(input, height, width), threads)};
 }
 
 Step MakeStep(const Graph& graph, const FusedNode& fused, int height, int width, DataType precision,
@@ -192,7 +180,7 @@ Step MakeStep(const Graph& graph, const FusedNode& fused, int height, int width,
     return MakeChain(graph, fused, shape.width, threads);
   }
   if (std::holds_alternative<ConvolutionOp>(fused.node.operation)) {
-    return MakeConvolution(graph, fused, precision, threads);
+    return MakeConvolution(graph, fused, height, width, precision, threads);
   }
   return {std::visit(RunMaker(graph, fused, threads), fused.node.operation)};
 }
@@ -205,10 +193,35 @@ Step MakeCopy(const ChannelCopy& copy, int threads) {
 
 }  // namespace
 
+ConvolutionSpec CpuConvolutionSpec(const Graph& graph, const FusedNode& fused, DataType precision) {
+  const std::vector<int>& shape =
+      graph.weights[static_cast<std::size_t>(fused.node.weights[0])].shape;
+  const auto& op = std::get<ConvolutionOp>(fused.node.operation);
+  // If a panorama is turned by the smallest step to which the network is equivariant, it must be
+  // turned by whole tiles here too, so that the result is turned bit for bit.
+  const int halvings =
+      graph.tensors[static_cast<std::size_t>(fused.node.outputs[0])].extent.halvings;
+  const int step = graph.size_multiple >> std::max(halvings, 0);
+  return {.in_channels = shape[1],
+          .out_channels = shape[0],
+          .kernel = shape[3],
+          .stride = op.stride,
+          .padding = op.padding,
+          .slope = fused.slope,
+          .type = ConvolutionType(graph, fused, precision),
+          .may_tile = op.padding == Padding::kZero || step % kConvolutionTile == 0,
+          .minimum = fused.node.input_range.value_or(InputRange{}).minimum,
+          .maximum = fused.node.input_range.value_or(InputRange{}).maximum};
+}
+
 CpuBackend::CpuBackend(int threads, DataType precision) : threads_(threads), precision_(precision) {
   if (precision == DataType::kBFloat16 && BestBFloat16Unit() == BFloat16Unit::kNone) {
     throw UserError("this processor has neither AVX-512 BF16 nor AMX; compute with 32 bits");
   }
+  if (precision == DataType::kInt8 && !HasVnni()) {
+    throw UserError("this processor has no AVX-512 VNNI; compute with 32 bits");
+  }
+  ORB360_CHECK(precision != DataType::kFloat16);
 }
 
 NodeNeeds CpuBackend::NeedsOf(const Graph& graph, const FusedNode& node) const {

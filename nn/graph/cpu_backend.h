@@ -8,6 +8,7 @@
 
 #include "nn/graph/backend.h"
 #include "nn/graph/lowering.h"
+#include "nn/kernels/convolution.h"
 
 namespace orb360::nn {
 
@@ -22,11 +23,14 @@ struct Step {
   std::size_t scratch_bytes = 0;
 };
 
+/// Returns the parameters of a convolution's kernel when `precision` is requested.
+ConvolutionSpec CpuConvolutionSpec(const Graph& graph, const FusedNode& fused, DataType precision);
+
 /// The backend that uses the kernels of nn/kernels.
 class CpuBackend : public Backend {
  public:
-  /// `precision` is the type in which convolutions multiply; they always sum in floats. Throws
-  /// UserError for kBFloat16 if the processor does not support it.
+  /// `precision` is the type in which convolutions multiply; they sum in floats, and 8 bits
+  /// exactly. Throws UserError for a type that the processor does not support.
   explicit CpuBackend(int threads, DataType precision = DataType::kFloat);
 
   NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const override;

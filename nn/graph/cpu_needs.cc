@@ -1,5 +1,6 @@
 #include "nn/graph/cpu_needs.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -91,6 +92,13 @@ DataType ConvolutionType(const Graph& graph, const FusedNode& node, DataType pre
   const auto channels = [&](int tensor) {
     return graph.tensors[static_cast<std::size_t>(tensor)].channels;
   };
+  if (precision == DataType::kInt8) {
+    // Images and positions have more digits than 8 bits, and few channels do not fill a block. A
+    // convolution whose accuracy would suffer has no range.
+    const bool is_deep = std::min(channels(node.node.inputs[0]), channels(node.node.outputs[0])) >
+                         kMaxPlanarChannels;
+    return is_deep && node.node.input_range ? DataType::kInt8 : DataType::kFloat;
+  }
   const bool stays_float =
       channels(node.node.inputs[0]) <= kMaxPlanarChannels &&
       (node.adds_residual || channels(node.node.outputs[0]) <= kMaxPlanarChannels);

@@ -12,7 +12,7 @@ NodeNeeds CpuNeedsOf(const Graph& graph, const FusedNode& node, DataType precisi
 
 /// Returns the type in which a convolution multiplies when `precision` is requested. An input of
 /// few channels is multiplied as floats if the result has few channels too or is added to another
-/// tensor.
+/// tensor. In 8 bits only convolutions multiply that have many channels and a range of inputs.
 DataType ConvolutionType(const Graph& graph, const FusedNode& node, DataType precision);
 
 }  // namespace orb360::nn

@@ -10,6 +10,7 @@
 
 #include "nn/base/checksummed_file.h"
 #include "nn/base/hdf5_handle.h"
+#include "nn/graph/input_ranges.h"
 #include "nn/graph/json_object.h"
 #include "nn/graph/limits.h"
 #include "nn/graph/parse_graph.h"
@@ -151,7 +152,11 @@ Graph ReadNetwork(const std::filesystem::path& path) {
     const Hdf5Quiet quiet;
     const Hdf5Handle file = OpenChecksummedContent(&bytes);
     const std::string json = ReadText(file.get(), "graph");
-    return ParseGraph(json, ReadWeights(file.get()));
+    Graph graph = ParseGraph(json, ReadWeights(file.get()));
+    if (H5Lexists(file.get(), "quantization", H5P_DEFAULT) > 0) {
+      AddInputRanges(ReadText(file.get(), "quantization"), &graph);
+    }
+    return graph;
   } catch (const UserError& reason) {
     throw UserError(path.string() + ": " + reason.what());
   }

@@ -35,6 +35,17 @@ int RowsInBand(const ConvolutionSpec& spec, const TensorView& input, int rows, i
   return std::max(1, std::min(fitting, rows / (threads * bands_per_thread)));
 }
 
+// Likewise for 8 bits: the input is rounded in bands that stay in a quarter of the second-level
+// cache. Rows at the edges of bands are rounded twice.
+int RowsInByteBand(const ConvolutionSpec& spec, const Shape& input, int rows, int threads) {
+  constexpr std::size_t kInputBytes = std::size_t{256} << 10;
+  const std::size_t row_bytes = Int8ScratchBytes(input, spec.kernel, spec.stride, 2) -
+                                Int8ScratchBytes(input, spec.kernel, spec.stride, 1);
+  const int fitting = static_cast<int>(
+      std::min<std::size_t>(rows, kInputBytes / std::max<std::size_t>(row_bytes, 1)));
+  return std::max(1, std::min(fitting, rows / (threads * 2)));
+}
+
 AlignedVector<float> PackDirect(const ConvolutionSpec& spec, std::span<const float> weight,
                                 const std::vector<int>& groups) {
   const int taps = spec.kernel * spec.kernel;
@@ -60,6 +71,11 @@ AlignedVector<float> PackDirect(const ConvolutionSpec& spec, std::span<const flo
 }
 
 // Gives every thread the same number of batches of tiles, or one less.
+int CountBatches(int tiles, int threads) {
+  const int batches = (tiles + kMaxWinogradTiles - 1) / kMaxWinogradTiles;
+  return std::min(tiles, (batches + threads - 1) / threads * threads);
+}
+
 void RunByTiles(const WinogradConvolution& run, const DirectConvolution& direct, std::byte* scratch,
                 int threads) {
   const int height = run.output.shape.height;
@@ -67,8 +83,7 @@ void RunByTiles(const WinogradConvolution& run, const DirectConvolution& direct,
   const int tiles = CountWinogradTiles(run.output.shape);
   const int across = (width + kWinogradTile - 1) / kWinogradTile;
   const std::size_t bytes = WinogradScratchBytes(run.input.shape.channels);
-  int batches = (tiles + kMaxWinogradTiles - 1) / kMaxWinogradTiles;
-  batches = std::min(tiles, (batches + threads - 1) / threads * threads);
+  const int batches = CountBatches(tiles, threads);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
   for (int batch = 0; batch < batches; ++batch) {
     const auto begin = static_cast<int>(std::int64_t{batch} * tiles / batches);
@@ -84,7 +99,21 @@ void RunByTiles(const WinogradConvolution& run, const DirectConvolution& direct,
   }
 }
 
+void RunInBytes(const Int8Convolution& run, int band, std::byte* scratch, std::size_t bytes,
+                int threads) {
+  const int rows = run.output.shape.height;
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+  for (int first = 0; first < rows; first += band) {
+    RunVnni(run, first, std::min(rows, first + band), scratch + omp_get_thread_num() * bytes);
+  }
+}
+
 }  // namespace
+
+bool ConvolutionSpec::is_winograd() const {
+  return type == DataType::kFloat && kernel == 3 && stride == 1 &&
+         std::min(in_channels, out_channels) >= kFewestWinogradChannels && may_tile;
+}
 
 Convolution::Convolution(const ConvolutionSpec& spec, std::span<const float> weight,
                          std::span<const float> bias, BFloat16Unit unit)
@@ -97,31 +126,33 @@ Convolution::Convolution(const ConvolutionSpec& spec, std::span<const float> wei
                weight.size());
   ORB360_CHECK(bias.empty() || bias.size() == static_cast<std::size_t>(spec.out_channels),
                bias.size());
-  ORB360_CHECK(spec.type == DataType::kFloat || unit != BFloat16Unit::kNone,
+  ORB360_CHECK(spec.type != DataType::kBFloat16 || unit != BFloat16Unit::kNone,
                "this processor has no unit for bfloat16");
-  const int block = BlockOf(spec.type);
+  ORB360_CHECK(spec.type != DataType::kInt8 || HasVnni(), "this processor has no unit for 8 bits");
+  const int block = spec.type == DataType::kBFloat16 ? BlockOf(spec.type) : kBlock;
   const int channels = (spec.out_channels + block - 1) / block * block;
   bias_.resize(channels);
   std::copy(bias.begin(), bias.end(), bias_.begin());
-  if (spec.type == DataType::kBFloat16 && !is_bfloat16_stem()) {
+  if (spec.type == DataType::kInt8) {
+    scale_ = ByteScaleOf(spec.minimum, spec.maximum);
+    bytes_ = PackInt8(weight, spec.out_channels, spec.in_channels, spec.kernel, scale_);
+  } else if (spec.type == DataType::kBFloat16 && !is_bfloat16_stem()) {
     rounded_weight_ = PackBFloat16(weight, spec.out_channels, spec.in_channels, spec.kernel);
   } else {
     groups_ = DirectGroups(channels);
     weight_ = PackDirect(spec, weight, groups_);
-    if (is_winograd()) {
+    if (spec_.is_winograd()) {
       filters_ = PackWinograd(weight, spec.out_channels, spec.in_channels, groups_);
     }
   }
 }
 
-bool Convolution::is_winograd() const {
-  const auto [in, out, kernel, stride, padding, slope, type, may_tile] = spec_;
-  return type == DataType::kFloat && kernel == 3 && stride == 1 &&
-         std::min(in, out) >= kFewestWinogradChannels && may_tile;
-}
-
-std::size_t Convolution::ScratchBytes(int threads) const {
-  return is_winograd() ? threads * WinogradScratchBytes(spec_.in_channels) : 0;
+std::size_t Convolution::ScratchBytes(const Shape& input, int threads) const {
+  if (spec_.type == DataType::kInt8) {
+    const int band = RowsInByteBand(spec_, input, OutputShape(input).height, threads);
+    return threads * Int8ScratchBytes(input, spec_.kernel, spec_.stride, band);
+  }
+  return spec_.is_winograd() ? threads * WinogradScratchBytes(spec_.in_channels) : 0;
 }
 
 Shape Convolution::OutputShape(const Shape& input) const {
@@ -131,12 +162,13 @@ Shape Convolution::OutputShape(const Shape& input) const {
 
 void Convolution::CheckTensors(const TensorView& input, const TensorView* residual,
                                const TensorView& output) const {
-  const bool takes_floats = spec_.type == DataType::kFloat || is_bfloat16_stem();
+  const bool takes_floats = spec_.type != DataType::kBFloat16 || is_bfloat16_stem();
   ORB360_CHECK(input.shape.channels == spec_.in_channels, input.shape.channels, spec_.in_channels);
   ORB360_CHECK(input.type == (takes_floats ? DataType::kFloat : DataType::kBFloat16));
   ORB360_CHECK(input.layout == Layout::kBlocked
                    ? !is_bfloat16_stem()
-                   : takes_floats && spec_.in_channels <= kMaxPlanarChannels,
+                   : takes_floats && spec_.in_channels <= kMaxPlanarChannels &&
+                         spec_.type != DataType::kInt8,
                spec_.in_channels);
   ORB360_CHECK(output.shape == OutputShape(input.shape));
   ORB360_CHECK(output.type == DataType::kFloat
@@ -147,18 +179,44 @@ void Convolution::CheckTensors(const TensorView& input, const TensorView* residu
                 residual->layout == output.layout && residual->type == output.type));
 }
 
+std::int64_t Convolution::RunProducts(const TensorView& input, std::span<std::byte> scratch,
+                                      int threads) const {
+  if (!spec_.is_winograd()) return 0;
+  ORB360_CHECK(scratch.size() >= ScratchBytes(input.shape, threads), scratch.size());
+  const WinogradConvolution run{1, &groups_, filters_.data(), bias_.data(), input, {}, {}};
+  const int tiles = CountWinogradTiles(OutputShape(input.shape));
+  const int batches = CountBatches(tiles, threads);
+  const std::size_t bytes = WinogradScratchBytes(spec_.in_channels);
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+  for (int batch = 0; batch < batches; ++batch) {
+    const auto begin = static_cast<int>(std::int64_t{batch} * tiles / batches);
+    const auto end = static_cast<int>((std::int64_t{batch} + 1) * tiles / batches);
+    RunWinogradProducts(run, end - begin, scratch.data() + omp_get_thread_num() * bytes);
+  }
+  constexpr int kProductsOfTile = (kWinogradTile + 2) * (kWinogradTile + 2);
+  return std::int64_t{kProductsOfTile} * tiles * spec_.in_channels * spec_.out_channels;
+}
+
 void Convolution::Run(const TensorView& input, const TensorView* residual, const TensorView& output,
                       std::span<std::byte> scratch, int threads) const {
   CheckTensors(input, residual, output);
-  ORB360_CHECK(scratch.size() >= ScratchBytes(threads), scratch.size(), ScratchBytes(threads));
+  const std::size_t scratch_bytes = ScratchBytes(input.shape, threads);
+  ORB360_CHECK(scratch.size() >= scratch_bytes, scratch.size(), scratch_bytes);
   ORB360_CHECK(reinterpret_cast<std::uintptr_t>(scratch.data()) % kAlignment == 0);
   FillHalo(input, spec_.padding, spec_.kernel / 2);
   const TensorView added = residual == nullptr ? TensorView{} : *residual;
   const DirectConvolution direct{spec_.kernel, spec_.stride, spec_.slope, &groups_, weight_.data(),
                                  bias_.data(), input,        added,       output};
-  if (is_winograd()) {
+  if (spec_.is_winograd()) {
     RunByTiles({spec_.slope, &groups_, filters_.data(), bias_.data(), input, added, output}, direct,
                scratch.data(), threads);
+    return;
+  }
+  if (spec_.type == DataType::kInt8) {
+    RunInBytes({spec_.kernel, spec_.stride, spec_.slope, scale_, &bytes_, bias_.data(), input,
+                added, output},
+               RowsInByteBand(spec_, input.shape, output.shape.height, threads), scratch.data(),
+               scratch_bytes / threads, threads);
     return;
   }
   const BFloat16Convolution rounded{spec_.kernel, spec_.stride, spec_.slope, rounded_weight_.data(),

@@ -14,22 +14,14 @@
 #include <hwy/highway.h>
 
 #include "nn/kernels/convolution_tile-inl.h"
+#include "nn/kernels/winograd_transform-inl.h"
 
 #ifndef ORB360_NN_KERNELS_CONVOLUTION_WINOGRAD_CC_
 #define ORB360_NN_KERNELS_CONVOLUTION_WINOGRAD_CC_
 
 namespace orb360::nn {
 
-constexpr int kOut = 4;            // outputs of a tile in a row
-constexpr int kIn = kOut + 3 - 1;  // inputs of a tile in a row
-constexpr int kProducts = kIn * kIn;
 constexpr int kMaxGroup = 3;  // blocks of output channels
-
-// Polynomials of degree 5 are evaluated at 0, a, -a, b, -b and infinity, where a = 1/sqrt(2) and b
-// = sqrt(2). Since a b = 1 the numbers stay small, and the error is several times smaller than with
-// the usual 1 and 2.
-constexpr double kA = 0.70710678118654752440;
-constexpr double kB = 2 * kA;
 
 // Elements between the numbers of one product and the next: one block more than there are, because
 // powers of two would all map to the same few lines of the cache.
@@ -44,48 +36,6 @@ constexpr std::ptrdiff_t ProductStride(int blocks, int tiles) {
 HWY_BEFORE_NAMESPACE();
 namespace orb360::nn {
 namespace HWY_NAMESPACE {
-
-// Transforms six inputs, `step` apart. Every coefficient is that of the product of (x - q) over the
-// other points q.
-template <int kStep>
-HWY_INLINE void TransformInput(const V* in, V* out) {
-  const D d;
-  const V a = hn::Set(d, static_cast<float>(kA));
-  const V b = hn::Set(d, static_cast<float>(kB));
-  const V half = hn::Set(d, 0.5f);
-  const V two = hn::Set(d, 2.0f);
-  const V five_halves = hn::Set(d, 2.5f);  // a^2 + b^2
-  const V x0 = in[0], x1 = in[kStep], x2 = in[2 * kStep], x3 = in[3 * kStep], x4 = in[4 * kStep],
-          x5 = in[5 * kStep];
-  const V even_a = hn::NegMulAdd(two, x2, x4);
-  const V odd_a = hn::NegMulAdd(two, x1, x3);
-  const V even_b = hn::NegMulAdd(half, x2, x4);
-  const V odd_b = hn::NegMulAdd(half, x1, x3);
-  out[0] = hn::NegMulAdd(five_halves, x2, hn::Add(x0, x4));
-  out[kStep] = hn::MulAdd(a, odd_a, even_a);
-  out[2 * kStep] = hn::NegMulAdd(a, odd_a, even_a);
-  out[3 * kStep] = hn::MulAdd(b, odd_b, even_b);
-  out[4 * kStep] = hn::NegMulAdd(b, odd_b, even_b);
-  out[5 * kStep] = hn::NegMulAdd(five_halves, x3, hn::Add(x1, x5));
-}
-
-// Transforms six sums of products, `step` apart, to four outputs: output i sums point^i.
-template <int kInStep, int kOutStep>
-HWY_INLINE void TransformOutput(const V* in, V* out) {
-  const D d;
-  const V a = hn::Set(d, static_cast<float>(kA));
-  const V b = hn::Set(d, static_cast<float>(kB));
-  const V plus_a = hn::Add(in[kInStep], in[2 * kInStep]);
-  const V minus_a = hn::Mul(a, hn::Sub(in[kInStep], in[2 * kInStep]));
-  const V plus_b = hn::Add(in[3 * kInStep], in[4 * kInStep]);
-  const V minus_b = hn::Mul(b, hn::Sub(in[3 * kInStep], in[4 * kInStep]));
-  const V half = hn::Set(d, 0.5f);
-  const V two = hn::Set(d, 2.0f);
-  out[0] = hn::Add(in[0], hn::Add(plus_a, plus_b));
-  out[kOutStep] = hn::Add(minus_a, minus_b);
-  out[2 * kOutStep] = hn::MulAdd(half, plus_a, hn::Mul(two, plus_b));
-  out[3 * kOutStep] = hn::MulAdd(half, minus_a, hn::MulAdd(two, minus_b, in[5 * kInStep]));
-}
 
 struct Tile {
   int y;
@@ -243,16 +193,49 @@ void StoreBlock(const WinogradConvolution& run, Tile tile, int block, const floa
   }
 }
 
+// Computes all products of `count` tiles for one group of output channels.
+void MultiplyGroup(const WinogradConvolution& run, int blocks, const float* weight, int count,
+                   const float* inputs, float* products) {
+  HWY_ALIGN static constexpr float kZeros[kMaxGroup * kBlock] = {};
+  const int in_channels = run.input.shape.channels;
+  const ptrdiff_t plane = ptrdiff_t{count} * kBlock;
+  const ptrdiff_t in_stride = ProductStride(run.input.planes(), count);
+  const ptrdiff_t out_stride = ProductStride(blocks, count);
+  const MultiplyFunction* functions = MultiplyFunctions(blocks);
+  const int parts = (count + MaxPixels(blocks) - 1) / MaxPixels(blocks);
+  for (int product = 0; product < kProducts; ++product) {
+    const TileSource source{1, in_channels, 0, plane, weight, kZeros};
+    for (int part = 0; part < parts; ++part) {
+      const int t = part * count / parts;
+      const int end = (part + 1) * count / parts;
+      functions[end - t - 1](source, inputs + product * in_stride + t * kBlock,
+                             products + product * out_stride + t * kBlock, plane);
+    }
+    weight += ptrdiff_t{in_channels} * blocks * kBlock;
+  }
+}
+
+// Where the products of a batch begin in its scratch memory, behind the inputs.
+float* ProductsIn(float* scratch, int in_blocks) {
+  return scratch + kProducts * ProductStride(in_blocks, kMaxWinogradTiles);
+}
+
+void MultiplyTiles(const WinogradConvolution& run, int count, float* scratch) {
+  const float* weight = run.weight;
+  for (const int blocks : *run.groups) {
+    MultiplyGroup(run, blocks, weight, count, scratch, ProductsIn(scratch, run.input.planes()));
+    weight += ptrdiff_t{kProducts} * run.input.shape.channels * blocks * kBlock;
+  }
+}
+
 std::uint32_t RunWinogradTiles(const WinogradConvolution& run, int first, int last,
                                float* scratch) {
-  HWY_ALIGN static constexpr float kZeros[kMaxGroup * kBlock] = {};
   const int count = last - first;
   const int across = (run.output.shape.width + kOut - 1) / kOut;
-  const int in_channels = run.input.shape.channels;
   const int in_blocks = run.input.planes();
   const ptrdiff_t in_stride = ProductStride(in_blocks, count);
   float* const inputs = scratch;
-  float* const products = scratch + kProducts * ProductStride(in_blocks, kMaxWinogradTiles);
+  float* const products = ProductsIn(scratch, in_blocks);
   const ptrdiff_t plane = ptrdiff_t{count} * kBlock;
   const auto tile = [&](int t) { return Tile{(first + t) / across, (first + t) % across}; };
   std::uint32_t left_out = 0;
@@ -264,19 +247,9 @@ std::uint32_t RunWinogradTiles(const WinogradConvolution& run, int first, int la
   const float* weight = run.weight;
   int first_block = 0;
   for (const int blocks : *run.groups) {
-    const MultiplyFunction* functions = MultiplyFunctions(blocks);
     const ptrdiff_t out_stride = ProductStride(blocks, count);
-    const int parts = (count + MaxPixels(blocks) - 1) / MaxPixels(blocks);
-    for (int product = 0; product < kProducts; ++product) {
-      const TileSource source{1, in_channels, 0, plane, weight, kZeros};
-      for (int part = 0; part < parts; ++part) {
-        const int t = part * count / parts;
-        const int end = (part + 1) * count / parts;
-        functions[end - t - 1](source, inputs + product * in_stride + t * kBlock,
-                               products + product * out_stride + t * kBlock, plane);
-      }
-      weight += ptrdiff_t{in_channels} * blocks * kBlock;
-    }
+    MultiplyGroup(run, blocks, weight, count, inputs, products);
+    weight += ptrdiff_t{kProducts} * run.input.shape.channels * blocks * kBlock;
     for (int block = 0; block < blocks; ++block) {
       for (int t = 0; t < count; ++t) {
         if ((left_out >> t & 1) != 0) continue;
@@ -297,56 +270,7 @@ HWY_AFTER_NAMESPACE();
 namespace orb360::nn {
 
 HWY_EXPORT(RunWinogradTiles);
-
-AlignedVector<float> PackWinograd(std::span<const float> weight, int out_channels, int in_channels,
-                                  const std::vector<int>& groups) {
-  constexpr int kBlock = BlockOf(DataType::kFloat);
-  // Powers 0, 1, 2 of the points, over the product of their differences from the other points.
-  const double transform[kIn][3] = {{1, 0, 0},
-                                    {-1 / 1.5, -kA / 1.5, -0.5 / 1.5},
-                                    {-1 / 1.5, kA / 1.5, -0.5 / 1.5},
-                                    {1 / 6.0, kB / 6, 2 / 6.0},
-                                    {1 / 6.0, -kB / 6, 2 / 6.0},
-                                    {0, 0, 1}};
-  int blocks_before = 0;
-  std::size_t size = 0;
-  for (const int blocks : groups) size += static_cast<std::size_t>(blocks) * kBlock;
-  AlignedVector<float> packed(size * kProducts * in_channels);
-  float* group = packed.data();
-  for (const int blocks : groups) {
-    const int width = blocks * kBlock;
-    // The products of one input channel. They are gathered first, because rows of the whole array
-    // are too far apart for a cache.
-    std::vector<float> products(static_cast<std::size_t>(kProducts) * width);
-    for (int i = 0; i < in_channels; ++i) {
-      for (int o = 0; o < width && blocks_before * kBlock + o < out_channels; ++o) {
-        const float* filter =
-            weight.data() +
-            (static_cast<std::size_t>(blocks_before * kBlock + o) * in_channels + i) * 9;
-        double rows[kIn][3];
-        for (int p = 0; p < kIn; ++p) {
-          for (int u = 0; u < 3; ++u) {
-            rows[p][u] = transform[p][0] * filter[u] + transform[p][1] * filter[3 + u] +
-                         transform[p][2] * filter[6 + u];
-          }
-        }
-        for (int product = 0; product < kProducts; ++product) {
-          const double* row = rows[product / kIn];
-          const double* column = transform[product % kIn];
-          products[product * width + o] =
-              static_cast<float>(row[0] * column[0] + row[1] * column[1] + row[2] * column[2]);
-        }
-      }
-      for (int product = 0; product < kProducts; ++product) {
-        std::copy_n(products.data() + product * width, width,
-                    group + (static_cast<std::ptrdiff_t>(product) * in_channels + i) * width);
-      }
-    }
-    group += static_cast<std::ptrdiff_t>(kProducts) * in_channels * width;
-    blocks_before += blocks;
-  }
-  return packed;
-}
+HWY_EXPORT(MultiplyTiles);
 
 int CountWinogradTiles(const Shape& output) {
   return ((output.height + kOut - 1) / kOut) * ((output.width + kOut - 1) / kOut);
@@ -363,6 +287,10 @@ std::size_t WinogradScratchBytes(int in_channels) {
 std::uint32_t RunWinograd(const WinogradConvolution& run, int first, int last, std::byte* scratch) {
   return HWY_DYNAMIC_DISPATCH(RunWinogradTiles)(run, first, last,
                                                 reinterpret_cast<float*>(scratch));
+}
+
+void RunWinogradProducts(const WinogradConvolution& run, int count, std::byte* scratch) {
+  HWY_DYNAMIC_DISPATCH(MultiplyTiles)(run, count, reinterpret_cast<float*>(scratch));
 }
 
 }  // namespace orb360::nn

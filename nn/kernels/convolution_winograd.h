@@ -32,6 +32,9 @@ AlignedVector<float> PackWinograd(std::span<const float> weight, int out_channel
 /// Number of outputs of a tile in a row.
 constexpr int kWinogradTile = 4;
 
+/// Products of a tile over those of its definition.
+constexpr double kWinogradProductFraction = 36.0 / 144;
+
 /// Returns the number of tiles that cover the output; they are counted row by row.
 int CountWinogradTiles(const Shape& output);
 
@@ -46,5 +49,9 @@ std::size_t WinogradScratchBytes(int in_channels);
 /// contains NaN or infinity, which would spread over the whole tile, are not computed: bit i of the
 /// result is set if tile first + i is one of them.
 std::uint32_t RunWinograd(const WinogradConvolution& run, int first, int last, std::byte* scratch);
+
+/// Only the products of RunWinograd for `count` tiles, from whatever is in `scratch` and to there.
+/// For benchmarks.
+void RunWinogradProducts(const WinogradConvolution& run, int count, std::byte* scratch);
 
 }  // namespace orb360::nn

@@ -7,16 +7,16 @@
 
 #include <orb360/nn/base/check.h>
 #include <orb360/nn/graph/network_file.h>
+#include <orb360/nn/graph/precision.h>
 #include <orb360/nn/models/depth_completion.h>
 #include <orb360/slam/depth/depth_completer.h>
 
 namespace orb360 {
 namespace {
 
-nn::ExecutorOptions HowToRun(const DepthCompleterOptions& options) {
-  return {.threads = options.threads,
-          .precision = options.bfloat16 ? nn::DataType::kBFloat16 : nn::DataType::kFloat,
-          .device = options.device};
+nn::DataType TypeOf(const nn::Graph& graph, const nn::Device& device) {
+  return device.backend != nullptr ? nn::DataType::kFloat
+                                   : nn::ChoosePrecision(device.precision, graph);
 }
 
 template <typename T>
@@ -30,9 +30,12 @@ struct DepthCompleter::Network {
   /// A network for one processor.
   struct Prepared {
     Prepared(const nn::Graph& graph, const DepthCompleterOptions& options)
-        : model(graph, {options.size.height, options.size.width}, HowToRun(options)),
+        : type(TypeOf(graph, options.device)),
+          model(graph, {options.size.height, options.size.width},
+                {.threads = options.threads, .precision = type, .device = options.device}),
           workspace(model) {}
 
+    nn::DataType type;
     nn::DepthCompletion model;
     nn::DepthCompletion::Workspace workspace;
   };
@@ -50,7 +53,7 @@ struct DepthCompleter::Network {
 
   void LeaveDevice(const nn::DeviceError& error) {
     device_error = error.what();
-    options.device = {};
+    options.device = {.precision = options.device.precision};
     prepared.reset();
   }
 
@@ -88,6 +91,10 @@ DepthCompleter::DepthCompleter(const std::filesystem::path& weights,
 DepthCompleter::~DepthCompleter() = default;
 
 const std::string& DepthCompleter::device() const { return network_->options.device.name; }
+
+std::string DepthCompleter::precision() const {
+  return network_->prepared == nullptr ? "float" : nn::NameOf(network_->prepared->type);
+}
 
 const std::string& DepthCompleter::device_failure() const { return network_->failure; }
 

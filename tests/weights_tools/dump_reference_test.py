@@ -53,7 +53,7 @@ class DumpReferenceTest(unittest.TestCase):
                     port["name"]: torch.from_numpy(kept[port["name"]])[None]
                     for port in file.graph.inputs
                 }
-                tensors = file.run(inputs)
+                tensors = file.run(inputs, reference.ranges)
                 for name, expected in kept.items():
                     values = tensors[name][0, : len(expected)].numpy()
                     finite = expected[np.isfinite(expected)]

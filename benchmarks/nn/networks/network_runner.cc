@@ -3,17 +3,23 @@
 // for each and answers with the milliseconds that took.
 #include <cstdio>
 #include <iostream>
-#include <random>
+#include <map>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "benchmarks/nn/networks/random_inputs.h"
 #include "benchmarks/nn/stopwatch.h"
+#include "nn/graph/cpu_backend.h"
+#include "nn/graph/layer_cost.h"
+#include "nn/kernels/convolution_winograd.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/nn/graph/executor.h>
 #include <orb360/nn/graph/network_file.h>
+#include <orb360/nn/graph/precision.h>
+#include <orb360/nn/vulkan/devices.h>
 
 namespace orb360::nn {
 namespace {
@@ -23,24 +29,50 @@ struct Options {
   int height = 512;
   int threads = 2;
   std::string precision = "float";
-  float known = 0.005f;  // fraction of the pixels that have a depth and a confidence
+  std::string device = "cpu";
+  float known = kKnownFraction;
 };
 
 std::vector<std::vector<float>> MakeInputs(const Executor& executor, float known) {
-  std::mt19937 generator(1);
-  std::uniform_real_distribution<float> uniform(0, 1);
   std::vector<std::vector<float>> inputs;
   for (const Executor::Port& port : executor.inputs()) {
-    auto& values = inputs.emplace_back(static_cast<std::size_t>(port.shape.channels) *
-                                       port.shape.height * port.shape.width);
-    const bool is_sparse = port.name == "depth" || port.name == "confidence";
-    std::mt19937 points(2);  // depths and confidences in the same places
-    for (float& value : values) {
-      const bool is_known = !is_sparse || uniform(points) < known;
-      value = is_known ? 0.01f + uniform(generator) : 0;
-    }
+    const std::size_t size =
+        static_cast<std::size_t>(port.shape.channels) * port.shape.height * port.shape.width;
+    inputs.push_back(RandomInput(port.name, size, known));
   }
   return inputs;
+}
+
+/// What the convolutions multiply at this size, 10^9 products by type, and the bytes that all nodes
+/// read and write: the least time of a network follows from them.
+nlohmann::json Work(const Graph& graph, int height, DataType precision) {
+  const std::vector<FusedNode> nodes = FuseNodes(graph);
+  const std::vector<LayerCost> costs = LayerCosts(graph, nodes, height, 2 * height);
+  std::map<std::string, double> products;
+  double bytes = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    bytes += static_cast<double>(costs[i].bytes);
+    const Node& node = nodes[i].node;
+    if (!std::holds_alternative<ConvolutionOp>(node.operation)) continue;
+    const ConvolutionSpec spec = CpuConvolutionSpec(graph, nodes[i], precision);
+    double count = static_cast<double>(MultiplyAdds(graph, node, height, 2 * height));
+    if (spec.is_winograd()) count *= kWinogradProductFraction;
+    // Images are multiplied as floats.
+    const bool is_float =
+        spec.type == DataType::kBFloat16 && spec.in_channels <= kMaxPlanarChannels;
+    products[NameOf(is_float ? DataType::kFloat : spec.type)] += 1e-9 * count;
+  }
+  for (const Node& node : graph.nodes) {  // which are merged in `nodes`
+    if (!std::holds_alternative<NormalizedConvolutionOp>(node.operation)) continue;
+    products[NameOf(DataType::kFloat)] +=
+        1e-9 * static_cast<double>(MultiplyAdds(graph, node, height, 2 * height));
+  }
+  return {{"products", products}, {"gigabytes", 1e-9 * bytes}};
+}
+
+DataType TypeOf(const std::string& precision) {
+  if (precision == "bf16") return DataType::kBFloat16;
+  return precision == "int8" ? DataType::kInt8 : DataType::kFloat;
 }
 
 int Main(int argc, char** argv) {
@@ -49,16 +81,18 @@ int Main(int argc, char** argv) {
   app.add_option("FILE", options.file, "network, as weights_tools writes it")->required();
   app.add_option("--height", options.height, "of the panorama, pixels");
   app.add_option("--threads", options.threads)->check(CLI::PositiveNumber);
-  app.add_option("--precision", options.precision)->check(CLI::IsMember({"float", "bf16"}));
+  app.add_option("--precision", options.precision)
+      ->check(CLI::IsMember({"float", "bf16", "int8", "float16"}));
+  app.add_option("--device", options.device, "as of orb360; float16 is for GPUs");
   app.add_option("--known", options.known, "fraction of the pixels that have a depth");
   CLI11_PARSE(app, argc, argv);
 
   std::vector<double> load, pack;
   Graph graph;
   Time([&] { graph = ReadNetwork(options.file); }, &load);
+  const Device device = OpenDevice(options.device, options.precision == "float16");
   const ExecutorOptions how{
-      .threads = options.threads,
-      .precision = options.precision == "bf16" ? DataType::kBFloat16 : DataType::kFloat};
+      .threads = options.threads, .precision = TypeOf(options.precision), .device = device};
   std::unique_ptr<Executor> executor;
   Time(
       [&] {
@@ -76,6 +110,8 @@ int Main(int argc, char** argv) {
   const std::vector<std::span<float>> output_spans(outputs.begin(), outputs.end());
 
   const nlohmann::json about = {
+      {"device", device.name},
+      {"work", Work(graph, options.height, how.precision)},
       {"load_ms", load.front()},
       {"pack_ms", pack.front()},
       {"planned_mb", static_cast<double>(executor->planned_bytes()) / 1e6},

@@ -33,10 +33,16 @@ enum class DataType : std::uint8_t {
   kFloat,     ///< IEEE 754 binary32.
   kBFloat16,  ///< The upper 16 bits of binary32: its exponent and 8 bits of precision.
   kFloat16,   ///< IEEE 754 binary16. Only devices other than the CPU use it.
+  /// 8-bit integers. No tensor has this type: it is what convolutions round their input to where
+  /// they multiply in it.
+  kInt8,
 };
 
 /// Returns the size of an element in bytes.
-constexpr std::size_t SizeOf(DataType type) { return type == DataType::kFloat ? 4 : 2; }
+constexpr std::size_t SizeOf(DataType type) {
+  if (type == DataType::kInt8) return 1;
+  return type == DataType::kFloat ? 4 : 2;
+}
 
 /// Bytes of a block of channels. Every row of every tensor is aligned to it.
 constexpr int kAlignment = 64;

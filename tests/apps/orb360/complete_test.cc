@@ -8,6 +8,7 @@
 
 #include "slam/io/sparse_file.h"
 #include "tests/apps/orb360/program.h"
+#include "tests/apps/orb360/run_fixture.h"
 #include "tests/nn/graph/network_builder.h"
 #include <orb360/slam/io/depth_image.h>
 
@@ -64,6 +65,25 @@ TEST_F(CompleteTest, MakesADepthImageDense) {
   // Known near the point and nowhere else.
   EXPECT_GT(confidence.at<std::uint16_t>(10, 20), 0);
   EXPECT_EQ(confidence.at<std::uint16_t>(10, 0), 0);
+}
+
+TEST_F(CompleteTest, TellsInWhichTypeItMultipliesAndWhyNot) {
+  const auto complete = [&](const std::string& precision) {
+    return RunOrb360({"complete", "--image", Path("image.png"), "--sparse", Path("sparse.png"),
+                      "--weights", Path("net.h5"), "--out", Path("dense.png"), "--json",
+                      "--precision", precision});
+  };
+  const ProgramResult floats = complete("float");
+  ASSERT_EQ(floats.status, 0) << floats.err;
+  EXPECT_EQ(nlohmann::json::parse(floats.out)[0]["precision"], "float");
+  // The network has no ranges of inputs.
+  const ProgramResult bytes = complete("int8");
+  EXPECT_EQ(bytes.status, 1);
+  EXPECT_THAT(bytes.err, AllOf(IsOneLine(), HasSubstr("compute with 32 bits")));
+  const ProgramResult chosen = complete("auto");
+  ASSERT_EQ(chosen.status, 0) << chosen.err;
+  EXPECT_NE(nlohmann::json::parse(chosen.out)[0]["precision"], "int8");
+  EXPECT_NE(complete("double").status, 0);
 }
 
 TEST_F(CompleteTest, TakesWhatRunHasSaved) {

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
+#include "nn/base/cpu.h"
 #include "nn/base/hdf5_handle.h"
 #include "tests/nn/dump.h"
 #include "tests/nn/graph/dump_run.h"
@@ -37,6 +38,14 @@ TEST_P(OperationReference, IsTheSameInANetworkMadeForSpeed) {
 
 INSTANTIATE_TEST_SUITE_P(Every, OperationReference, ::testing::ValuesIn(kReferenceOperations),
                          [](const auto& suite) { return std::string(suite.param); });
+
+TEST(Int8Reference, IsWhatPyTorchComputesFromBytes) {
+  if (!HasVnni()) GTEST_SKIP() << "this processor has no AVX-512 VNNI";
+  const std::filesystem::path path = ReferenceFile("convolution_of_bytes");
+  const ExecutorOptions options{.threads = 2, .precision = DataType::kInt8};
+  ExpectEveryTensorOf(path, kRoundingsOfOperation, options);
+  ExpectOutputsOf(path, kRoundingsOfOperation, options);
+}
 
 class NetworkReference : public ::testing::TestWithParam<const char*> {
  protected:

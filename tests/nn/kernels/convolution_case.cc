@@ -46,7 +46,10 @@ struct Sum {
 };
 
 Sum Expected(const Case& c, const Data& data, int o, int y, int x) {
-  const auto& [in_channels, out_channels, kernel, stride, padding, slope, type, may_tile] = c.spec;
+  const int in_channels = c.spec.in_channels;
+  const int kernel = c.spec.kernel;
+  const int stride = c.spec.stride;
+  const Padding padding = c.spec.padding;
   const int reach = kernel / 2;
   Sum sum;
   for (int i = 0; i < in_channels; ++i) {
@@ -74,7 +77,7 @@ Sum Expected(const Case& c, const Data& data, int o, int y, int x) {
     const Shape& out = c.output_shape();
     sum.Add(data.residual[(o * out.height + y) * out.width + x]);
   }
-  if (!(sum.value > 0)) sum.value *= slope;
+  if (!(sum.value > 0)) sum.value *= c.spec.slope;
   return sum;
 }
 
@@ -137,6 +140,7 @@ std::string Case::text() const {
       << (output_layout == Layout::kPlanar ? " to planar" : "") << (with_bias ? " bias" : "")
       << (with_residual ? " residual" : "")
       << (spec.type == DataType::kBFloat16 ? " of bfloat16" : "")
+      << (spec.type == DataType::kInt8 ? " of 8 bits" : "")
       << (output_type == DataType::kBFloat16 ? " to bfloat16" : "");
   return out.str();
 }
@@ -157,6 +161,17 @@ Data::Data(const Case& c, bool rounds)
   if (c.output_type == DataType::kBFloat16) residual = Rounded(residual);
 }
 
+std::vector<double> ExpectedValues(const Case& c, const Data& data) {
+  const Shape out = c.output_shape();
+  std::vector<double> values;
+  for (int o = 0; o < out.channels; ++o) {
+    for (int y = 0; y < out.height; ++y) {
+      for (int x = 0; x < out.width; ++x) values.push_back(Expected(c, data, o, y, x).value);
+    }
+  }
+  return values;
+}
+
 void Fill(const TensorView& tensor, const std::vector<float>& values) {
   TensorMemory planar({tensor.shape, Layout::kPlanar, DataType::kFloat, 0});
   std::size_t next = 0;
@@ -170,15 +185,14 @@ void Fill(const TensorView& tensor, const std::vector<float>& values) {
 
 void RunOn(const Convolution& convolution, const TensorView& input, const TensorView* residual,
            const TensorView& output, int threads) {
-  AlignedVector<std::byte> scratch(convolution.ScratchBytes(threads), std::byte{0x7f});
+  AlignedVector<std::byte> scratch(convolution.ScratchBytes(input.shape, threads), std::byte{0x7f});
   convolution.Run(input, residual, output, scratch, threads);
 }
 
 std::vector<float> Compute(const Case& c, const Data& data, int threads, BFloat16Unit unit) {
   const Convolution convolution(c.spec, data.weight, data.bias, unit);
   // One pixel more than needed, so that the strides differ from the smallest possible.
-  TensorMemory input({c.input_shape(), c.input_layout, c.is_stem() ? DataType::kFloat : c.spec.type,
-                      c.spec.kernel / 2 + 1});
+  TensorMemory input({c.input_shape(), c.input_layout, c.input_type(), c.spec.kernel / 2 + 1});
   TensorMemory output({c.output_shape(), c.output_layout, c.output_type, 1});
   TensorMemory residual({c.output_shape(), c.output_layout, c.output_type, 0});
   EXPECT_EQ(convolution.OutputShape(c.input_shape()), c.output_shape());

@@ -26,6 +26,11 @@ struct Case {
     return {spec.out_channels, (height + spec.stride - 1) / spec.stride,
             (width + spec.stride - 1) / spec.stride};
   }
+  // Of the input's tensor.
+  DataType input_type() const {
+    const bool is_float = is_stem() || spec.type == DataType::kInt8;
+    return is_float ? DataType::kFloat : spec.type;
+  }
   std::string text() const;
 };
 
@@ -35,6 +40,9 @@ struct Data {
   Data(const Case& c, bool rounds);
   std::vector<float> weight, bias, input, residual;
 };
+
+// The sums in double precision, channel by channel and row by row.
+std::vector<double> ExpectedValues(const Case& c, const Data& data);
 
 void Fill(const TensorView& tensor, const std::vector<float>& values);
 void RunOn(const Convolution& convolution, const TensorView& input, const TensorView* residual,

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include <orb360/nn/graph/precision.h>
+
 namespace orb360::nn {
 
 /// The interface of a graph to the kernels of one kind of processor.
@@ -22,7 +24,10 @@ struct Device {
   /// Its name for people, such as "cpu" or "vulkan:0 (NAME OF THE DEVICE)".
   std::string name = "cpu";
   /// What runs networks there; null for the CPU.
-  std::shared_ptr<const Backend> backend;
+  std::shared_ptr<const Backend> backend = nullptr;
+  /// In which type convolutions multiply where the CPU runs the network, also in the place of a
+  /// device that has failed.
+  Precision precision = Precision::kFloat;
 };
 
 }  // namespace orb360::nn

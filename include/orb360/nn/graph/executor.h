@@ -20,8 +20,9 @@ class ProgramMemory;
 struct ExecutorOptions {
   /// Number of OpenMP threads of one run, at least 1. No result depends on it.
   int threads = 1;
-  /// The type in which convolutions multiply. kBFloat16 is faster and rounds to 8 bits; it needs a
-  /// processor that supports it (UserError otherwise). Everything else is computed in floats.
+  /// The type in which convolutions multiply (ChoosePrecision). kBFloat16 rounds to 8 digits; kInt8
+  /// rounds to 8 bits where the graph has a range of the input. Both are faster where the processor
+  /// supports them (UserError elsewhere). Everything else is computed in floats.
   DataType precision = DataType::kFloat;
   /// The processor that computes. On another one than the CPU, `threads` has no meaning and
   /// `precision` must be kFloat.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -126,6 +127,12 @@ struct Weight {
   std::vector<float> values;  ///< Elements; the last dimension is contiguous.
 };
 
+/// Values that the input of a convolution has, as a calibration found them. Zero lies between.
+struct InputRange {
+  float minimum = 0;  ///< Smallest value, 0 or less.
+  float maximum = 1;  ///< Largest value, above 0.
+};
+
 /// One step of a network: an operation with its operands.
 struct Node {
   std::string name;          ///< Name in the network file, for messages.
@@ -134,6 +141,8 @@ struct Node {
   std::vector<int> outputs;  ///< Indices of the tensors that it writes in Graph::tensors.
   /// Indices of `weight` and `bias` in Graph::weights, for operations that have them.
   std::vector<int> weights;
+  /// For a convolution that may multiply in 8 bits: the range of its input that is rounded to them.
+  std::optional<InputRange> input_range = {};
 };
 
 /// A network. The result of ParseGraph satisfies everything that docs/formats/network.md requires:

@@ -19,10 +19,9 @@ struct DepthCompleterOptions {
   cv::Size size{1024, 512};
   /// Number of OpenMP threads, at least 1. No result depends on it.
   int threads = 1;
-  /// Computes convolutions in bfloat16, which is faster and less exact. Throws UserError if the
-  /// processor does not support it. Contract: `device` is the CPU.
-  bool bfloat16 = false;
-  /// The processor on which the network runs (nn::OpenDevice).
+  /// The processor on which the network runs (nn::OpenDevice), and in which type the CPU
+  /// multiplies. DepthCompleter throws UserError for a type that the CPU or the network does not
+  /// allow.
   nn::Device device = {};
 };
 
@@ -44,6 +43,8 @@ class DepthCompleter {
 
   /// Returns the name of the processor on which the network runs (nn::Device::name).
   const std::string& device() const;
+  /// Returns in which type the convolutions multiply: "float", "bfloat16" or "int8".
+  std::string precision() const;
   /// Returns one line that says why the CPU has taken over from a device; empty where it has not.
   const std::string& device_failure() const;
 

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <orb360/nn/base/aligned_vector.h>
+#include <orb360/nn/tensor.h>
+
+namespace orb360::nn {
+
+/// How floats become bytes: q = clamp(round(x * steps) + zero, 0, 255), to nearest, ties to even.
+/// Zero is represented exactly, so padding with zeros stays exact. NaN becomes 255.
+struct ByteScale {
+  float steps = 1;        // per unit
+  std::int32_t zero = 0;  // 0 to 255
+};
+
+/// Returns the scale for inputs from `minimum` to `maximum`; zero is always inside.
+ByteScale ByteScaleOf(float minimum, float maximum);
+
+/// Number of output channels that are computed together, and half of it: the lanes of a vector.
+constexpr int kInt8Group = 32;
+constexpr int kInt8Half = kInt8Group / 2;
+/// Input channels whose products one lane adds up in one step.
+constexpr int kInt8Quad = 4;
+/// Input channels of a pixel that lie together: those of a block of floats.
+constexpr int kInt8Block = BlockOf(DataType::kFloat);
+
+/// Weights rounded to bytes and what the integer sums become with them.
+struct Int8Weights {
+  /// [group][input block][kernel row][kernel column][quad of input channels][half][output channel]
+  /// [channel of the quad]; a last group of at most kInt8Half channels has one half.
+  AlignedVector<std::int8_t> weight;
+  /// The sum of every output channel's weights times -zero, from which its sum starts.
+  AlignedVector<std::int32_t> first_sum;
+  /// What one unit of an output channel's sum is worth.
+  AlignedVector<float> scale;
+};
+
+/// Rounds the weights, out_channels x in_channels x kernel x kernel. Every output channel has a
+/// scale of its own, for which its largest weight becomes 127. Every filter of one input channel
+/// keeps the sum of its weights up to one rounding.
+Int8Weights PackInt8(std::span<const float> weight, int out_channels, int in_channels, int kernel,
+                     const ByteScale& input);
+
+/// One run of a convolution of bytes, summed exactly as integers.
+struct Int8Convolution {
+  int kernel = 1;
+  int stride = 1;
+  float slope = 1;
+  ByteScale scale;
+  const Int8Weights* weights = nullptr;
+  const float* bias = nullptr;  // of all channels of all blocks of the output
+  TensorView input;             // floats, kBlocked, with their padding in the halo
+  TensorView residual;          // data is null if there is none
+  TensorView output;            // floats
+};
+
+/// Bytes of memory in which RunVnni rounds the input of `rows` rows of the output.
+std::size_t Int8ScratchBytes(const Shape& input, int kernel, int stride, int rows);
+
+/// Computes rows `first` to `last` - 1 of the output with AVX-512's VPDPBUSD, which the processor
+/// must have. `scratch` has Int8ScratchBytes and is aligned to kAlignment.
+void RunVnni(const Int8Convolution& run, int first, int last, std::byte* scratch);
+
+}  // namespace orb360::nn
