@@ -97,7 +97,9 @@ test("shows the dense cloud as depth is computed", async () => {
   const live = await serveLive(town, join(out, "live_dense"), ["--cloud-quality", "draft"]);
   const page = await openLive(live.url);
   // It was paused before its first frame.
-  await page.waitForFunction(() => /Go on/.test(document.querySelector(".live-buttons").textContent));
+  await page.waitForFunction(() =>
+    /Go on/.test(document.querySelector(".live-buttons").textContent),
+  );
   await clickButton(page, "Go on");
   await page.waitForFunction(() => document.body.dataset.state === "ready");
   await waitFor(page, "keyframes", 8);

@@ -172,7 +172,7 @@ export class LiveViewer {
       state.frame !== this.last?.frame ||
       state.revision !== this.revision ||
       state.views !== this.numViews ||
-      state.pose === null !== (this.last.pose === null);
+      (state.pose === null) !== (this.last.pose === null);
     this.last = state;
     document.body.dataset.state = "ready";
     this.page.center.replaceChildren();
