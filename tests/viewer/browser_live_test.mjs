@@ -52,8 +52,9 @@ function waitFor(page, name, least) {
   );
 }
 
-test("shows, steps and finishes a run that goes on", async () => {
+test("shows, steps and finishes a run that goes on", async (t) => {
   const live = await serveLive(town, join(out, "live"));
+  t.after(live.kill); // where the test fails before it has ended
   const page = await openLive(live.url);
   const frameNow = () => numberOf(page, "frame");
   const click = (name) => clickButton(page, name);
@@ -93,8 +94,9 @@ test("shows, steps and finishes a run that goes on", async () => {
   await page.close();
 });
 
-test("shows the dense cloud as depth is computed", async () => {
+test("shows the dense cloud as depth is computed", async (t) => {
   const live = await serveLive(town, join(out, "live_dense"), ["--cloud-quality", "draft"]);
+  t.after(live.kill); // where the test fails before it has ended
   const page = await openLive(live.url);
   // It was paused before its first frame.
   await page.waitForFunction(() =>

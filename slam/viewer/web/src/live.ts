@@ -174,7 +174,6 @@ export class LiveViewer {
       state.views !== this.numViews ||
       (state.pose === null) !== (this.last.pose === null);
     this.last = state;
-    document.body.dataset.state = "ready";
     this.page.center.replaceChildren();
     const isTracking = state.state !== "finishing";
     if (isTracking && state.frame !== this.strip.frame) {
@@ -201,6 +200,7 @@ export class LiveViewer {
     dataset.frame = String(state.frame);
     dataset.imageFrame = String(this.strip.frame);
     dataset.densePoints = String(this.layer.cloud.count);
+    document.body.dataset.state = "ready";
     if (isNew) this.viewport.invalidate();
   }
 
