@@ -61,6 +61,8 @@ test("shows, steps and finishes a run that goes on", async (t) => {
   await click("One frame");
   await page.waitForFunction(() => document.body.dataset.state === "ready");
   for (let i = 0; i < 4; ++i) {
+    // A frame may have been under way when the run was paused.
+    await page.waitForFunction(() => document.querySelector("#view").dataset.waiting === "true");
     const before = await frameNow();
     await click("One frame");
     await page.waitForFunction(

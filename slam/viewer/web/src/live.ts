@@ -199,6 +199,7 @@ export class LiveViewer {
     dataset.landmarks = String(state.landmarks);
     dataset.frame = String(state.frame);
     dataset.imageFrame = String(this.strip.frame);
+    dataset.waiting = String(state.isWaiting);
     dataset.densePoints = String(this.layer.cloud.count);
     document.body.dataset.state = "ready";
     if (isNew) this.viewport.invalidate();
