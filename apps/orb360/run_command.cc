@@ -260,7 +260,7 @@ int Run(const RunOptions& options) {
     Warn(completer->device_failure(), &record);
   }
   const Rigid3 file_world_from_map = output.WorldOf(reconstruction);
-  const SparseModel model =
+  SparseModel model =
       MakeSparseModel(reconstruction, system.maps(), EquirectangularCamera(size.width, size.height),
                       file_world_from_map);
   const GeoreferenceResult placed =
@@ -276,6 +276,7 @@ int Run(const RunOptions& options) {
     WriteLargestMap(options.map_out, size.width, file_world_from_map, system);
   }
   WriteSparseModel(output.folder() / kSparseModelName, model);
+  model = {};  // The report reads it.
   SaveGeoreference(output.folder(), placed.georeference);
   SaveMask(output.folder(), mask);
   if (options.saves_sparse && options.weights == "none") {

@@ -34,21 +34,21 @@ struct LiveSnapshot {
     LandmarkGroups landmarks;
   };
 
-  int frame = 0;
-  double timestamp = 0;  ///< Seconds.
-  std::chrono::steady_clock::time_point taken = std::chrono::steady_clock::now();
-  TrackingState state = TrackingState::kInitializing;
-  int map_number = 0;
-  cv::Mat image;  ///< CV_8UC3, BGR.
-  std::vector<Feature> features;
-  std::optional<Rigid3> map_from_camera;
-  std::optional<KnownGround> ground;
-  std::vector<ClosedLoop> loops;
   /// World of written files, as far as it is known: level where the ground is known.
   Rigid3 world_from_map;
+  std::optional<Rigid3> map_from_camera;
+  std::optional<KnownGround> ground;
+  double timestamp = 0;  ///< Seconds.
+  std::chrono::steady_clock::time_point taken = std::chrono::steady_clock::now();
+  int frame = 0;
+  TrackingState state = TrackingState::kInitializing;
+  int map_number = 0;
   /// Grows with each change of `map` and of `world_from_map`; 0: there is no map.
   int revision = 0;
   std::shared_ptr<const MapPart> map = std::make_shared<MapPart>();  ///< Never null.
+  std::vector<Feature> features;
+  std::vector<ClosedLoop> loops;
+  cv::Mat image;  ///< CV_8UC3, BGR.
 };
 
 /// What becomes of a run that is shown.

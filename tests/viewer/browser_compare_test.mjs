@@ -84,8 +84,7 @@ test("compares with a run of unknown scale, and shows its cloud", async () => {
     const server = await serve(run, 0, ["--compare", other]);
     const page = await open(browser, server.url);
     assert.match(await textOf(page, "#comparison-section"), /other run has no metres.*Sim\(3\)/i);
-    const shown = (name) =>
-      page.$eval("#view", (canvas, key) => Number(canvas.dataset[key]), name);
+    const shown = (name) => page.$eval("#view", (canvas, key) => Number(canvas.dataset[key]), name);
     assert.equal(await shown("otherPoints"), 0);
     await choose(page, "Cloud of the other run");
     // It is the same cloud, in the same place.

@@ -52,14 +52,17 @@ function waitFor(page, name, least) {
   );
 }
 
-test("shows, steps and finishes a run that goes on", async () => {
+test("shows, steps and finishes a run that goes on", async (t) => {
   const live = await serveLive(town, join(out, "live"));
+  t.after(live.kill); // where the test fails before it has ended
   const page = await openLive(live.url);
   const frameNow = () => numberOf(page, "frame");
   const click = (name) => clickButton(page, name);
   await click("One frame");
   await page.waitForFunction(() => document.body.dataset.state === "ready");
   for (let i = 0; i < 4; ++i) {
+    // A frame may have been under way when the run was paused.
+    await page.waitForFunction(() => document.querySelector("#view").dataset.waiting === "true");
     const before = await frameNow();
     await click("One frame");
     await page.waitForFunction(
@@ -93,12 +96,16 @@ test("shows, steps and finishes a run that goes on", async () => {
   await page.close();
 });
 
-test("shows the dense cloud as depth is computed", async () => {
+test("shows the dense cloud as depth is computed", async (t) => {
   const live = await serveLive(town, join(out, "live_dense"), ["--cloud-quality", "draft"]);
+  t.after(live.kill); // where the test fails before it has ended
   const page = await openLive(live.url);
-  await clickButton(page, "One frame");
-  await page.waitForFunction(() => document.body.dataset.state === "ready");
+  // It was paused before its first frame.
+  await page.waitForFunction(() =>
+    /Go on/.test(document.querySelector(".live-buttons").textContent),
+  );
   await clickButton(page, "Go on");
+  await page.waitForFunction(() => document.body.dataset.state === "ready");
   await waitFor(page, "keyframes", 8);
   await clickButton(page, "Finish early");
   await page.waitForFunction(

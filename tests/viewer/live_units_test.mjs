@@ -34,7 +34,10 @@ test("landmarks of a live run are read as they are written", () => {
     ["Uint32", 3],
     ["Uint32", 2],
     ...[["Int32", 5], ["Uint32", 1], ...POINT],
-    ...[["Int32", 7], ["Uint32", 0]],
+    ...[
+      ["Int32", 7],
+      ["Uint32", 0],
+    ],
   );
   const { revision, groups } = readLivePoints(bytes);
   assert.equal(revision, 3);

@@ -72,20 +72,21 @@ const live = await serveLive(input, join(out, "latency"));
 const browser = await launch();
 const page = await browser.newPage();
 await page.goto(live.url);
-await page.evaluate(() =>
-  [...document.querySelectorAll(".live-buttons button")]
-    .find((button) => /Pause|Go on/.test(button.textContent))
-    .click(),
-);
+await page.waitForFunction(() => {
+  const button = document.querySelector(".live-buttons button");
+  if (button?.textContent !== "Go on") return false;
+  button.click();
+  return true;
+});
 const latencies = [];
 let lastFrame = "";
 let hasEnded = false;
 void live.ended.then(() => (hasEnded = true));
 while (!hasEnded) {
-  const { frame, latency } = await page.$eval("#view", ({ dataset }) => ({
-    frame: dataset.imageFrame,
-    latency: dataset.latency,
-  }));
+  const { frame, latency } = await page.evaluate(() => {
+    const { imageFrame, latency } = document.querySelector("#view").dataset;
+    return { frame: imageFrame, latency };
+  });
   if (frame !== lastFrame && latency !== undefined) latencies.push(Number(latency));
   lastFrame = frame;
   await new Promise((resolve) => setTimeout(resolve, 20));

@@ -39,7 +39,7 @@ export async function serve(run, port = 0, more = []) {
 
 /** Starts a run that is shown, and pauses it at once. */
 export async function serveLive(input, out, more = ["--weights", "none"]) {
-  const { ended, url } = await start([
+  const { program, ended, url } = await start([
     "run",
     input,
     "--out",
@@ -58,7 +58,7 @@ export async function serveLive(input, out, more = ["--weights", "none"]) {
     ).end(),
   );
   if (status !== 200) throw new Error(`pause was answered with ${status}`);
-  return { ended, url };
+  return { ended, url, kill: () => program.kill("SIGKILL") };
 }
 
 export function launch() {

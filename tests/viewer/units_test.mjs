@@ -210,7 +210,10 @@ test("requests end after their time, and one question after the server is asked 
   t.mock.timers.tick(1);
   assert.ok(signal.aborted);
   const answers = [];
-  const source = { isEmbedded: false, isAlive: () => new Promise((answer) => answers.push(answer)) };
+  const source = {
+    isEmbedded: false,
+    isAlive: () => new Promise((answer) => answers.push(answer)),
+  };
   const events = [];
   const connection = new Connection(
     source,
@@ -231,7 +234,9 @@ test("requests end after their time, and one question after the server is asked 
 
 test("a double click ends a line and does not measure from a point to itself", () => {
   const texts = [];
-  const labels = { add: (text) => (texts.push(text), { setText() {}, setPosition() {}, remove() {} }) };
+  const labels = {
+    add: (text) => (texts.push(text), { setText() {}, setPosition() {}, remove() {} }),
+  };
   const measure = new Measure({ unit: "units", summary: {} }, labels, () => {});
   measure.setMode("distance");
   const at = (x) => new THREE.Vector3(x, 0, 0);

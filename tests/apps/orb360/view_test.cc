@@ -261,7 +261,8 @@ TEST_F(ViewTest, HasATokenWhenOpenedBeyondThisMachine) {
 TEST_F(ViewTest, ReportIsOneFileOfTheSizeAskedFor) {
   std::vector<ColoredPoint> points(400000);
   for (int i = 0; i < 400000; ++i) {
-    points[i].position = {static_cast<float>(i % 700), static_cast<float>(i / 700), 2};
+    const int row = i / 700;
+    points[i].position = {static_cast<float>(i % 700), static_cast<float>(row), 2};
   }
   WritePly(File("cloud.ply"), points);
   const ProgramResult result =

@@ -158,7 +158,11 @@ TEST_F(HttpServerTest, GivesNothingToMaliciousRequests) {
                                     std::string("/%zz"),
                                     std::string("/\xff\xfe"),
                                     std::string("/").append(3000, 'a')}) {
-    requests.push_back("GET " + target + " HTTP/1.1\r\n" + host + "\r\n");
+    std::string request("GET ");
+    request += target;
+    request += " HTTP/1.1\r\n";
+    request += host;
+    requests.push_back(request + "\r\n");
   }
   requests.push_back("GET /large HTTP/1.1\r\nHost: evil.example\r\n\r\n");
   requests.push_back("GET /large HTTP/1.1\r\n\r\n");

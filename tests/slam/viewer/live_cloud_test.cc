@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -95,6 +96,26 @@ TEST(LiveCloud, SendsEachViewOnce) {
   while (end < cloud.num_views()) get();
   EXPECT_EQ(seen, added);
   EXPECT_EQ(Read(cloud.Bytes(1000), &end, &max).size(), 0U);
+}
+
+TEST(LiveCloud, IsReadWhileViewsAreAdded) {
+  LiveCloud cloud(100000);  // It is thinned twice.
+  constexpr int kViews = 60;
+  std::thread run([&cloud] {
+    for (int frame = 0; frame < kViews; ++frame) cloud.Add(frame, Rigid3(), Wall());
+  });
+  std::vector<int> seen;
+  std::uint32_t end = 0;
+  std::uint32_t max = 0;
+  while (end < kViews) {
+    for (const ReadView& view : Read(cloud.Bytes(end), &end, &max)) {
+      EXPECT_LE(view.num_points, 5000U);
+      seen.push_back(view.frame);
+    }
+  }
+  run.join();
+  ASSERT_EQ(seen.size(), static_cast<size_t>(kViews));
+  for (int frame = 0; frame < kViews; ++frame) EXPECT_EQ(seen[frame], frame);
 }
 
 TEST(LiveCloud, KeepsNoMorePointsThanAllowed) {

@@ -63,7 +63,9 @@ export function comparisonSection(
         h("span", {}, "This run"),
       ),
       toggle(otherName(comparison), true, events.onPath),
-      run.hasCloud && comparison.hasCloud && toggle("Cloud of the other run", false, events.onCloud),
+      run.hasCloud &&
+        comparison.hasCloud &&
+        toggle("Cloud of the other run", false, events.onCloud),
     ),
     h(
       "div",

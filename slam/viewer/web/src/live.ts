@@ -55,6 +55,7 @@ export class LiveViewer {
   private revision = 0; // of poses and landmarks
   private numViews = 0; // of the dense cloud
   private last: LiveState | null = null;
+  private isPaused = false;
   private hasEnded = false;
 
   constructor(private readonly page: Layout) {
@@ -130,7 +131,7 @@ export class LiveViewer {
   }
 
   private togglePause(): void {
-    void this.ask(this.last?.isPaused ? "resume" : "pause");
+    void this.ask(this.isPaused ? "resume" : "pause");
   }
 
   private say(text: string | null): void {
@@ -161,7 +162,9 @@ export class LiveViewer {
     const begin = performance.now();
     const { dataset } = this.page.canvas;
     for (const button of this.buttons) button.disabled = state.state === "finishing";
-    if (state.size[0] === 0) return;
+    this.isPaused = state.isPaused;
+    this.pause.textContent = state.isPaused ? "Go on" : "Pause";
+    if (state.size[0] === 0) return; // no frame yet
     if (state.state !== this.last?.state) announce(STATES[state.state]);
     if (state.revision < this.revision) this.forget();
     if (state.state === "finishing" && this.last?.state !== "finishing") this.finishing();
@@ -169,10 +172,14 @@ export class LiveViewer {
       state.frame !== this.last?.frame ||
       state.revision !== this.revision ||
       state.views !== this.numViews ||
-      state.pose === null !== (this.last.pose === null);
+      (state.pose === null) !== (this.last.pose === null);
     this.last = state;
-    document.body.dataset.state = "ready";
     this.page.center.replaceChildren();
+    const isTracking = state.state !== "finishing";
+    if (isTracking && state.frame !== this.strip.frame) {
+      await this.strip.show(await liveImage());
+      dataset.latency = (state.age + performance.now() - begin).toFixed(0);
+    }
     if (isNew) this.layer.setState(state);
     if (state.revision > this.revision) {
       const { revision, groups } = await livePoints(this.revision);
@@ -185,19 +192,16 @@ export class LiveViewer {
       this.layer.addViews(part);
       this.numViews = part.numViews;
     }
-    const isTracking = state.state !== "finishing";
     if (isTracking && this.follow.checked && state.pose) this.followCamera(state.pose);
     this.viewport.setExtent(this.layer.extent);
-    if (isTracking && state.frame !== this.strip.frame) {
-      await this.strip.show(await liveImage());
-      dataset.latency = (state.age + performance.now() - begin).toFixed(0);
-    }
     this.showFacts(state);
     dataset.keyframes = String(this.layer.numKeyframes);
     dataset.landmarks = String(state.landmarks);
     dataset.frame = String(state.frame);
     dataset.imageFrame = String(this.strip.frame);
+    dataset.waiting = String(state.isWaiting);
     dataset.densePoints = String(this.layer.cloud.count);
+    document.body.dataset.state = "ready";
     if (isNew) this.viewport.invalidate();
   }
 
@@ -252,7 +256,6 @@ export class LiveViewer {
         "camera height",
       ),
     );
-    this.pause.textContent = state.isPaused ? "Go on" : "Pause";
     const { chip } = this.page;
     chip.hidden = false;
     const isPaused = state.isPaused && state.state !== "finishing";
