@@ -119,7 +119,7 @@ std::optional<DenseOutput> FuseDepth(const Reconstruction& reconstruction,
     };
     ViewDepthCallbacks callbacks;
     callbacks.progress = [&](int done, int count) {
-      show("computing depth", done, count, "frames");
+      show("computing depth", done, count, "steps");
       return CaughtInterrupt() == 0;
     };
     if (live != nullptr) {

@@ -48,6 +48,7 @@ struct Sightings {
             const Plane& plane, double tolerance) {
     const Eigen::Vector3d seen = view_from_reference * Eigen::Vector3d(place.cast<double>());
     const double distance = seen.norm();
+    if (!(distance > 0)) return;
     const double range = RangeAlong(view, (seen / distance).cast<float>());
     if (!(range > 0)) return;
     const Eigen::Vector3d normal = view_from_reference.rotation * plane.normal.cast<double>();

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include <opencv2/imgproc.hpp>

@@ -10,12 +10,13 @@
 namespace orb360 {
 
 struct ReprojectionOptions {
-  /// Side of the squares of pixels that get at most one point, pixels.
+  /// Side of the squares that get at most one point, pixels.
   int spacing = 6;
-  /// Every such pixel of a view, in both directions, is looked at.
+  /// Distance of the pixels of another view that are looked at, in both directions, pixels: less
+  /// than `spacing`, so that a square seldom gets none.
   int step = 4;
   /// Largest expected error of ln(range) of a pixel that is taken.
-  double max_error = 0.0625;
+  double max_error = 0.06;
   /// Two ranges in a square agree if their ratio is at most this. Two views must agree.
   double max_ratio = 1.1;
   /// A point farther away than the nearest one that is known within two squares, by more than this

@@ -127,7 +127,10 @@ int CompleteViews(std::span<const DenseView> views, const NeighbourFinder& neigh
     if (is_completed) {
       const double range = TrustedRange(depth, options.min_trusted_confidence);
       AddReprojectedPoints(view.world_from_camera, load(second.distances, range).views,
-                           second.reprojection, &sparse, num_threads);
+                           {.spacing = options.sparse_spacing,
+                            .max_error = kLargestMeasuredError,
+                            .sparse = options.sparse},
+                           &sparse, num_threads);
     }
     sparse.range.setTo(0, moving);
     sparse.confidence.setTo(0, moving);

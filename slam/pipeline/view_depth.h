@@ -28,9 +28,8 @@ struct ViewCompletionOptions {
   /// Distances of the views that tell whether there is ground where an object is, in heights of the
   /// camera. A car has left its place on the way.
   std::vector<double> ground_distances = {3, 4.5, 6.5, 9};
-  /// Largest ratio between a distance and the one wanted.
+  /// Largest ratio between a distance and the one wanted: the root of 2, by which they are apart.
   double max_distance_ratio = 1.42;
-  ReprojectionOptions reprojection = {};
   MovingObjectOptions objects = {};
   DenseGroundOptions ground = {};
 };

@@ -109,7 +109,7 @@ test("shows the dense cloud as depth is computed", async (t) => {
   await waitFor(page, "keyframes", 8);
   await clickButton(page, "Finish early");
   await page.waitForFunction(
-    () => /^computing depth: \d+ of \d+ frames$/.test(document.querySelector(".chip").textContent),
+    () => /^computing depth: \d+ of \d+ steps$/.test(document.querySelector(".chip").textContent),
     { timeout: 120_000 },
   );
   assert.ok(

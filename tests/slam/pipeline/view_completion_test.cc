@@ -75,6 +75,12 @@ TEST_F(CompleteViewsTest, WithoutAKnownGroundItStaysWhereStereoSeesIt) {
   EXPECT_EQ(RangeAt(kOnCar, store_), RangeAt(kOnCar, first_));
 }
 
+TEST_F(CompleteViewsTest, WithoutCompletionAnObjectThatMovesAlongIsUnknown) {
+  Complete(kUp, {}, {.keeps_completed = false});
+  EXPECT_EQ(RangeAt(kOnCar, store_), 0);
+  EXPECT_GT(RangeAt({1, -3, -DrivingScene::kHeight}, store_), 0);
+}
+
 TEST_F(CompleteViewsTest, WhatWasMeasuredStays) {
   Complete(kUp);
   const Eigen::Vector3d on_ground(1, -3, -DrivingScene::kHeight);

@@ -198,7 +198,7 @@ TEST_F(LiveFeedTest, ShowsWhatBecomesOfTheRunAfterItsLastFrame) {
   Rigid3 world_from_map;
   world_from_map.translation = {1, 2, 3};
   feed_.ShowFinished(maps, world_from_map);
-  feed_.ShowProgress({"computing depth", 3, 9, "frames"});
+  feed_.ShowProgress({"computing depth", 3, 9, "steps"});
   nlohmann::json json = Json();
   ASSERT_EQ(json["keyframes"].size(), 2U);
   EXPECT_NE(json["keyframes"][0][0], json["keyframes"][1][0]) << "two keyframes with one id";

@@ -8,7 +8,7 @@
 
 namespace orb360 {
 
-/// Receives before each frame how many of how many are done. False makes the rest faster and less
+/// Receives before each frame, in each of two passes, how many of how many steps are done. False makes the rest faster and less
 /// exact.
 using ViewProgress = std::function<bool(int done, int count)>;
 
