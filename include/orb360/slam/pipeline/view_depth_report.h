@@ -8,8 +8,8 @@
 
 namespace orb360 {
 
-/// Receives before each frame, in each of two passes, how many of how many steps are done. False makes the rest faster and less
-/// exact.
+/// Receives before each frame, in each of two passes, how many of how many steps are done. False
+/// makes the rest faster and less exact.
 using ViewProgress = std::function<bool(int done, int count)>;
 
 /// Receives what the network completes, view by view: image, and points from landmarks and stereo.
