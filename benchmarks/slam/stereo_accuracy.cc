@@ -4,10 +4,13 @@
 //
 // For the frames of a sequence folder with true depth and the frames GAP after each [1 -1 2 -2]:
 // how much of what has texture and is nearer than 30 m gets a range, by solid angle, and how large
-// its errors are. --images: writes the image, the true ranges and the measured ones below each
-// other, as colours of the logarithm of 0.5 to 50 m, and the errors. --opencv: the same with the
-// semi-global matcher of OpenCV on the same rectified images, for comparison. --avx2: without
-// AVX-512, for the time on a processor that has none; OpenCV goes on using it.
+// its errors are; then how much of all that gets a range is wrong by more than 10 % or shows the
+// sky, and how much of this lies beside the edge of a near surface (FindOccludingBoundary, where
+// what has no measured range has the true one). --images: writes the image, the true ranges and the
+// measured ones below each other, as colours of the logarithm of 0.5 to 50 m, and the errors.
+// --opencv: the same with the semi-global matcher of OpenCV on the same rectified images, for
+// comparison. --avx2: without AVX-512, for the time on a processor that has none; OpenCV goes on
+// using it.
 
 #include <algorithm>
 #include <chrono>
@@ -29,6 +32,7 @@
 
 #include "benchmarks/slam/sequence_folder.h"
 #include "nn/base/statistics.h"
+#include "slam/depth/occluding_boundary.h"
 #include "slam/stereo/spherical_stereo.h"
 #include <orb360/slam/io/depth_image.h>
 #include <orb360/slam/io/trajectory.h>
@@ -48,6 +52,36 @@ cv::Mat HasTexture(const cv::Mat& gray) {
   cv::sqrBoxFilter(gray, square, CV_32F, window);
   return square - mean.mul(mean) >= 9.0;
 }
+
+/// Solid angles, in units of a pixel at the equator, of what has a range.
+struct BoundaryTotals {
+  double right = 0;
+  double wrong = 0;  // by more than 10 %, or it is the sky
+  double right_beside = 0;
+  double wrong_beside = 0;
+
+  void Add(const cv::Mat& truth, const orb360::InverseRanges& measured) {
+    constexpr double kSky = 1e4;  // metres
+    cv::Mat ranges = truth.clone();
+    ranges.setTo(kSky, ~(truth > 0));
+    cv::Mat known;
+    cv::divide(1.0, measured.value, known);
+    known.copyTo(ranges, measured.value > 0);
+    const cv::Mat beside = orb360::FindOccludingBoundary(ranges);
+    for (int row = 0; row < truth.rows; ++row) {
+      const double weight = std::sin((row + 0.5) / truth.rows * std::numbers::pi);
+      for (int column = 0; column < truth.cols; ++column) {
+        const float inverse = measured.value.at<float>(row, column);
+        if (!(inverse > 0)) continue;
+        const float range = truth.at<float>(row, column);
+        const bool is_right = range > 0 && std::abs(inverse * range - 1) < 0.1F;
+        (is_right ? right : wrong) += weight;
+        if (beside.at<uint8_t>(row, column) == 0) continue;
+        (is_right ? right_beside : wrong_beside) += weight;
+      }
+    }
+  }
+};
 
 /// Solid angles, in units of a pixel at the equator, and errors of what was measured.
 struct Totals {
@@ -155,6 +189,7 @@ void Measure(const fs::path& sequence, const std::optional<fs::path>& images, bo
   orb360::SphericalStereoOptions options;
   if (uses_opencv) options.matcher = MatchByOpenCv;
   Totals totals;
+  BoundaryTotals boundary;
   for (int i = 0; i < count; ++i) {
     const fs::path depth = sequence / "depth" / orb360::NameOfFrame(i, "png");
     if (!fs::exists(depth)) continue;
@@ -175,6 +210,7 @@ void Measure(const fs::path& sequence, const std::optional<fs::path>& images, bo
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
             .count());
     totals.Add(reference.gray, truth, fused);
+    boundary.Add(truth, fused);
     if (images) WriteImage(*images / orb360::NameOfFrame(i, "png"), reference.gray, truth, fused);
   }
   if (totals.in_sigmas.empty()) throw std::runtime_error("no frame with depth has a range");
@@ -187,6 +223,12 @@ void Measure(const fs::path& sequence, const std::optional<fs::path>& images, bo
   std::printf("|error| in standard deviations: 68 %% below %.2f, 95 %% below %.2f\n",
               orb360::NearestRankQuantile(totals.in_sigmas, 0.68),
               orb360::NearestRankQuantile(totals.in_sigmas, 0.95));
+  std::printf(
+      "of all with a range wrong by more than 10 %% or sky: %.1f %%; beside an edge: %.0f %% of "
+      "the "
+      "wrong ones, %.1f %% of the others\n",
+      100 * boundary.wrong / (boundary.wrong + boundary.right),
+      100 * boundary.wrong_beside / boundary.wrong, 100 * boundary.right_beside / boundary.right);
 }
 
 constexpr char kUsage[] =

@@ -59,11 +59,6 @@ std::vector<ConsistentPoint> FindConsistentPoints(const DepthView& view,
                                                   int num_threads) {
   ORB360_CHECK(sampling.spacing > 0, sampling.spacing);
   const Rigid3& world_from_view = view.world_from_camera();
-  std::vector<SourceView> sources;
-  for (const DepthView* other : others) {
-    sources.push_back({other, other->world_from_camera().Inverse() * world_from_view,
-                       options.tolerance_errors, options.relative_tolerance});
-  }
   // A point keeps at least this fraction of its own error. A single source view may be more certain
   // by the first factor (in variance), and all views together may be more certain than the best one
   // by the second factor.
@@ -71,6 +66,12 @@ std::vector<ConsistentPoint> FindConsistentPoints(const DepthView& view,
   const auto least_gain =
       static_cast<float>(1 / std::sqrt(redundant_ratio * std::max(options.max_independent, 1.0)));
   const float max_own_error = static_cast<float>(sampling.max_error) / least_gain;
+
+  std::vector<SourceView> sources;
+  for (const DepthView* other : others) {
+    sources.push_back({other, other->world_from_camera().Inverse() * world_from_view,
+                       options.tolerance_errors, options.relative_tolerance, max_own_error});
+  }
 
   const auto collect = [&](const TestedRow& points, std::vector<ConsistentPoint>* consistent) {
     for (size_t i = 0; i < points.size; ++i) {

@@ -47,7 +47,8 @@ struct SamplingOptions {
   double spacing = 0.05;
   /// Points farther away are left out, world units.
   double max_range = 30.0;
-  /// Points with a larger expected error are left out, world units.
+  /// Points with a larger expected error are left out, world units. What cannot become that certain
+  /// by any agreement is not tested, and supports no point of another view either.
   double max_error = 0.2;
 };
 

@@ -143,6 +143,7 @@ void CompareWithSourceViewKernel(const SourceView& source, TestedRow* points) {
   const Eigen::Vector3f translation = source.source_from_reference.translation.cast<float>();
   const V tolerance_errors = Constant(static_cast<float>(source.tolerance_errors));
   const V relative_tolerance = Constant(static_cast<float>(source.relative_tolerance));
+  const V max_error = Constant(source.max_error);
   const V zero = hn::Zero(d);
   const V one = Constant(1);
   for (size_t i = 0; i < points->size; i += hn::Lanes(d)) {
@@ -167,8 +168,10 @@ void CompareWithSourceViewKernel(const SourceView& source, TestedRow* points) {
     const V farther = hn::Sub(there, range);
     const V deviation = hn::Mul(farther, incidence);
     const auto agrees = hn::And(is_known, hn::Le(hn::Abs(deviation), tolerance));
+    const auto is_certain = hn::Le(error, max_error);
     // A surface that faces away from the source view is another surface at the same place.
-    const auto supports = hn::And(agrees, hn::Le(slant, Constant(kMinIncidence)));
+    const auto supports =
+        hn::And(hn::And(agrees, is_certain), hn::Le(slant, Constant(kMinIncidence)));
     const V information = hn::IfThenElseZero(supports, hn::Div(one, hn::Mul(error, error)));
     const auto add = [&](TestedRow::Array* sum, V more) HWY_ATTR {
       hn::StoreU(hn::Add(hn::LoadU(d, sum->data() + i), more), d, sum->data() + i);

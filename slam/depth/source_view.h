@@ -8,12 +8,16 @@ namespace orb360 {
 
 /// A source view with which the points of a reference view are compared. `source_from_reference`
 /// transforms the points into the camera frame of the source view. Two ranges agree if they differ
-/// by at most `tolerance_errors` expected errors plus `relative_tolerance` times the range.
+/// by at most `tolerance_errors` expected errors plus `relative_tolerance` times the range. A
+/// source view whose own error along the normal is more than `max_error`, world units, supports
+/// nothing: whatever a point's range is, it agrees with one that is hardly known, as that of the
+/// sky.
 struct SourceView {
   const DepthView* view;
   Rigid3 source_from_reference;
   double tolerance_errors;
   double relative_tolerance;
+  float max_error;
 };
 
 /// Adds what a source view sees in the direction of each point. The same surface supports the

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "slam/depth/dense_ground.h"
+#include "slam/depth/occluding_boundary.h"
 #include "slam/pipeline/view_ranges.h"
 #include "slam/pipeline/view_selection.h"
 
@@ -15,6 +16,9 @@ namespace orb360 {
 namespace {
 
 constexpr double kMinError = 0.01;  // of ln(range); a measured pixel is told from others by more
+// Stated of the range beside the edge of a near surface, as of objects that move along: it stays in
+// the depth, but not in the cloud.
+constexpr double kBoundaryError = 1.0;
 
 /// The views of the first pass that were used last.
 class RecentViews {
@@ -142,6 +146,7 @@ int CompleteViews(std::span<const DenseView> views, const NeighbourFinder& neigh
       depth = completer->Complete(color, sparse);
       Distrust(options.completion_error_factor, &depth);
       PutMeasured(measured, &depth);
+      LimitConfidence(FindOccludingBoundary(depth.range), kBoundaryError, &depth);
     }
     if (!found.objects.empty()) {
       PlaceOnGround(found.objects, *found.ground, second.objects, &depth);

@@ -17,6 +17,8 @@ namespace orb360 {
 ///   ground; their measured ranges are dropped. `up`, the normal of the ground in the world, is
 ///   needed for this.
 /// - Where a view has no point, it gets those that other views measured (AddReprojectedPoints).
+/// - Beside the edges of near surfaces (FindOccludingBoundary) the ranges are kept, but with so
+///   little confidence that the cloud has none of them.
 ///
 /// `first` has the depth of the first pass, of the views that have any. Views are handled in their
 /// order. After `callbacks.progress` has returned false, the rest keeps the depth of the first

@@ -36,6 +36,12 @@ void PutMeasured(const InverseRanges& measured, DenseDepth* depth) {
   }
 }
 
+void LimitConfidence(const cv::Mat& mask, double least_error, DenseDepth* depth) {
+  cv::Mat limited;
+  cv::min(depth->confidence, ConfidenceOf(static_cast<float>(least_error)), limited);
+  limited.copyTo(depth->confidence, mask);
+}
+
 InverseRanges MeasuredOf(const DenseDepth& depth) {
   constexpr auto kLeastConfidence = static_cast<float>(1 / (1 + kLargestMeasuredError));
   InverseRanges measured{cv::Mat::zeros(depth.range.size(), CV_32F),

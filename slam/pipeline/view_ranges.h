@@ -24,6 +24,9 @@ void Distrust(double factor, DenseDepth* completed);
 /// Puts ranges that stereo measured in the place of completed ones.
 void PutMeasured(const InverseRanges& measured, DenseDepth* depth);
 
+/// States an expected error of at least `least_error` where `mask` (CV_8U) is not 0.
+void LimitConfidence(const cv::Mat& mask, double least_error, DenseDepth* depth);
+
 /// Returns the measured ranges of the depth of a view.
 InverseRanges MeasuredOf(const DenseDepth& depth);
 

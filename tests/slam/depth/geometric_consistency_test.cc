@@ -109,6 +109,14 @@ TEST(FindConsistentPoints, RefusesWhatOneKeyframeInvents) {
   }
 }
 
+TEST(FindConsistentPoints, ViewsThatHardlyKnowTheRangeSupportNothing) {
+  // As in the sky: the network gives it a range with an expected error as large as that.
+  std::vector<DenseDepth> depths = RenderAll(0.5);
+  depths[3] = RenderAll()[3];
+  depths[3].range *= 0.7;
+  EXPECT_TRUE(ConsistentPointsOfTheMiddle(Views(depths)).empty());
+}
+
 TEST(FindConsistentPoints, RefusesWhatTooFewSee) {
   const std::vector<DenseDepth> depths = RenderAll();
   GeometricConsistencyOptions options;

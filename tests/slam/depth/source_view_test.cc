@@ -52,7 +52,7 @@ std::vector<Eigen::Vector3d> RandomBearings(int count) {
 DepthView ViewOf(const DenseDepth& depth) { return {depth, kPose, 0.01}; }
 
 /// The same camera once more.
-SourceView Itself(const DepthView& view) { return {&view, {}, 2.5, 0.01}; }
+SourceView Itself(const DepthView& view) { return {&view, {}, 2.5, 0.01, 0.8f}; }
 
 TEST(CompareWithSourceView, RangesBetweenPixelsAreThoseOfThePlaneSeamAndPolesIncluded) {
   const DepthView view = ViewOf(kRoom.Render(kCamera, kPose));
@@ -163,7 +163,7 @@ TEST(CompareWithSourceView, PosesBringThePointsToTheSourceView) {
   const DepthView view(kRoom.Render(kCamera, other), other, 0.01);
   ForEachDispatchTarget([&] {
     TestedRow points = PointsAt(RandomBearings(1000));
-    const SourceView source{&view, other.Inverse() * kPose, 2.5, 0.01};
+    const SourceView source{&view, other.Inverse() * kPose, 2.5, 0.01, 0.8f};
     CompareWithSourceView(source, &points);
     CompareWithSourceView(source, &points);  // What they say adds up.
     const auto all = static_cast<std::ptrdiff_t>(points.size);

@@ -87,6 +87,21 @@ TEST_F(CompleteViewsTest, WhatWasMeasuredStays) {
   EXPECT_EQ(RangeAt(on_ground, store_), RangeAt(on_ground, first_));
 }
 
+TEST_F(CompleteViewsTest, BesideTheEdgeOfANearSurfaceTheRangeStaysWithoutConfidence) {
+  // A post in front of the right side of the road, as wide as five pixels and another three grown.
+  constexpr int kTop = 60;
+  DenseDepth depth = scene_.Render(kCamera, 0);
+  depth.range(cv::Rect(150, kTop, 11, 40)).setTo(1.0F);
+  first_.Put(40, depth);
+  Complete(kUp);
+  const DenseDepth completed = store_.Get(40);
+  for (int column = 150; column < 161; ++column) {
+    const bool is_beside = column < 153 || column >= 158;
+    EXPECT_NEAR(completed.range.at<float>(kTop + 20, column), 1, 0.01) << column;
+    EXPECT_EQ(completed.confidence.at<float>(kTop + 20, column) > 0.51, !is_beside) << column;
+  }
+}
+
 TEST_F(CompleteViewsTest, AViewGetsPointsThatOthersMeasured) {
   // The first pass saw nothing at the right and has put it near.
   DenseDepth depth = scene_.Render(kCamera, 0);

@@ -59,6 +59,18 @@ TEST(ViewRanges, ErrorsOfCompletedOnesAreMultiplied) {
   EXPECT_EQ(unknown.confidence.at<float>(3, 3), 0);
 }
 
+TEST(ViewRanges, LimitedConfidenceIsThatOfTheErrorWhereItWasMore) {
+  DenseDepth depth = Completed(0.8);
+  depth.confidence.at<float>(3, 4) = 0.2F;
+  cv::Mat mask = cv::Mat::zeros(depth.range.size(), CV_8U);
+  mask(cv::Rect(3, 3, 2, 1)) = 255;
+  LimitConfidence(mask, 1.0, &depth);
+  EXPECT_EQ(depth.confidence.at<float>(3, 3), 0.5F);
+  EXPECT_EQ(depth.confidence.at<float>(3, 4), 0.2F);
+  EXPECT_EQ(depth.confidence.at<float>(4, 3), 0.8F);
+  EXPECT_EQ(depth.range.at<float>(3, 3), 3);
+}
+
 TEST(ViewRanges, OneOfEachSquareIsSampledAndTakesThePlaceOfPoints) {
   SparseDepth sparse{cv::Mat::zeros(kHeight, kWidth, CV_32F),
                      cv::Mat::zeros(kHeight, kWidth, CV_32F)};
