@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -19,6 +20,9 @@ constexpr double kMinError = 0.01;  // of ln(range); a measured pixel is told fr
 // Stated of the range beside the edge of a near surface, as of objects that move along: it stays in
 // the depth, but not in the cloud.
 constexpr double kBoundaryError = 1.0;
+// Where the network expects a larger relative error it may see the sky. It gives that the range of
+// the roofs around it.
+constexpr double kSkyError = 0.5;
 
 /// The views of the first pass that were used last.
 class RecentViews {
@@ -144,9 +148,13 @@ int CompleteViews(std::span<const DenseView> views, const NeighbourFinder& neigh
     }
     if (is_completed) {
       depth = completer->Complete(color, sparse);
+      cv::Mat surfaces = depth.range.clone();
+      surfaces.setTo(std::numeric_limits<float>::infinity(),
+                     depth.confidence < 1 / (1 + kSkyError));
       Distrust(options.completion_error_factor, &depth);
       PutMeasured(measured, &depth);
-      LimitConfidence(FindOccludingBoundary(depth.range), kBoundaryError, &depth);
+      depth.range.copyTo(surfaces, measured.value > 0);
+      LimitConfidence(FindOccludingBoundary(surfaces), kBoundaryError, &depth);
     }
     if (!found.objects.empty()) {
       PlaceOnGround(found.objects, *found.ground, second.objects, &depth);

@@ -1,5 +1,7 @@
 #include "slam/depth/occluding_boundary.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include <orb360/slam/geometry/camera.h>
@@ -21,6 +23,14 @@ TEST(FindOccludingBoundary, IsTheRimOfWhatIsNear) {
   expected(near).setTo(255);
   expected(cv::Rect(43, 23, 14, 4)).setTo(0);
   EXPECT_EQ(cv::norm(boundary, expected, cv::NORM_INF), 0);
+}
+
+TEST(FindOccludingBoundary, IsWhereASurfaceEndsAtTheSkyAndNotInTheSky) {
+  cv::Mat range(64, 128, CV_32F, cv::Scalar(10));
+  range.rowRange(0, 30).setTo(std::numeric_limits<float>::infinity());
+  const cv::Mat boundary = FindOccludingBoundary(range, {.width = 3});
+  for (const int row : {0, 29, 33, 63}) EXPECT_EQ(boundary.at<uchar>(row, 64), 0) << row;
+  for (const int row : {30, 32}) EXPECT_EQ(boundary.at<uchar>(row, 64), 255) << row;
 }
 
 TEST(FindOccludingBoundary, ContinuesAcrossTheSeam) {

@@ -102,6 +102,25 @@ TEST_F(CompleteViewsTest, BesideTheEdgeOfANearSurfaceTheRangeStaysWithoutConfide
   }
 }
 
+TEST_F(CompleteViewsTest, WhatTheNetworkHardlyKnowsMayBeTheSkyBehindAnEdge) {
+  // Every range is 3 m, but that of a rectangle only is measured; the network gives the rest the
+  // same and is not sure.
+  const cv::Size size(kCamera.width(), kCamera.height());
+  for (int i = 0; i < 9; ++i) {
+    DenseDepth depth{cv::Mat(size, CV_32F, cv::Scalar(3)), cv::Mat(size, CV_32F, cv::Scalar(0.4)),
+                     cv::Mat(size, CV_8UC3, cv::Scalar::all(90))};
+    if (i == 4) depth.confidence(cv::Rect(100, 50, 40, 30)).setTo(0.98);
+    first_.Put(10 * i, depth);
+  }
+  Complete(std::nullopt);
+  const DenseDepth completed = store_.Get(40);
+  for (const int column : {102, 137}) {
+    EXPECT_NEAR(completed.range.at<float>(65, column), 3, 0.01);
+    EXPECT_LT(completed.confidence.at<float>(65, column), 0.51);
+  }
+  EXPECT_GT(completed.confidence.at<float>(65, 120), 0.97);
+}
+
 TEST_F(CompleteViewsTest, AViewGetsPointsThatOthersMeasured) {
   // The first pass saw nothing at the right and has put it near.
   DenseDepth depth = scene_.Render(kCamera, 0);
