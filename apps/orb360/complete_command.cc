@@ -70,16 +70,6 @@ std::filesystem::path Beside(const std::filesystem::path& depth, const char* wha
   return depth.parent_path() / name;
 }
 
-/// Writes values between 0 and 1, times 65535, as a 16-bit PNG.
-void WriteFractionImage(const std::filesystem::path& path, const cv::Mat& fraction) {
-  constexpr double kOne = 65535;
-  cv::Mat units;
-  fraction.convertTo(units, CV_16U, kOne);  // It rounds, and clamps to 0..65535.
-  std::vector<unsigned char> png;
-  cv::imencode(".png", units, png);
-  WriteFileAtomically(path, {reinterpret_cast<const char*>(png.data()), png.size()});
-}
-
 /// The network, prepared again whenever the size of the images changes.
 class Completer {
  public:

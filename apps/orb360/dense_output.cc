@@ -49,14 +49,19 @@ DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMap
 
 void SaveDepth(const std::filesystem::path& folder, const DepthMapStore& store,
                std::span<const DenseView> views) {
-  const std::filesystem::path images = folder / Dataset::kDepthName;
-  std::error_code error;
-  std::filesystem::create_directories(images, error);
-  if (error) ThrowWriteError(images, error.value());
+  const std::filesystem::path ranges = folder / Dataset::kDepthName;
+  const std::filesystem::path confidences = folder / Dataset::kConfidenceName;
+  for (const std::filesystem::path& images : {ranges, confidences}) {
+    std::error_code error;
+    std::filesystem::create_directories(images, error);
+    if (error) ThrowWriteError(images, error.value());
+  }
   for (const DenseView& view : views) {
     char name[32];
     std::snprintf(name, sizeof name, "%06d.png", view.frame_index);
-    WriteDepthImage(images / name, store.Get(view.frame_index).range);
+    const DenseDepth depth = store.Get(view.frame_index);
+    WriteDepthImage(ranges / name, depth.range);
+    WriteFractionImage(confidences / name, depth.confidence);
   }
 }
 

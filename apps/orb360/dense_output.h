@@ -30,8 +30,9 @@ DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMap
                              std::span<const DenseView> views, const DenseCloudOptions& options,
                              bool has_mesh);
 
-/// Writes the ranges of every view, in the final unit of the world, into `folder`/depth as a 16-bit
-/// PNG (WriteDepthImage), which is named by the index of the frame.
+/// Writes the ranges of every view, in the final unit of the world, into `folder`/depth, and their
+/// confidence into `folder`/confidence, each as a 16-bit PNG (WriteDepthImage, WriteFractionImage),
+/// which is named by the index of the frame.
 void SaveDepth(const std::filesystem::path& folder, const DepthMapStore& store,
                std::span<const DenseView> views);
 

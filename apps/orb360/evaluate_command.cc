@@ -135,7 +135,8 @@ void AddDepthErrors(const std::filesystem::path& truth, const std::filesystem::p
   const std::filesystem::path true_images = truth / Dataset::kDepthName;
   const std::filesystem::path images = estimate / Dataset::kDepthName;
   if (!std::filesystem::is_directory(true_images) || !std::filesystem::is_directory(images)) return;
-  const DepthFolderErrors depth = CompareDepthFolders(true_images, images);
+  const DepthFolderErrors depth =
+      CompareDepthFolders(true_images, images, estimate / Dataset::kConfidenceName);
   if (depth.images > 0) (*report)["depth"] = ToJson(depth);
 }
 

@@ -115,6 +115,17 @@ nlohmann::json ToJson(const DepthErrorBin& bin, double from, double to) {
   return json;
 }
 
+nlohmann::json ToJson(const DepthCalibration& calibration) {
+  nlohmann::json json;
+  for (const DepthCalibration::Tenth& tenth : calibration.Tenths()) {
+    json["tenths"].push_back({{"stated", tenth.stated}, {"observed", tenth.observed}});
+  }
+  for (const double coverage : {0.5, 0.8}) {
+    json["risk"].push_back({{"coverage", coverage}, {"abs_rel", calibration.Risk(coverage)}});
+  }
+  return json;
+}
+
 void PrintDepthRow(const std::string& label, const nlohmann::json& bin, std::ostream& out) {
   out << std::left << std::setw(kDepthLabelWidth) << label << std::right;
   for (const Row& column : kDepthColumns) {
@@ -133,6 +144,19 @@ void PrintDepthBins(const nlohmann::json& bins, const char* unit, std::ostream& 
   }
 }
 
+void PrintCalibration(const nlohmann::json& calibration, std::ostream& out) {
+  constexpr int kWidth = 8;
+  out << "relative error of each tenth of the ranges, from the most confident on, %\n"
+      << std::setprecision(1);
+  for (const char* key : {"stated", "observed"}) {
+    out << std::left << std::setw(kDepthLabelWidth) << std::string("  ") + key << std::right;
+    for (const nlohmann::json& tenth : calibration["tenths"]) {
+      out << std::setw(kWidth) << 100 * tenth[key].get<double>();
+    }
+    out << '\n';
+  }
+}
+
 void PrintDepth(const nlohmann::json& depth, std::ostream& out) {
   std::ostringstream title;
   title << "depth, " << depth["images"] << " images";
@@ -144,6 +168,7 @@ void PrintDepth(const nlohmann::json& depth, std::ostream& out) {
   PrintDepthRow("all", depth["all"], out);
   PrintDepthBins(depth["by_range_m"], "m", out);
   PrintDepthBins(depth["by_latitude_deg"], "deg", out);
+  if (depth.contains("calibration")) PrintCalibration(depth["calibration"], out);
 }
 
 }  // namespace
@@ -181,6 +206,7 @@ nlohmann::json ToJson(const DepthFolderErrors& depth) {
     json["by_latitude_deg"].push_back(ToJson(depth.errors.by_latitude[static_cast<size_t>(i)],
                                              kBandHeight * i - 90.0, kBandHeight * (i + 1) - 90.0));
   }
+  if (depth.calibration) json["calibration"] = ToJson(*depth.calibration);
   return json;
 }
 

@@ -42,17 +42,20 @@ DepthErrors& DepthErrors::operator+=(const DepthErrors& other) {
   return *this;
 }
 
+double PixelSolidAngle(int row, cv::Size size) {
+  // The zone between two latitudes covers 2 pi (sin a - sin b), divided among the row's pixels.
+  const double top = std::numbers::pi * (0.5 - static_cast<double>(row) / size.height);
+  const double bottom = std::numbers::pi * (0.5 - (row + 1.0) / size.height);
+  return 2.0 * std::numbers::pi * (std::sin(top) - std::sin(bottom)) / size.width;
+}
+
 DepthErrors CompareDepth(const cv::Mat& truth, const cv::Mat& estimate) {
   ORB360_CHECK(truth.type() == CV_32FC1 && estimate.type() == CV_32FC1, truth.type(),
                estimate.type());
   ORB360_CHECK(truth.size() == estimate.size(), truth.size(), estimate.size());
   DepthErrors errors;
   for (int row = 0; row < truth.rows; ++row) {
-    // The zone between two latitudes covers 2 pi (sin a - sin b), divided among the row's pixels.
-    const double top = std::numbers::pi * (0.5 - static_cast<double>(row) / truth.rows);
-    const double bottom = std::numbers::pi * (0.5 - (row + 1.0) / truth.rows);
-    const double solid_angle =
-        2.0 * std::numbers::pi * (std::sin(top) - std::sin(bottom)) / truth.cols;
+    const double solid_angle = PixelSolidAngle(row, truth.size());
     const double height = 1.0 - (row + 0.5) / truth.rows;  // 0 at the nadir, 1 at the zenith.
     DepthErrorBin& band =
         errors.by_latitude[static_cast<size_t>(height * DepthErrors::kLatitudeBands)];

@@ -47,6 +47,9 @@ struct DepthErrors {
   DepthErrors& operator+=(const DepthErrors& other);
 };
 
+/// Solid angle of each pixel of a row of an equirectangular image, steradians.
+double PixelSolidAngle(int row, cv::Size size);
+
 /// Compares two equirectangular range images of the same size (CV_32FC1, metres, 0 for none).
 DepthErrors CompareDepth(const cv::Mat& truth, const cv::Mat& estimate);
 

@@ -8,9 +8,19 @@
 #include <orb360/slam/io/depth_image.h>
 
 namespace orb360 {
+namespace {
+
+void RequireSize(const std::filesystem::path& path, const cv::Mat& image, cv::Size truth) {
+  if (image.size() == truth) return;
+  throw UserError(path.string() + ": is " + ToString(image.size()) + ", its ground truth " +
+                  ToString(truth));
+}
+
+}  // namespace
 
 DepthFolderErrors CompareDepthFolders(const std::filesystem::path& truth,
-                                      const std::filesystem::path& estimate) {
+                                      const std::filesystem::path& estimate,
+                                      const std::filesystem::path& confidence) {
   std::vector<std::filesystem::path> names;
   for (const auto& entry : std::filesystem::directory_iterator(estimate)) {
     const std::filesystem::path name = entry.path().filename();
@@ -22,12 +32,14 @@ DepthFolderErrors CompareDepthFolders(const std::filesystem::path& truth,
   for (const std::filesystem::path& name : names) {
     const cv::Mat true_range = ReadDepthImage(truth / name);
     const cv::Mat range = ReadDepthImage(estimate / name);
-    if (range.size() != true_range.size()) {
-      throw UserError((estimate / name).string() + ": is " + ToString(range.size()) +
-                      ", its ground truth " + ToString(true_range.size()));
-    }
+    RequireSize(estimate / name, range, true_range.size());
     result.errors += CompareDepth(true_range, range);
     ++result.images;
+    if (confidence.empty() || !std::filesystem::exists(confidence / name)) continue;
+    const cv::Mat stated = ReadFractionImage(confidence / name);
+    RequireSize(confidence / name, stated, true_range.size());
+    if (!result.calibration) result.calibration.emplace();
+    *result.calibration += CompareConfidence(true_range, range, stated);
   }
   return result;
 }

@@ -11,6 +11,7 @@ namespace orb360 {
 /// answer.
 struct Dataset {
   static constexpr const char* kDepthName = "depth";
+  static constexpr const char* kConfidenceName = "confidence";  // of a run's depth
   static constexpr const char* kGroundTruthName = "groundtruth.txt";
 
   std::filesystem::path folder;

@@ -1,6 +1,6 @@
 #include <cmath>
 #include <cstdint>
-#include <string_view>
+#include <string>
 #include <vector>
 
 #include <opencv2/imgcodecs.hpp>
@@ -13,6 +13,25 @@ namespace orb360 {
 namespace {
 
 constexpr float kUnitsPerMetre = 256.0f;
+constexpr double kUnitsOfOne = 65535;
+
+void WritePng(const std::filesystem::path& path, const cv::Mat& image) {
+  std::vector<unsigned char> png;
+  cv::imencode(".png", image, png);
+  WriteFileAtomically(path, {reinterpret_cast<const char*>(png.data()), png.size()});
+}
+
+/// Returns a 16-bit image of one channel; `what` it should be.
+cv::Mat ReadUnits(const std::filesystem::path& path, const std::string& what) {
+  // OpenCV would print a message about an absent file to standard error.
+  cv::Mat units = std::filesystem::is_regular_file(path)
+                      ? cv::imread(path.string(), cv::IMREAD_UNCHANGED)
+                      : cv::Mat();
+  if (units.type() != CV_16UC1 || units.empty()) {
+    throw UserError(path.string() + ": is not " + what);
+  }
+  return units;
+}
 
 }  // namespace
 
@@ -27,22 +46,28 @@ void WriteDepthImage(const std::filesystem::path& path, const cv::Mat& range) {
       to[column] = rounded > 0.0f && rounded <= 65535.0f ? static_cast<std::uint16_t>(rounded) : 0;
     }
   }
-  std::vector<unsigned char> png;
-  cv::imencode(".png", units, png);
-  WriteFileAtomically(path, {reinterpret_cast<const char*>(png.data()), png.size()});
+  WritePng(path, units);
 }
 
 cv::Mat ReadDepthImage(const std::filesystem::path& path) {
-  // OpenCV would print a message about an absent file to standard error.
-  const cv::Mat units = std::filesystem::is_regular_file(path)
-                            ? cv::imread(path.string(), cv::IMREAD_UNCHANGED)
-                            : cv::Mat();
-  if (units.type() != CV_16UC1 || units.empty()) {
-    throw UserError(path.string() + ": is not a depth image (16-bit PNG, metres * 256)");
-  }
   cv::Mat range;
-  units.convertTo(range, CV_32F, 1.0 / kUnitsPerMetre);
+  ReadUnits(path, "a depth image (16-bit PNG, metres * 256)")
+      .convertTo(range, CV_32F, 1.0 / kUnitsPerMetre);
   return range;
+}
+
+void WriteFractionImage(const std::filesystem::path& path, const cv::Mat& fraction) {
+  ORB360_CHECK(fraction.type() == CV_32FC1, fraction.type());
+  cv::Mat units;
+  fraction.convertTo(units, CV_16U, kUnitsOfOne);  // It rounds, and clamps to 0..65535.
+  WritePng(path, units);
+}
+
+cv::Mat ReadFractionImage(const std::filesystem::path& path) {
+  cv::Mat fraction;
+  ReadUnits(path, "an image of fractions (16-bit PNG, fraction * 65535)")
+      .convertTo(fraction, CV_32F, 1.0 / kUnitsOfOne);
+  return fraction;
 }
 
 }  // namespace orb360

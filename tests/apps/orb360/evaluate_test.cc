@@ -150,7 +150,21 @@ TEST_F(EvaluateTest, DepthIsComparedWhereBothFoldersHaveIt) {
   EXPECT_NEAR(depth["by_range_m"][2]["mae"], 3.0, 1e-6);
   EXPECT_TRUE(depth["by_range_m"][0]["mae"].is_null());
   EXPECT_THAT(RunOrb360({"evaluate", folder_.path(), run}).out,
-              AllOf(HasSubstr("depth, 1 images"), HasSubstr("10 to 20 m")));
+              AllOf(HasSubstr("depth, 1 images"), HasSubstr("10 to 20 m"),
+                    Not(HasSubstr("most confident"))));
+
+  EXPECT_FALSE(depth.contains("calibration"));
+  std::filesystem::create_directory(run / "confidence");
+  WriteFractionImage(run / "confidence" / "000000.png",
+                     cv::Mat(16, 32, CV_32FC1, cv::Scalar(0.8F)));
+  const nlohmann::json stated = Report(folder_.path(), run)["depth"]["calibration"];
+  ASSERT_EQ(stated["tenths"].size(), 10U);
+  EXPECT_NEAR(stated["tenths"][3]["stated"], 0.25, 1e-4);
+  EXPECT_NEAR(stated["tenths"][3]["observed"], 0.2, 1e-4);
+  EXPECT_EQ(stated["risk"][0]["coverage"], 0.5);
+  EXPECT_NEAR(stated["risk"][0]["abs_rel"], 0.2, 1e-4);
+  EXPECT_THAT(RunOrb360({"evaluate", folder_.path(), run}).out,
+              AllOf(HasSubstr("most confident"), HasSubstr("25.0"), HasSubstr("20.0")));
 }
 
 TEST_F(EvaluateTest, WithoutJsonATableIsPrinted) {

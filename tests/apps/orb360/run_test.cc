@@ -99,6 +99,7 @@ TEST_F(RunTest, WithANetworkTheCloudIsDenseAndTheSameForAnyNumberOfThreads) {
     return std::distance(std::filesystem::directory_iterator(folder), {});
   };
   EXPECT_EQ(files(OutFile("depth")), summary["cloud"]["views"].get<int>());
+  EXPECT_EQ(files(OutFile("confidence")), summary["cloud"]["views"].get<int>());
   EXPECT_EQ(files(OutFile("sparse")), summary["cloud"]["views"].get<int>());
   for (const auto& entry : std::filesystem::directory_iterator(OutFile("sparse"))) {
     const SparseSample sample = ReadSparseSample(entry.path());

@@ -32,6 +32,28 @@ TEST(CompareDepthFolders, PairsImagesByNameAndAddsThemUp) {
   EXPECT_NEAR(result.errors.total.Mae(), 2.0, 1e-9);
 }
 
+TEST(CompareDepthFolders, ComparesErrorsWithTheConfidencesThatThereAre) {
+  const TempFolder truth;
+  const TempFolder estimate;
+  const TempFolder confidence;
+  for (const char* name : {"0.png", "1.png"}) WriteDepthImage(truth / name, Constant(10));
+  WriteDepthImage(estimate / "0.png", Constant(11));
+  WriteDepthImage(estimate / "1.png", Constant(15));
+  EXPECT_FALSE(
+      CompareDepthFolders(truth.path(), estimate.path(), confidence / "absent").calibration);
+  WriteFractionImage(confidence / "0.png", Constant(0.8F));
+  const DepthFolderErrors result =
+      CompareDepthFolders(truth.path(), estimate.path(), confidence.path());
+  ASSERT_TRUE(result.calibration);
+  EXPECT_NEAR(result.calibration->Tenths()[4].stated, 0.25, 1e-4);
+  EXPECT_NEAR(result.calibration->Tenths()[4].observed, 0.1, 1e-6);
+
+  WriteFractionImage(confidence / "1.png", Constant(0.8F, {16, 8}));
+  EXPECT_THAT(MessageOf<UserError>(
+                  [&] { CompareDepthFolders(truth.path(), estimate.path(), confidence.path()); }),
+              AllOf(HasSubstr((confidence / "1.png").string()), HasSubstr("16x8")));
+}
+
 TEST(CompareDepthFolders, NamesAnImageOfAnotherSize) {
   const TempFolder truth;
   const TempFolder estimate;

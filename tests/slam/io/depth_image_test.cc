@@ -27,6 +27,23 @@ TEST(DepthImage, KeepsRangesToTwoMillimetresAndDropsWhatItCannotHold) {
   }
 }
 
+TEST(FractionImage, KeepsFractionsAndClampsOthers) {
+  const TempFolder folder;
+  const cv::Mat fraction = (cv::Mat_<float>(1, 4) << 0.0f, 0.123456f, 1.0f, 1.5f);
+  WriteFractionImage(folder / "c.png", fraction);
+  const cv::Mat raw = cv::imread((folder / "c.png").string(), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(raw.type(), CV_16UC1);
+  EXPECT_EQ(raw.at<std::uint16_t>(0, 2), 65535);
+  const cv::Mat read = ReadFractionImage(folder / "c.png");
+  ASSERT_EQ(read.type(), CV_32FC1);
+  for (int column = 0; column < 3; ++column) {
+    EXPECT_NEAR(read.at<float>(0, column), fraction.at<float>(0, column), 8e-6f);
+  }
+  EXPECT_EQ(read.at<float>(0, 3), 1.0f);
+  EXPECT_THAT(MessageOf<UserError>([&] { ReadFractionImage(folder / "absent.png"); }),
+              testing::HasSubstr("absent.png: is not an image of fractions"));
+}
+
 TEST(DepthImage, RefusesAnImage) {
   const TempFolder folder;
   cv::imwrite((folder / "rgb.png").string(), cv::Mat(4, 8, CV_8UC3, cv::Scalar(1, 2, 3)));

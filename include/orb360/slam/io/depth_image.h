@@ -15,4 +15,12 @@ void WriteDepthImage(const std::filesystem::path& path, const cv::Mat& range);
 /// ray, 0 for none). Throws UserError for a file that is not a 16-bit image of one channel.
 cv::Mat ReadDepthImage(const std::filesystem::path& path);
 
+/// Writes values between 0 and 1 (CV_32FC1), such as confidences, as a 16-bit PNG of value * 65535,
+/// rounded. Throws UserError if the file cannot be written.
+void WriteFractionImage(const std::filesystem::path& path, const cv::Mat& fraction);
+
+/// Reads a file that WriteFractionImage can write. Returns values between 0 and 1 (CV_32FC1). Throws
+/// UserError for a file that is not a 16-bit image of one channel.
+cv::Mat ReadFractionImage(const std::filesystem::path& path);
+
 }  // namespace orb360
