@@ -13,6 +13,10 @@
 namespace orb360 {
 namespace {
 
+/// Where one side of the path has no source view, the other side gives those at this multiple of
+/// the baselines, about the root of their ratio: views beside each other have the same errors.
+constexpr double kBetweenBaselines = 1.8;
+
 /// The images of frames that were used last.
 class GrayImages {
  public:
@@ -117,7 +121,20 @@ std::vector<size_t> ChooseStereoSources(std::span<const DenseView> views, size_t
                                         const ViewDepthOptions& options) {
   std::vector<double> distances = options.baselines;
   for (double& distance : distances) distance *= median_range;
-  return ChooseViewsByDistance(views, reference, neighbours, distances, options.max_baseline_ratio);
+  const auto choose = [&](std::span<const size_t> from) {
+    return ChooseViewsByDistance(views, reference, from, distances, options.max_baseline_ratio);
+  };
+  std::vector<size_t> sources = choose(neighbours);
+  const size_t wanted = 2 * distances.size();
+  if (!sources.empty() && sources.size() < wanted) {
+    std::vector<size_t> others(neighbours.begin(), neighbours.end());
+    std::erase_if(others, [&](size_t i) { return std::ranges::find(sources, i) != sources.end(); });
+    for (double& distance : distances) distance *= kBetweenBaselines;
+    for (const size_t i : choose(others)) {
+      if (sources.size() < wanted) sources.push_back(i);
+    }
+  }
+  return sources;
 }
 
 ViewDepthReport ComputeDepth(std::span<const DenseView> views, const NeighbourFinder& neighbours_of,

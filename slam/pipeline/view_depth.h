@@ -45,7 +45,8 @@ struct ViewDepthOptions {
   double min_trusted_confidence = 0.8;
   /// Distances of the source views from the reference view, as multiples of that median, in the
   /// reference view before. On each side of the path the view is taken whose distance is nearest to
-  /// each of these by ratio. Empty: no stereo.
+  /// each of these by ratio. At the ends of a path, where one side has none, others of the other
+  /// side take their place, farther away. Empty: no stereo.
   std::vector<double> baselines = {0.12, 0.4};
   /// Largest ratio between that distance and the one wanted.
   double max_baseline_ratio = 2.7;

@@ -38,6 +38,16 @@ TEST(ChooseStereoSources, TakesTheNearestToEachBaselineOnBothSides) {
             std::vector<size_t>{});
 }
 
+TEST(ChooseStereoSources, AtTheEndOfAPathOneSideGivesAll) {
+  std::vector<DenseView> views = ViewsAt({0, 0.4, 0.5, 0.6, 0.9, 1.5, 2.7});
+  const ViewDepthOptions options{.baselines = {0.1, 0.3}, .max_baseline_ratio = 2.0};
+  EXPECT_EQ(ChooseStereoSources(views, 0, views[0].neighbours, 5.0, options),
+            (std::vector<size_t>{2, 5, 4, 6}));
+  views[0].neighbours = {2, 5, 6};
+  EXPECT_EQ(ChooseStereoSources(views, 0, views[0].neighbours, 5.0, options),
+            (std::vector<size_t>{2, 5, 6}));
+}
+
 TEST(ChooseStereoSources, TakesNoViewFromTheSamePlaceNorOneThatSeesNothingOfIt) {
   std::vector<DenseView> views = ViewsAt({0, 0, 0.5, 0.6});
   views[0].neighbours = {1, 3};
