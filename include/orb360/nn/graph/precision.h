@@ -28,9 +28,9 @@ MatrixUnits FindMatrixUnits();
 
 /// Returns the type for ExecutorOptions::precision. kAuto becomes the fastest type in which the
 /// network is as accurate as in floats: bfloat16 with AMX; 8 bits with AVX-512 VNNI or
-/// Arm's dot product where the network has ranges of inputs; floats elsewhere. It depends on nothing else, never on measured
-/// times, because the type decides the bytes of results. Throws UserError where the processor or
-/// the network does not allow the type that is named.
+/// Arm's dot product where the network has ranges of inputs; floats elsewhere. It depends on
+/// nothing else, never on measured times, because the type decides the bytes of results. Throws
+/// UserError where the processor or the network does not allow the type that is named.
 DataType ChoosePrecision(Precision wanted, const Graph& graph,
                          const MatrixUnits& units = FindMatrixUnits());
 
