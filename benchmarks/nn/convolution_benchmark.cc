@@ -181,7 +181,8 @@ int Main(int argc, char** argv) {
   for (const std::string& name : options.types) {
     if (name == "float") types.push_back(DataType::kFloat);
     if (name == "bf16" && units.avx512_bfloat16) types.push_back(DataType::kBFloat16);
-    if (name == "int8" && units.avx512_vnni) types.push_back(DataType::kInt8);
+    if (name == "int8" && (units.avx512_vnni || units.arm_dot_product))
+      types.push_back(DataType::kInt8);
   }
   std::vector<Result> results;
   for (int round = 0; round < options.rounds; ++round) {

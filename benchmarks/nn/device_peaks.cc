@@ -12,6 +12,8 @@
 
 #if defined(__x86_64__)
 #include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 namespace orb360::nn {
@@ -21,10 +23,24 @@ double Seconds(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+#if defined(__x86_64__) || defined(__aarch64__)
+
+constexpr std::int64_t kSteps = 100'000;
+
+// `products` are those that `run` makes in a step.
+double MeasureUnit(void (*run)(), int products, int threads) {
+  const auto start = std::chrono::steady_clock::now();
+#pragma omp parallel num_threads(threads)
+  run();
+  return 2e-9 * products * kSteps * threads / Seconds(start);
+}
+
+#endif
+
 #if defined(__x86_64__)
 
 constexpr int kSums = 12;  // as in fma_peak.cc
-constexpr std::int64_t kSteps = 100'000;
+constexpr int kLanes = 16;
 
 // The assembly keeps the compiler from summing in another way.
 __attribute__((target("avx512f,avx512bw,avx512vl,avx512vnni"))) void AddBytes() {
@@ -47,12 +63,24 @@ __attribute__((target("avx512f,avx512bw,avx512vl,avx512bf16"))) void AddBFloat16
   }
 }
 
-// `products` are those of one lane of 32 bits.
-double MeasureUnit(void (*run)(), int products, int threads) {
-  const auto start = std::chrono::steady_clock::now();
-#pragma omp parallel num_threads(threads)
-  run();
-  return 2e-9 * 16 * products * kSums * kSteps * threads / Seconds(start);
+#elif defined(__aarch64__)
+
+constexpr int kSums = 16;  // 4 units with a latency of 4 cycles
+constexpr int kLanes = 4;
+
+#if defined(__clang__)
+__attribute__((target("dotprod")))
+#else
+__attribute__((target("arch=armv8.2-a+dotprod")))
+#endif
+void AddBytes() {
+  const int8x16_t factor = vdupq_n_s8(1);
+  int32x4_t sum[kSums];
+  for (auto& value : sum) value = vdupq_n_s32(0);
+  for (std::int64_t step = 0; step < kSteps; ++step) {
+#pragma GCC unroll 16
+    for (auto& value : sum) asm volatile("sdot %0.4s, %1.16b, %1.16b" : "+w"(value) : "w"(factor));
+  }
 }
 
 #endif
@@ -77,14 +105,15 @@ double MeasureBandwidth(int threads) {
 
 double MeasureBFloat16Peak([[maybe_unused]] int threads) {
 #if defined(__x86_64__)
-  if (BestBFloat16Unit() != BFloat16Unit::kNone) return MeasureUnit(AddBFloat16, 2, threads);
+  if (BestBFloat16Unit() != BFloat16Unit::kNone)
+    return MeasureUnit(AddBFloat16, kLanes * 2 * kSums, threads);
 #endif
   return 0;
 }
 
 double MeasureBytePeak([[maybe_unused]] int threads) {
-#if defined(__x86_64__)
-  if (HasVnni()) return MeasureUnit(AddBytes, 4, threads);
+#if defined(__x86_64__) || defined(__aarch64__)
+  if (FindByteUnit() != ByteUnit::kNone) return MeasureUnit(AddBytes, kLanes * 4 * kSums, threads);
 #endif
   return 0;
 }

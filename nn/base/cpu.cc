@@ -4,6 +4,8 @@
 #include <cpuid.h>
 #include <sys/syscall.h>
 #include <unistd.h>
+#elif defined(__aarch64__) && defined(__linux__)
+#include <sys/auxv.h>
 #endif
 
 namespace orb360::nn {
@@ -60,13 +62,22 @@ BFloat16Unit FindBFloat16Unit() {
   return features.amx && AskForTiles() ? BFloat16Unit::kAmx : BFloat16Unit::kAvx512;
 }
 
-bool FindVnni() { return FindFeatures().vnni; }
+ByteUnit ReadByteUnit() { return FindFeatures().vnni ? ByteUnit::kVnni : ByteUnit::kNone; }
+
+#elif defined(__aarch64__) && defined(__linux__)
+
+BFloat16Unit FindBFloat16Unit() { return BFloat16Unit::kNone; }
+
+ByteUnit ReadByteUnit() {
+  constexpr unsigned long kDotProduct = 1UL << 20;  // HWCAP_ASIMDDP of asm/hwcap.h
+  return (getauxval(AT_HWCAP) & kDotProduct) != 0 ? ByteUnit::kDotProduct : ByteUnit::kNone;
+}
 
 #else
 
 BFloat16Unit FindBFloat16Unit() { return BFloat16Unit::kNone; }
 
-bool FindVnni() { return false; }
+ByteUnit ReadByteUnit() { return ByteUnit::kNone; }
 
 #endif
 
@@ -77,9 +88,9 @@ BFloat16Unit BestBFloat16Unit() {
   return unit;
 }
 
-bool HasVnni() {
-  static const bool has = FindVnni();
-  return has;
+ByteUnit FindByteUnit() {
+  static const ByteUnit unit = ReadByteUnit();
+  return unit;
 }
 
 }  // namespace orb360::nn

@@ -17,8 +17,16 @@ enum class BFloat16Unit : std::uint8_t {
 /// Returns the best unit that this processor has and that the operating system allows.
 BFloat16Unit BestBFloat16Unit();
 
-/// Returns whether this processor has AVX-512's VPDPBUSD, which adds products of bytes up as
-/// integers (Intel since Cascade Lake, AMD since Zen 4), and the operating system allows it.
-bool HasVnni();
+/// Units that multiply bytes and add them up as integers. A processor has at most one.
+enum class ByteUnit : std::uint8_t {
+  kNone,
+  /// AVX-512's VPDPBUSD: Intel since Cascade Lake, AMD since Zen 4.
+  kVnni,
+  /// Arm's SDOT of 128 bits: most cores since Cortex-A75 and Neoverse N1, Apple's since A13 and M1.
+  kDotProduct,
+};
+
+/// Returns the unit that this processor has and that the operating system allows.
+ByteUnit FindByteUnit();
 
 }  // namespace orb360::nn

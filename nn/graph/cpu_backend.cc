@@ -218,8 +218,9 @@ CpuBackend::CpuBackend(int threads, DataType precision) : threads_(threads), pre
   if (precision == DataType::kBFloat16 && BestBFloat16Unit() == BFloat16Unit::kNone) {
     throw UserError("this processor has neither AVX-512 BF16 nor AMX; compute with 32 bits");
   }
-  if (precision == DataType::kInt8 && !HasVnni()) {
-    throw UserError("this processor has no AVX-512 VNNI; compute with 32 bits");
+  if (precision == DataType::kInt8 && FindByteUnit() == ByteUnit::kNone) {
+    throw UserError(
+        "this processor has neither AVX-512 VNNI nor Arm's dot product; compute with 32 bits");
   }
   ORB360_CHECK(precision != DataType::kFloat16);
 }

@@ -102,9 +102,10 @@ void RunByTiles(const WinogradConvolution& run, const DirectConvolution& direct,
 void RunInBytes(const Int8Convolution& run, int band, std::byte* scratch, std::size_t bytes,
                 int threads) {
   const int rows = run.output.shape.height;
+  const auto run_band = FindByteUnit() == ByteUnit::kVnni ? RunVnni : RunDotProduct;
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
   for (int first = 0; first < rows; first += band) {
-    RunVnni(run, first, std::min(rows, first + band), scratch + omp_get_thread_num() * bytes);
+    run_band(run, first, std::min(rows, first + band), scratch + omp_get_thread_num() * bytes);
   }
 }
 
@@ -128,13 +129,15 @@ Convolution::Convolution(const ConvolutionSpec& spec, std::span<const float> wei
                bias.size());
   ORB360_CHECK(spec.type != DataType::kBFloat16 || unit != BFloat16Unit::kNone,
                "this processor has no unit for bfloat16");
-  ORB360_CHECK(spec.type != DataType::kInt8 || HasVnni(), "this processor has no unit for 8 bits");
+  ORB360_CHECK(spec.type != DataType::kInt8 || FindByteUnit() != ByteUnit::kNone,
+               "this processor has no unit for 8 bits");
   const int block = spec.type == DataType::kBFloat16 ? BlockOf(spec.type) : kBlock;
   const int channels = (spec.out_channels + block - 1) / block * block;
   bias_.resize(channels);
   std::copy(bias.begin(), bias.end(), bias_.begin());
   if (spec.type == DataType::kInt8) {
-    scale_ = ByteScaleOf(spec.minimum, spec.maximum);
+    const bool has_signs = FindByteUnit() == ByteUnit::kDotProduct;
+    scale_ = ByteScaleOf(spec.minimum, spec.maximum, has_signs ? -128 : 0);
     bytes_ = PackInt8(weight, spec.out_channels, spec.in_channels, spec.kernel, scale_);
   } else if (spec.type == DataType::kBFloat16 && !is_bfloat16_stem()) {
     rounded_weight_ = PackBFloat16(weight, spec.out_channels, spec.in_channels, spec.kernel);

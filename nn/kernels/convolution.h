@@ -23,7 +23,7 @@ struct ConvolutionSpec {
   float slope = 1;
   /// kBFloat16 rounds weights and inputs to bfloat16 and sums in floats. It needs a processor with
   /// a BFloat16Unit. kInt8 rounds weights and inputs to 8 bits and sums exactly. It needs a
-  /// processor with HasVnni.
+  /// processor with a ByteUnit.
   DataType type = DataType::kFloat;
   /// Whether 3x3 convolutions of floats with many channels may be computed in tiles of
   /// kConvolutionTile x kConvolutionTile outputs by Winograd's method, which is 2 to 3 times as

@@ -27,12 +27,12 @@ void RoundFilters(std::span<const float> weight, int taps, float step,
 
 }  // namespace
 
-ByteScale ByteScaleOf(float minimum, float maximum) {
+ByteScale ByteScaleOf(float minimum, float maximum, std::int32_t lowest) {
   const float low = std::min(minimum, 0.0f);
   const float high = std::max(maximum, 0.0f);
   // An input that is always zero has any scale.
   const float steps = high > low ? kLargestByte / (high - low) : 1;
-  return {steps, static_cast<std::int32_t>(std::nearbyint(-low * steps))};
+  return {steps, lowest + static_cast<std::int32_t>(std::nearbyint(-low * steps)), lowest};
 }
 
 Int8Weights PackInt8(std::span<const float> weight, int out_channels, int in_channels, int kernel,

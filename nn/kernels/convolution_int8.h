@@ -9,17 +9,21 @@
 
 namespace orb360::nn {
 
-/// How floats become bytes: q = clamp(round(x * steps) + zero, 0, 255), to nearest, ties to even.
-/// Zero is represented exactly, so padding with zeros stays exact. NaN becomes 255.
+/// How floats become bytes: q = clamp(round(x * steps) + zero, lowest, lowest + 255), to nearest,
+/// ties to even. Zero is represented exactly, so padding with zeros stays exact. NaN becomes the
+/// highest byte.
 struct ByteScale {
-  float steps = 1;        // per unit
-  std::int32_t zero = 0;  // 0 to 255
+  float steps = 1;          // per unit
+  std::int32_t zero = 0;    // lowest to lowest + 255
+  std::int32_t lowest = 0;  // of the bytes: 0, or -128 for a unit whose bytes have signs
 };
 
-/// Returns the scale for inputs from `minimum` to `maximum`; zero is always inside.
-ByteScale ByteScaleOf(float minimum, float maximum);
+/// Returns the scale for inputs from `minimum` to `maximum`; zero is always inside. Where all bytes
+/// are lower by 128, `zero` is too, so that q - zero and with it every sum stays the same.
+ByteScale ByteScaleOf(float minimum, float maximum, std::int32_t lowest = 0);
 
-/// Number of output channels that are computed together, and half of it: the lanes of a vector.
+/// Number of output channels whose weights lie together, and half of it: the lanes of a vector of
+/// AVX-512.
 constexpr int kInt8Group = 32;
 constexpr int kInt8Half = kInt8Group / 2;
 /// Input channels whose products one lane adds up in one step.
@@ -57,11 +61,14 @@ struct Int8Convolution {
   TensorView output;            // floats
 };
 
-/// Bytes of memory in which RunVnni rounds the input of `rows` rows of the output.
+/// Bytes of memory in which a kernel rounds the input of `rows` rows of the output.
 std::size_t Int8ScratchBytes(const Shape& input, int kernel, int stride, int rows);
 
 /// Computes rows `first` to `last` - 1 of the output with AVX-512's VPDPBUSD, which the processor
 /// must have. `scratch` has Int8ScratchBytes and is aligned to kAlignment.
 void RunVnni(const Int8Convolution& run, int first, int last, std::byte* scratch);
+
+/// The same with Arm's SDOT and bytes that have signs (`lowest` of the scale is -128).
+void RunDotProduct(const Int8Convolution& run, int first, int last, std::byte* scratch);
 
 }  // namespace orb360::nn

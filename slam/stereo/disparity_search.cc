@@ -23,6 +23,9 @@ template <int kVectors>
 struct HypothesisCosts {
   Bytes vectors[kVectors];  // an array, since vectors cannot be elements of every container
 
+  // An implicit constructor is not compiled for the target, as Arm's vectors require.
+  HWY_INLINE HypothesisCosts() {}
+
   static HWY_INLINE HypothesisCosts Load(const uint8_t* from) {
     HypothesisCosts costs;
     for (int i = 0; i < kVectors; ++i) costs.vectors[i] = LoadBytes(from + i * kByteLanes);

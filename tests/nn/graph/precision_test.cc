@@ -18,7 +18,8 @@ Graph Network(bool has_ranges) {
   return graph;
 }
 
-constexpr MatrixUnits kAvx2;  // and older ones, and Arm
+constexpr MatrixUnits kAvx2;  // and older ones, and Arm's without dot product
+constexpr MatrixUnits kCortexA76{.arm_dot_product = true};
 constexpr MatrixUnits kCascadeLake{.avx512_vnni = true};
 constexpr MatrixUnits kZen4{.avx512_bfloat16 = true, .avx512_vnni = true};
 constexpr MatrixUnits kSapphireRapids{.amx = true, .avx512_bfloat16 = true, .avx512_vnni = true};
@@ -30,7 +31,9 @@ TEST(ChoosePrecision, TakesTheFastestTypeOfEachProcessorByItself) {
   EXPECT_EQ(ChoosePrecision(Precision::kAuto, with, kCascadeLake), DataType::kInt8);
   EXPECT_EQ(ChoosePrecision(Precision::kAuto, with, kZen4), DataType::kInt8);
   EXPECT_EQ(ChoosePrecision(Precision::kAuto, with, kSapphireRapids), DataType::kBFloat16);
+  EXPECT_EQ(ChoosePrecision(Precision::kAuto, with, kCortexA76), DataType::kInt8);
   EXPECT_EQ(ChoosePrecision(Precision::kAuto, without, kAvx2), DataType::kFloat);
+  EXPECT_EQ(ChoosePrecision(Precision::kAuto, without, kCortexA76), DataType::kFloat);
   // VDPBF16PS is not faster than tiles of floats.
   EXPECT_EQ(ChoosePrecision(Precision::kAuto, without, kZen4), DataType::kFloat);
   EXPECT_EQ(ChoosePrecision(Precision::kAuto, without, kSapphireRapids), DataType::kBFloat16);
@@ -46,12 +49,14 @@ TEST(ChoosePrecision, TakesTheNamedTypeOrSaysWhyItCannot) {
     }
     return std::string();
   };
-  for (const MatrixUnits& units : {kAvx2, kCascadeLake, kZen4, kSapphireRapids}) {
+  for (const MatrixUnits& units : {kAvx2, kCortexA76, kCascadeLake, kZen4, kSapphireRapids}) {
     EXPECT_EQ(ChoosePrecision(Precision::kFloat, with, units), DataType::kFloat);
   }
   EXPECT_EQ(ChoosePrecision(Precision::kBFloat16, with, kZen4), DataType::kBFloat16);
   EXPECT_EQ(ChoosePrecision(Precision::kInt8, with, kSapphireRapids), DataType::kInt8);
+  EXPECT_EQ(ChoosePrecision(Precision::kInt8, with, kCortexA76), DataType::kInt8);
   EXPECT_THAT(refusal(Precision::kBFloat16, with, kCascadeLake), testing::HasSubstr("AMX"));
+  EXPECT_THAT(refusal(Precision::kBFloat16, with, kCortexA76), testing::HasSubstr("AMX"));
   EXPECT_THAT(refusal(Precision::kInt8, with, kAvx2), testing::HasSubstr("VNNI"));
   EXPECT_THAT(refusal(Precision::kInt8, Network(false), kZen4), testing::HasSubstr("quantize"));
 }

@@ -46,7 +46,7 @@ Data Integers(const Case& c, float beyond) {
 class Int8Convolution : public testing::Test {
  protected:
   void SetUp() override {
-    if (!HasVnni()) GTEST_SKIP() << "this processor has no AVX-512 VNNI";
+    if (FindByteUnit() == ByteUnit::kNone) GTEST_SKIP() << "this processor has no unit for 8 bits";
   }
 
   static void ExpectExact(const Case& c) {
@@ -161,6 +161,29 @@ TEST(ByteScaleOf, RepresentsZeroExactlyForEveryRange) {
     EXPECT_LE(scale.zero, 255);
     EXPECT_NEAR(static_cast<float>(scale.zero) / scale.steps, -std::min(low, 0.0f),
                 0.51 / scale.steps);
+  }
+}
+
+TEST(ByteScaleOf, MovesBytesWithSignsByAConstantSoThatSumsStayTheSame) {
+  constexpr int kIn = 16, kOut = 16;
+  constexpr std::int32_t kLowest = -128;
+  const Data data({{kIn, kOut, 1}, 1, 1}, false);
+  const ByteScale without = ByteScaleOf(-3, 12);
+  const ByteScale with = ByteScaleOf(-3, 12, kLowest);
+  EXPECT_EQ(with.steps, without.steps);
+  EXPECT_EQ(with.zero, without.zero + kLowest);
+  const Int8Weights plain = PackInt8(data.weight, kOut, kIn, 1, without);
+  const Int8Weights moved = PackInt8(data.weight, kOut, kIn, 1, with);
+  ASSERT_EQ(plain.weight, moved.weight);
+  for (int o = 0; o < kOut; ++o) {
+    // Any inputs, here 7 times the number of the channel.
+    std::int32_t sum = plain.first_sum[o], moved_sum = moved.first_sum[o];
+    for (int i = 0; i < kIn; ++i) {
+      const int weight = plain.weight[i / 4 * 4 * kOut + o * 4 + i % 4];
+      sum += weight * (7 * i);
+      moved_sum += weight * (7 * i + kLowest);
+    }
+    EXPECT_EQ(moved_sum, sum) << o;
   }
 }
 

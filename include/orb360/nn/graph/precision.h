@@ -20,16 +20,17 @@ struct MatrixUnits {
   bool amx = false;              ///< AMX's tiles of bfloat16.
   bool avx512_bfloat16 = false;  ///< AVX-512's products of bfloat16.
   bool avx512_vnni = false;      ///< AVX-512's products of bytes.
+  bool arm_dot_product = false;  ///< Arm's products of bytes.
 };
 
 /// Returns what this processor has and the operating system allows.
 MatrixUnits FindMatrixUnits();
 
 /// Returns the type for ExecutorOptions::precision. kAuto becomes the fastest type in which the
-/// network is as accurate as in floats: bfloat16 with AMX; 8 bits with AVX-512 VNNI where the
-/// network has ranges of inputs; floats elsewhere. It depends on nothing else, never on measured
-/// times, because the type decides the bytes of results. Throws UserError where the processor or
-/// the network does not allow the type that is named.
+/// network is as accurate as in floats: bfloat16 with AMX; 8 bits with AVX-512 VNNI or
+/// Arm's dot product where the network has ranges of inputs; floats elsewhere. It depends on
+/// nothing else, never on measured times, because the type decides the bytes of results. Throws
+/// UserError where the processor or the network does not allow the type that is named.
 DataType ChoosePrecision(Precision wanted, const Graph& graph,
                          const MatrixUnits& units = FindMatrixUnits());
 
