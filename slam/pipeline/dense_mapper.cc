@@ -49,6 +49,10 @@ ViewDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished, std::s
                            .min_points = options_.min_points,
                            .keeps_completed = options_.completion};
   if (!options_.stereo) options.baselines.clear();
+  const MetricScale& scale = finished.scale;
+  if (scale.state != ScaleState::kUnknown && scale.value > 0) {
+    options.camera_height = scale.camera_height / scale.value;
+  }
   try {
     const DepthMapStore first(folder_ / "first");
     return orb360::ComputeDepth(covisible.views(), neighbours_of, landmarks_of, finished.up,

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "slam/depth/dense_ground.h"
+#include "slam/depth/ground_points.h"
 #include "slam/depth/occluding_boundary.h"
 #include "slam/pipeline/view_ranges.h"
 #include "slam/pipeline/view_selection.h"
@@ -139,6 +140,10 @@ int CompleteViews(std::span<const DenseView> views, const NeighbourFinder& neigh
                             .max_error = kLargestMeasuredError,
                             .sparse = options.sparse},
                            &sparse, num_threads);
+      if (up && options.camera_height > 0) {
+        AddGroundPoints(view.world_from_camera.rotation.inverse() * *up, options.camera_height,
+                        {.sparse = options.sparse}, &sparse);
+      }
     }
     sparse.range.setTo(0, moving);
     sparse.confidence.setTo(0, moving);

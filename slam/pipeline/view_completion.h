@@ -17,6 +17,8 @@ namespace orb360 {
 ///   ground; their measured ranges are dropped. `up`, the normal of the ground in the world, is
 ///   needed for this.
 /// - Where a view has no point, it gets those that other views measured (AddReprojectedPoints).
+/// - Where no view measured the ground below a camera whose height is known
+///   (ViewDepthOptions::camera_height), the network is given level ground (AddGroundPoints).
 /// - Beside the edges of near surfaces (FindOccludingBoundary) the ranges are kept, but with so
 ///   little confidence that the cloud has none of them.
 ///

@@ -63,6 +63,8 @@ struct ViewDepthOptions {
   /// Number by which the errors that the network expects are multiplied beside stereo: where it has
   /// not been trained, they are larger than it says (docs/results/stereo.md).
   double completion_error_factor = 5.0;
+  /// Height of the camera over the ground, in the unit of the poses of views; 0: not known.
+  double camera_height = 0;
   /// Whether the depth has what the network completes. Otherwise it has what stereo measures.
   bool keeps_completed = true;
   SphericalStereoOptions stereo = {};

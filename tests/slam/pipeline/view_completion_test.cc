@@ -145,6 +145,36 @@ TEST_F(CompleteViewsTest, AViewGetsPointsThatOthersMeasured) {
   EXPECT_GT(num_points, 10);
 }
 
+TEST_F(CompleteViewsTest, BelowACameraOfKnownHeightTheNetworkIsGivenTheGroundThatNobodyMeasured) {
+  const cv::Rect below(0, 90, kCamera.width(), kCamera.height() - 90);
+  for (int i = 0; i < 9; ++i) {
+    DenseDepth depth = scene_.Render(kCamera, 2.0 * (i - 4));
+    depth.range(below) = 20;
+    depth.confidence(below) = 0.6;
+    first_.Put(10 * i, depth);
+  }
+  const cv::Rect steep(0, 112, kCamera.width(), kCamera.height() - 112);  // 67 degrees down
+  int num_points = 0;
+  const ViewDepthCallbacks callbacks{.sink = [&](const SparseSample& sample) {
+    for (int row = steep.y; row < steep.br().y; ++row) {
+      const double down = -kCamera.Bearing({0.5, row + 0.5}).z();
+      for (int column = 0; column < kCamera.width(); ++column) {
+        const float range = sample.sparse.range.at<float>(row, column);
+        if (!(range > 0)) continue;
+        ++num_points;
+        EXPECT_NEAR(range * down, DrivingScene::kHeight, 0.01);
+      }
+    }
+  }};
+  Complete(kUp, callbacks);
+  EXPECT_LT(num_points, 20);  // Of what lies above that.
+  num_points = 0;
+  ViewDepthOptions options;
+  options.camera_height = DrivingScene::kHeight;
+  Complete(kUp, callbacks, options);
+  EXPECT_GT(num_points, 100);
+}
+
 TEST_F(CompleteViewsTest, WithoutStereoNothingIsTakenToBeMeasured) {
   int num_points = 0;
   Complete(std::nullopt,
