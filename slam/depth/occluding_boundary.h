@@ -16,8 +16,8 @@ struct OccludingBoundaryOptions {
 /// its edge as well, because the edge is the texture that its windows match (foreground fattening;
 /// Scharstein, Szeliski 2002), and it does so in every view.
 ///
-/// `range` is CV_32FC1 and equirectangular, infinite in the sky; pixels without a range (0) are left
-/// out.
+/// `range` is CV_32FC1 and equirectangular, infinite in the sky; pixels without a range (0) are
+/// left out.
 cv::Mat FindOccludingBoundary(const cv::Mat& range, const OccludingBoundaryOptions& options = {});
 
 }  // namespace orb360
