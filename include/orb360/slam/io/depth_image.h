@@ -19,8 +19,8 @@ cv::Mat ReadDepthImage(const std::filesystem::path& path);
 /// rounded. Throws UserError if the file cannot be written.
 void WriteFractionImage(const std::filesystem::path& path, const cv::Mat& fraction);
 
-/// Reads a file that WriteFractionImage can write. Returns values between 0 and 1 (CV_32FC1). Throws
-/// UserError for a file that is not a 16-bit image of one channel.
+/// Reads a file that WriteFractionImage can write. Returns values between 0 and 1 (CV_32FC1).
+/// Throws UserError for a file that is not a 16-bit image of one channel.
 cv::Mat ReadFractionImage(const std::filesystem::path& path);
 
 }  // namespace orb360
