@@ -137,7 +137,7 @@ void AddDepthErrors(const std::filesystem::path& truth, const std::filesystem::p
   if (!std::filesystem::is_directory(true_images) || !std::filesystem::is_directory(images)) return;
   const DepthFolderErrors depth =
       CompareDepthFolders(true_images, images, estimate / Dataset::kConfidenceName);
-  if (depth.images > 0) (*report)["depth"] = ToJson(depth);
+  if (!depth.images.empty()) (*report)["depth"] = ToJson(depth);
 }
 
 /// Adds errors of the dense cloud where the estimate has one and the truth has depth images.

@@ -1,6 +1,8 @@
 #include "apps/orb360/evaluation_report.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iomanip>
 #include <span>
 #include <sstream>
@@ -144,6 +146,20 @@ void PrintDepthBins(const nlohmann::json& bins, const char* unit, std::ostream& 
   }
 }
 
+/// The images whose ranges have the largest relative errors.
+void PrintWorstImages(nlohmann::json images, std::ostream& out) {
+  constexpr size_t kCount = 3;
+  const auto abs_rel = [](const nlohmann::json& image) { return image["abs_rel"].get<double>(); };
+  // One that has nothing to compare has no errors.
+  std::erase_if(images.get_ref<nlohmann::json::array_t&>(),
+                [&](const nlohmann::json& image) { return std::isnan(abs_rel(image)); });
+  std::ranges::stable_sort(images.get_ref<nlohmann::json::array_t&>(), std::greater(), abs_rel);
+  if (!images.empty()) out << "the worst images\n";
+  for (size_t i = 0; i < std::min(kCount, images.size()); ++i) {
+    PrintDepthRow("  " + images[i]["name"].get<std::string>(), images[i], out);
+  }
+}
+
 void PrintCalibration(const nlohmann::json& calibration, std::ostream& out) {
   constexpr int kWidth = 8;
   out << "relative error of each tenth of the ranges, from the most confident on, %\n"
@@ -168,6 +184,7 @@ void PrintDepth(const nlohmann::json& depth, std::ostream& out) {
   PrintDepthRow("all", depth["all"], out);
   PrintDepthBins(depth["by_range_m"], "m", out);
   PrintDepthBins(depth["by_latitude_deg"], "deg", out);
+  PrintWorstImages(depth["by_image"], out);
   if (depth.contains("calibration")) PrintCalibration(depth["calibration"], out);
 }
 
@@ -194,7 +211,11 @@ nlohmann::json ToJson(const TrajectoryErrors& errors) {
 }
 
 nlohmann::json ToJson(const DepthFolderErrors& depth) {
-  nlohmann::json json = {{"images", depth.images}, {"all", ToJson(depth.errors.total)}};
+  nlohmann::json json = {{"images", depth.images.size()}, {"all", ToJson(depth.errors.total)}};
+  for (const DepthImageErrors& image : depth.images) {
+    json["by_image"].push_back(ToJson(image.total));
+    json["by_image"].back()["name"] = image.name;
+  }
   double from = 0.0;
   for (size_t i = 0; i < DepthErrors::kRangeEnds.size(); ++i) {
     const double to = DepthErrors::kRangeEnds[i];

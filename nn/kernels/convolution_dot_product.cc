@@ -25,12 +25,7 @@ constexpr int kPixels = 5;
 constexpr int kLanes = 4;
 constexpr int kVectors = kInt8Half / kLanes;
 
-// Bytes of the input: [block][row][pixel][channel].
-struct Bytes {
-  const std::int8_t* data;
-  std::ptrdiff_t row;
-  std::ptrdiff_t plane;
-};
+using Bytes = ByteBand<std::int8_t>;
 
 // Rounds `count` blocks of 16 floats.
 void Round(const float* from, std::ptrdiff_t count, const ByteScale& scale, std::int8_t* to) {
@@ -194,20 +189,8 @@ void RunDotProduct(const Int8Convolution& run, int first, int last, std::byte* s
   static_assert(kInt8Block / kInt8Quad == 4);
   constexpr auto kCounts = std::make_integer_sequence<int, kPixels>();
   const Function* functions = run.stride == 1 ? Functions<1>(kCounts) : Functions<2>(kCounts);
-  const int reach = run.kernel / 2;
   const int width = run.output.shape.width;
-  const int top = first * run.stride - reach;
-  const int rows = (last - first - 1) * run.stride + run.kernel;
-  const std::ptrdiff_t pixels = run.input.shape.width + 2 * reach;
-  auto* const bytes = reinterpret_cast<std::int8_t*>(scratch);
-  const std::ptrdiff_t row_bytes = pixels * kInt8Block;
-  const std::ptrdiff_t plane_bytes = rows * row_bytes;
-  for (int plane = 0; plane < run.input.planes(); ++plane) {
-    for (int y = 0; y < rows; ++y) {
-      Round(run.input.row<float>(plane, top + y) - std::ptrdiff_t{reach} * kInt8Block, pixels,
-            run.scale, bytes + plane * plane_bytes + y * row_bytes);
-    }
-  }
+  const Bytes band = RoundBand<std::int8_t>(run, first, last, scratch, Round);
   const int tiles = (width + kPixels - 1) / kPixels;
   constexpr std::ptrdiff_t kHalfBytes = kInt8Half * kInt8Quad;  // of a quad's weights
   const std::ptrdiff_t quads =
@@ -218,7 +201,7 @@ void RunDotProduct(const Int8Convolution& run, int first, int last, std::byte* s
     const int halves = std::min(kInt8Group, channels - group) / kInt8Half;
     const std::ptrdiff_t step = halves * kHalfBytes;
     for (int y = first; y < last; ++y) {
-      const Bytes in{bytes + (y - first) * run.stride * row_bytes, row_bytes, plane_bytes};
+      const Bytes in{band.data + (y - first) * run.stride * band.row, band.row, band.plane};
       for (int half = 0; half < halves; ++half) {
         const Row row{run, in, group + half * kInt8Half, y};
         for (int t = 0; t < tiles; ++t) {

@@ -64,6 +64,34 @@ struct Int8Convolution {
 /// Bytes of memory in which a kernel rounds the input of `rows` rows of the output.
 std::size_t Int8ScratchBytes(const Shape& input, int kernel, int stride, int rows);
 
+/// The rounded input of a band of rows, with its padding: [block][row][pixel][channel].
+template <typename Byte>
+struct ByteBand {
+  const Byte* data;
+  std::ptrdiff_t row;    // bytes of a row of a block
+  std::ptrdiff_t plane;  // bytes of a block
+};
+
+/// Rounds what rows `first` to `last` - 1 of the output see of the input, into `scratch`. `round`
+/// rounds a number of blocks of kInt8Block floats: (const float*, count, const ByteScale&, Byte*).
+template <typename Byte, typename RoundBlocks>
+ByteBand<Byte> RoundBand(const Int8Convolution& run, int first, int last, std::byte* scratch,
+                         const RoundBlocks& round) {
+  const int reach = run.kernel / 2;
+  const int top = first * run.stride - reach;
+  const int rows = (last - first - 1) * run.stride + run.kernel;
+  const std::ptrdiff_t pixels = run.input.shape.width + 2 * reach;
+  auto* const bytes = reinterpret_cast<Byte*>(scratch);
+  const ByteBand<Byte> band{bytes, pixels * kInt8Block, rows * pixels * kInt8Block};
+  for (int plane = 0; plane < run.input.planes(); ++plane) {
+    for (int y = 0; y < rows; ++y) {
+      round(run.input.row<float>(plane, top + y) - std::ptrdiff_t{reach} * kInt8Block, pixels,
+            run.scale, bytes + plane * band.plane + y * band.row);
+    }
+  }
+  return band;
+}
+
 /// Computes rows `first` to `last` - 1 of the output with AVX-512's VPDPBUSD, which the processor
 /// must have. `scratch` has Int8ScratchBytes and is aligned to kAlignment.
 void RunVnni(const Int8Convolution& run, int first, int last, std::byte* scratch);

@@ -19,12 +19,7 @@ constexpr int kPixels = 14;
 constexpr __mmask16 kAll = 0xffff;
 constexpr __mmask8 kEight = 0xff;
 
-// Bytes of the input: [block][row][pixel][channel].
-struct Bytes {
-  const std::uint8_t* data;
-  std::ptrdiff_t row;
-  std::ptrdiff_t plane;
-};
+using Bytes = ByteBand<std::uint8_t>;
 
 // Rounds `count` blocks of 16 floats.
 ORB360_VNNI void Round(const float* from, std::ptrdiff_t count, const ByteScale& scale,
@@ -202,20 +197,8 @@ const Function* Functions(int halves, int stride) {
 }  // namespace
 
 void RunVnni(const Int8Convolution& run, int first, int last, std::byte* scratch) {
-  const int reach = run.kernel / 2;
   const int width = run.output.shape.width;
-  const int top = first * run.stride - reach;
-  const int rows = (last - first - 1) * run.stride + run.kernel;
-  const std::ptrdiff_t pixels = run.input.shape.width + 2 * reach;
-  auto* const bytes = reinterpret_cast<std::uint8_t*>(scratch);
-  const std::ptrdiff_t row_bytes = pixels * kInt8Block;
-  const std::ptrdiff_t plane_bytes = rows * row_bytes;
-  for (int plane = 0; plane < run.input.planes(); ++plane) {
-    for (int y = 0; y < rows; ++y) {
-      Round(run.input.row<float>(plane, top + y) - std::ptrdiff_t{reach} * kInt8Block, pixels,
-            run.scale, bytes + plane * plane_bytes + y * row_bytes);
-    }
-  }
+  const Bytes band = RoundBand<std::uint8_t>(run, first, last, scratch, Round);
   const int tiles = (width + kPixels - 1) / kPixels;
   const std::int8_t* weight = run.weights->weight.data();
   const int channels = (run.output.shape.channels + kInt8Half - 1) / kInt8Half * kInt8Half;
@@ -224,7 +207,7 @@ void RunVnni(const Int8Convolution& run, int first, int last, std::byte* scratch
     const Function* functions = Functions(halves, run.stride);
     for (int y = first; y < last; ++y) {
       const Row row{
-          run, {bytes + (y - first) * run.stride * row_bytes, row_bytes, plane_bytes}, channel, y};
+          run, {band.data + (y - first) * run.stride * band.row, band.row, band.plane}, channel, y};
       for (int t = 0; t < tiles; ++t) {
         const int x = t * width / tiles;
         functions[(t + 1) * width / tiles - x - 1](row, x, weight);

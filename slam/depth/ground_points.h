@@ -9,9 +9,11 @@ namespace orb360 {
 struct GroundPointOptions {
   /// Angle below the horizon from which on the ground is taken to be level, radians.
   double min_depression = 0.785;
-  /// Side of the squares that get one point, pixels.
+  /// Side of the squares that get one point, pixels: larger than that of what stereo measures, so
+  /// that the points of the prior are the fewer ones.
   int spacing = 12;
-  /// Nothing is added where at least this fraction of the squares has a point.
+  /// Nothing is added where at least this fraction of the squares has a point: what was measured
+  /// tells the network the height, and some wrong points are among it.
   double min_known = 0.1;
   /// Standard deviation of ln(range): ground is not level, and a height is not kept exactly.
   double relative_error = 0.1;

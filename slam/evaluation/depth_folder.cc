@@ -33,8 +33,9 @@ DepthFolderErrors CompareDepthFolders(const std::filesystem::path& truth,
     const cv::Mat true_range = ReadDepthImage(truth / name);
     const cv::Mat range = ReadDepthImage(estimate / name);
     RequireSize(estimate / name, range, true_range.size());
-    result.errors += CompareDepth(true_range, range);
-    ++result.images;
+    const DepthErrors errors = CompareDepth(true_range, range);
+    result.errors += errors;
+    result.images.push_back({name.string(), errors.total});
     if (confidence.empty() || !std::filesystem::exists(confidence / name)) continue;
     const cv::Mat stated = ReadFractionImage(confidence / name);
     RequireSize(confidence / name, stated, true_range.size());

@@ -2,14 +2,22 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "slam/evaluation/depth_calibration.h"
 #include "slam/evaluation/depth_error.h"
 
 namespace orb360 {
 
+/// Errors of one image.
+struct DepthImageErrors {
+  std::string name;
+  DepthErrorBin total;
+};
+
 struct DepthFolderErrors {
-  int images = 0;
+  std::vector<DepthImageErrors> images;  // ordered by name
   DepthErrors errors;
   std::optional<DepthCalibration> calibration;  // of the images with a confidence, if there are any
 };

@@ -9,6 +9,18 @@
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
+
+ViewDepthOptions ViewDepthOptionsOf(const DepthOptions& options, const MetricScale& scale) {
+  ViewDepthOptions result{.spacing = options.view_spacing,
+                          .min_points = options.min_points,
+                          .keeps_completed = options.completion};
+  if (!options.stereo) result.baselines.clear();
+  if (scale.state != ScaleState::kUnknown && scale.value > 0) {
+    result.camera_height = scale.camera_height / scale.value;
+  }
+  return result;
+}
+
 DenseMapper::DenseMapper(const std::filesystem::path& weights, const std::filesystem::path& folder,
                          const DepthOptions& options, int num_threads, const nn::Device& device)
     : folder_(folder),
@@ -45,14 +57,7 @@ ViewDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished, std::s
     return ProjectLandmarks(maps[view.map], id_of[view.map].at(reference), view.world_from_camera,
                             camera(), {});
   };
-  ViewDepthOptions options{.spacing = options_.view_spacing,
-                           .min_points = options_.min_points,
-                           .keeps_completed = options_.completion};
-  if (!options_.stereo) options.baselines.clear();
-  const MetricScale& scale = finished.scale;
-  if (scale.state != ScaleState::kUnknown && scale.value > 0) {
-    options.camera_height = scale.camera_height / scale.value;
-  }
+  const ViewDepthOptions options = ViewDepthOptionsOf(options_, finished.scale);
   try {
     const DepthMapStore first(folder_ / "first");
     return orb360::ComputeDepth(covisible.views(), neighbours_of, landmarks_of, finished.up,

@@ -15,6 +15,12 @@
 
 namespace orb360 {
 
+struct ViewDepthOptions;
+
+/// Returns how the depth of views is computed: with the height of the camera in the unit of the
+/// result where its scale is known.
+ViewDepthOptions ViewDepthOptionsOf(const DepthOptions& options, const MetricScale& scale);
+
 /// Keeps the images of tracked frames on disk during a run and computes the dense depth of
 /// reference views at its end. Where depth guides mapping (DepthOptions::guides_mapping), it also
 /// completes keyframes beside tracking and, while no landmarks show the ground, collects

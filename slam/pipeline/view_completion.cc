@@ -21,8 +21,8 @@ constexpr double kMinError = 0.01;  // of ln(range); a measured pixel is told fr
 // Stated of the range beside the edge of a near surface, as of objects that move along: it stays in
 // the depth, but not in the cloud.
 constexpr double kBoundaryError = 1.0;
-// Where the network expects a larger relative error it may see the sky. It gives that the range of
-// the roofs around it.
+// Where the network expects a larger relative error it may see the sky, of which it is trained to
+// state 1. It gives that the range of the roofs around it.
 constexpr double kSkyError = 0.5;
 
 /// The views of the first pass that were used last.

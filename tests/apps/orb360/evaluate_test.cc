@@ -147,10 +147,12 @@ TEST_F(EvaluateTest, DepthIsComparedWhereBothFoldersHaveIt) {
   EXPECT_EQ(depth["images"], 1);
   EXPECT_NEAR(depth["all"]["rmse"], 3.0, 1e-6);
   EXPECT_NEAR(depth["all"]["abs_rel"], 0.2, 1e-6);
+  EXPECT_EQ(depth["by_image"][0]["name"], "000000.png");
+  EXPECT_NEAR(depth["by_image"][0]["abs_rel"], 0.2, 1e-6);
   EXPECT_NEAR(depth["by_range_m"][2]["mae"], 3.0, 1e-6);
   EXPECT_TRUE(depth["by_range_m"][0]["mae"].is_null());
   EXPECT_THAT(RunOrb360({"evaluate", folder_.path(), run}).out,
-              AllOf(HasSubstr("depth, 1 images"), HasSubstr("10 to 20 m"),
+              AllOf(HasSubstr("depth, 1 images"), HasSubstr("10 to 20 m"), HasSubstr("000000.png"),
                     Not(HasSubstr("most confident"))));
 
   EXPECT_FALSE(depth.contains("calibration"));

@@ -28,7 +28,9 @@ TEST(CompareDepthFolders, PairsImagesByNameAndAddsThemUp) {
   WriteDepthImage(estimate / "7.png", Constant(50));
   WriteText(estimate / "notes.txt", "");
   const DepthFolderErrors result = CompareDepthFolders(truth.path(), estimate.path());
-  EXPECT_EQ(result.images, 2);
+  ASSERT_EQ(result.images.size(), 2U);
+  EXPECT_EQ(result.images[1].name, "2.png");
+  EXPECT_NEAR(result.images[1].total.Mae(), 3.0, 1e-9);
   EXPECT_NEAR(result.errors.total.Mae(), 2.0, 1e-9);
 }
 

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/pipeline/view_depth.h"
 #include "tests/slam/pipeline/propagation_network.h"
 #include <orb360/nn/base/check.h>
 
@@ -37,6 +38,19 @@ TEST_F(DenseMapperTest, AfterAFailureThereIsNoDepth) {
   ASSERT_NE(mapper.failure(), nullptr);
   EXPECT_THROW(std::rethrow_exception(mapper.failure()), UserError);
   EXPECT_EQ(mapper.ComputeDepth({}, {}, {}).measured, 0);
+}
+
+TEST(ViewDepthOptions, HaveTheHeightOfTheCameraInTheUnitOfAResultWhoseScaleIsKnown) {
+  MetricScale scale;
+  scale.state = ScaleState::kRough;
+  scale.value = 0.5;
+  scale.camera_height = 1.7;
+  EXPECT_DOUBLE_EQ(ViewDepthOptionsOf({}, scale).camera_height, 3.4);
+  EXPECT_FALSE(ViewDepthOptionsOf({}, scale).baselines.empty());
+  EXPECT_TRUE(ViewDepthOptionsOf({.stereo = false}, scale).baselines.empty());
+  scale.state = ScaleState::kUnknown;
+  EXPECT_EQ(ViewDepthOptionsOf({}, scale).camera_height, 0);
+  EXPECT_EQ(ViewDepthOptionsOf({}, {}).camera_height, 0);
 }
 
 TEST_F(DenseMapperTest, TellsTheGroundFromTenAgreeingKeyframesOnly) {
