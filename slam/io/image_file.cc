@@ -181,11 +181,10 @@ LoadedImage LoadImage(const std::filesystem::path& path) {
   return {image, {}};
 }
 
-std::string EncodeImage(const std::string& extension, const cv::Mat& image) {
-  constexpr int kJpegQuality = 95;
+std::string EncodeImage(const std::string& extension, const cv::Mat& image, int jpeg_quality) {
   std::vector<unsigned char> bytes;
   const bool is_encoded =
-      cv::imencode(extension, image, bytes, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+      cv::imencode(extension, image, bytes, {cv::IMWRITE_JPEG_QUALITY, jpeg_quality});
   ORB360_CHECK(is_encoded, extension, image.type());
   return {bytes.begin(), bytes.end()};
 }

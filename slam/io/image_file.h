@@ -29,9 +29,9 @@ struct LoadedImage {
 /// that is empty, cut off or of an unknown kind gives a problem, not an exception.
 LoadedImage LoadImage(const std::filesystem::path& path);
 
-/// Encodes an image of 8 or 16 bits per channel in the format of an extension such as ".jpg"; JPEG
-/// with quality 95. Contract: OpenCV writes this format.
-std::string EncodeImage(const std::string& extension, const cv::Mat& image);
+/// Encodes an image of 8 or 16 bits per channel in the format of an extension such as ".jpg". The
+/// quality is that of JPEG, 0 to 100. Contract: OpenCV writes this format.
+std::string EncodeImage(const std::string& extension, const cv::Mat& image, int jpeg_quality = 95);
 
 /// Writes an image of 8 or 16 bits per channel atomically, encoded by the name's extension
 /// (EncodeImage). Throws UserError if the file cannot be written.

@@ -8,7 +8,7 @@
 namespace orb360 {
 namespace {
 
-constexpr int kMapInterval = 20;  // least time from copy to copy of the map, in terms of its own
+constexpr int kMapInterval = 100;  // least time from copy to copy of the map, in terms of its own
 
 /// Each corner once, although it is a feature of several levels of the pyramid.
 std::vector<LiveSnapshot::Feature> CopyFeatures(const PresentState& state) {

@@ -18,7 +18,7 @@ namespace orb360 {
 /// Stands between a run, on its own thread, and the pages that show it, on that of a server. A page
 /// asks for what it shows; the run copies its state when one has asked since the last copy, and
 /// never waits for a page: copies are made into values for a page outside the mutex. Copies of the
-/// map, which grow with it, take at most a twentieth of the run's time. What happens between two
+/// map, which grow with it, take at most a hundredth of the run's time. What happens between two
 /// copies is not shown.
 class LiveFeed {
  public:

@@ -14,7 +14,9 @@ namespace orb360 {
 namespace {
 
 constexpr int kMinShared = 15;   // landmarks, as in the finished keyframe graph
-constexpr int kMaxWidth = 1280;  // of images for the page, pixels
+// Of images for the page, which are encoded on a processor that the run needs:
+constexpr int kMaxWidth = 1280;  // pixels
+constexpr int kJpegQuality = 80;
 
 const char* NameOf(TrackingState state) {
   switch (state) {
@@ -42,10 +44,10 @@ nlohmann::json PoseJson(const Rigid3& world_from_camera) {
 
 std::string EncodeForPage(const cv::Mat& image) {
   if (image.empty()) return {};
-  if (image.cols <= kMaxWidth) return EncodeImage(".jpg", image);
+  if (image.cols <= kMaxWidth) return EncodeImage(".jpg", image, kJpegQuality);
   cv::Mat small;
   cv::resize(image, small, {kMaxWidth, image.rows * kMaxWidth / image.cols}, 0, 0, cv::INTER_AREA);
-  return EncodeImage(".jpg", small);
+  return EncodeImage(".jpg", small, kJpegQuality);
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ function millisecondsOf(folder) {
 async function watch(url) {
   let revision = 0;
   for (;;) {
+    const begin = Date.now();
     try {
       const state = await (await fetch(`${url}live.json?since=${revision}`)).json();
       if (state.revision > revision) {
@@ -34,7 +35,7 @@ async function watch(url) {
     } catch {
       return;
     }
-    await new Promise((resolve) => setTimeout(resolve, POLL_MS));
+    await new Promise((resolve) => setTimeout(resolve, Math.max(20, POLL_MS - (Date.now() - begin))));
   }
 }
 

@@ -5,6 +5,7 @@ import { load } from "./modules.mjs";
 
 const {
   format,
+  adjacentNodes,
   chooseNodes,
   THREE,
   ViewRange,
@@ -19,6 +20,7 @@ const {
   timeout,
 } = await load(`
   export * as format from "./src/format";
+  export { adjacentNodes } from "./src/adjacent_nodes";
   export * as THREE from "three";
   export { chooseNodes } from "./src/node_choice";
   export { ViewRange } from "./src/view_range";
@@ -177,6 +179,24 @@ test("the cloud of another run is chosen as it lies in the world", () => {
   };
   const shown = chooseNodes(nodes, { ...view, camera: cloud.inCloud(camera) }).shown;
   assert.deepEqual(shown, choose(nodes, [-5, 50, 50], [50, 50, 50]).shown);
+});
+
+test("one request reads the wanted nodes that lie side by side in the file, up to 512 KiB", () => {
+  const bytes = 12;
+  let offset = 88;
+  const node = (pointCount) => {
+    const made = { offset, pointCount };
+    offset += bytes * pointCount;
+    return made;
+  };
+  // The node 4 has no points; 8 to 10 have 240 KB each.
+  const nodes = [10, 20, 30, 40, 0, 50, 60, 70, 20_000, 20_000, 20_000].map(node);
+  assert.deepEqual(adjacentNodes(nodes, 2, [1, 2, 3, 6]), [1, 2, 3]);
+  assert.deepEqual(adjacentNodes(nodes, 0, [0]), [0], "0 only is wanted");
+  assert.deepEqual(adjacentNodes(nodes, 0, [0, 2, 3]), [0], "1 is not wanted");
+  assert.deepEqual(adjacentNodes(nodes, 4, [3, 4, 5]), [4], "there is nothing to read");
+  assert.deepEqual(adjacentNodes(nodes, 3, [3, 4, 5]), [3, 5], "nothing lies between");
+  assert.deepEqual(adjacentNodes(nodes, 8, [10, 9, 8]), [8, 9]);
 });
 
 test("nodes that the connection failed are asked for again, ever later", (t) => {

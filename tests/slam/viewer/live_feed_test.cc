@@ -101,7 +101,7 @@ TEST_F(LiveFeedTest, CopiesTheMapOnlyForThosePagesThatAsk) {
   EXPECT_EQ(json["frame"], 8) << "later frames were not asked for";
 }
 
-TEST_F(LiveFeedTest, CopiesTheMapInATwentiethOfTheTime) {
+TEST_F(LiveFeedTest, CopiesTheMapInAHundredthOfTheTime) {
   per_look_ = std::chrono::seconds(1);  // A copy takes one second.
   Map map;
   PresentState state = State();
@@ -114,7 +114,7 @@ TEST_F(LiveFeedTest, CopiesTheMapInATwentiethOfTheTime) {
     EXPECT_EQ(json["frame"], num_frames) << "frames are shown although the map is not copied";
     revision = json["revision"];
   }
-  EXPECT_EQ(num_frames, 3 * 20 + 1);
+  EXPECT_EQ(num_frames, 3 * 100 + 1);
 }
 
 TEST_F(LiveFeedTest, IsFinishingWhenNoFurtherFrameComes) {

@@ -18,6 +18,8 @@ import { Viewport } from "./viewport";
 import { viewportKeys } from "./viewport_keys";
 
 const POLL_MS = 100;
+/** Between two requests, for the page to draw. */
+const MIN_WAIT_MS = 20;
 /** How far behind the camera the view follows it, units of the world. */
 const BEHIND = 22;
 const ABOVE = 14;
@@ -140,6 +142,7 @@ export class LiveViewer {
   }
 
   private async poll(): Promise<void> {
+    const begin = performance.now();
     try {
       await this.update(await liveState(this.revision));
       // What an action has brought stays until the next.
@@ -155,7 +158,10 @@ export class LiveViewer {
         for (const button of this.buttons) button.disabled = true;
       }
     }
-    setTimeout(() => void this.poll(), this.hasEnded ? 5 * POLL_MS : POLL_MS);
+    // What the next answer shows was copied soon after this one was asked for.
+    const interval = this.hasEnded ? 5 * POLL_MS : POLL_MS;
+    const wait = Math.max(MIN_WAIT_MS, interval - (performance.now() - begin));
+    setTimeout(() => void this.poll(), wait);
   }
 
   private async update(state: LiveState): Promise<void> {

@@ -12,6 +12,9 @@ export class LiveStrip {
     "aria-label": "Present image with its features: those that agree with the map are filled",
   });
   readonly element = h("div", { class: "live-image", hidden: true }, this.canvas);
+  // Drawn by the processor: a graphics card takes a second for thousands of small circles where it is
+  // emulated, and the page would stand still meanwhile.
+  private readonly context = this.canvas.getContext("2d", { willReadFrequently: true })!;
   /** Index of the frame that is shown; -1: none. */
   frame = -1;
   /** Matched features in words. */
@@ -27,7 +30,7 @@ export class LiveStrip {
     this.matched = `${grouped(numMatched)} of ${grouped(features.length / 3)}`;
     this.canvas.width = image.width;
     this.canvas.height = image.height;
-    this.canvas.getContext("2d")!.drawImage(image, 0, 0);
+    this.context.drawImage(image, 0, 0);
     image.close();
     if (this.element.hidden) {
       this.element.hidden = false;
@@ -37,8 +40,8 @@ export class LiveStrip {
   }
 
   private drawFeatures(features: Float32Array): void {
-    const context = this.canvas.getContext("2d")!;
-    const { width, height } = this.canvas;
+    const { canvas, context } = this;
+    const { width, height } = canvas;
     const radius = Math.max(2, width / 400);
     for (let i = 0; i < features.length; i += 3) {
       const isMatched = features[i + 2] === 1;

@@ -9,6 +9,7 @@ import {
   type OctreeHeader,
   type OctreeNode,
 } from "./octree_file";
+import { adjacentNodes } from "./adjacent_nodes";
 import { FailedNodes } from "./failed_nodes";
 import { chooseNodes, type Choice } from "./node_choice";
 import { makePointMaterial, makeVisibleTexture, VISIBLE_WIDTH } from "./point_material";
@@ -17,7 +18,7 @@ import { SourceError } from "./source";
 /** Where the bytes of an octree come from (Source). */
 export type OctreeSource = (begin: number, end: number) => Promise<ArrayBuffer>;
 
-/** Requests at once: as many as browsers make to a server. */
+/** Requests at once, each of adjacent nodes: as many as browsers make to a server. */
 const MAX_REQUESTS = 6;
 /** Loaded points that are kept, in terms of those that may be shown. */
 const KEPT_RATIO = 2;
@@ -42,6 +43,7 @@ export class PointCloud {
   private shown: number[] = [];
   private wanted: number[] = [];
   private readonly loading = new Set<number>();
+  private numRequests = 0;
   private readonly failed: FailedNodes;
   private numLoaded = 0;
   private pass = 0;
@@ -71,7 +73,7 @@ export class PointCloud {
     const header = readHeader(await source(0, HEADER_BYTES));
     const index = await source(header.indexOffset, header.fileSize);
     const cloud = new PointCloud(source, header, readIndex(index, header), onChange, onError);
-    await cloud.load(0);
+    cloud.add(0, readPoints(await cloud.bytesOf([0]), cloud.nodes[0]));
     return cloud;
   }
 
@@ -140,31 +142,53 @@ export class PointCloud {
   }
 
   private requestNext(): void {
-    while (this.loading.size < MAX_REQUESTS && this.wanted.length > 0) {
-      const place = this.wanted.shift()!;
-      void this.load(place).catch((error: Error) => {
-        this.failed.add(place, error instanceof SourceError && error.isConnection);
-        this.onError(error);
-      });
+    while (this.numRequests < MAX_REQUESTS && this.wanted.length > 0) {
+      const places = adjacentNodes(this.nodes, this.wanted[0], this.wanted);
+      this.wanted = this.wanted.filter((place) => !places.includes(place));
+      void this.load(places);
     }
   }
 
-  private async load(place: number): Promise<void> {
-    const node = this.nodes[place];
-    this.loading.add(place);
+  /** The bytes of nodes that lie one after the other in the file. */
+  private async bytesOf(places: readonly number[]): Promise<ArrayBuffer> {
+    const last = this.nodes[places[places.length - 1]];
+    const [begin, end] = [this.nodes[places[0]].offset, last.offset + nodeBytes(last)];
+    return end > begin ? this.source(begin, end) : new ArrayBuffer(0);
+  }
+
+  private async load(places: readonly number[]): Promise<void> {
+    for (const place of places) this.loading.add(place);
+    ++this.numRequests;
     try {
-      const bytes =
-        node.pointCount > 0
-          ? await this.source(node.offset, node.offset + nodeBytes(node))
-          : new ArrayBuffer(0);
-      this.add(place, readPoints(bytes, node));
-      this.failed.loaded(place);
+      const bytes = await this.bytesOf(places);
+      const { offset } = this.nodes[places[0]];
+      for (const place of places) this.read(place, bytes, offset);
+    } catch (error) {
+      for (const place of places) this.fail(place, error as Error);
     } finally {
-      this.loading.delete(place);
+      --this.numRequests;
+      for (const place of places) this.loading.delete(place);
     }
     this.dropUnused();
     this.onChange();
     this.requestNext();
+  }
+
+  /** Adds a node from `bytes`, which begin at `offset` in the file. */
+  private read(place: number, bytes: ArrayBuffer, offset: number): void {
+    const node = this.nodes[place];
+    const begin = node.offset - offset;
+    try {
+      this.add(place, readPoints(bytes.slice(begin, begin + nodeBytes(node)), node));
+      this.failed.loaded(place);
+    } catch (error) {
+      this.fail(place, error as Error);
+    }
+  }
+
+  private fail(place: number, error: Error): void {
+    this.failed.add(place, error instanceof SourceError && error.isConnection);
+    this.onError(error);
   }
 
   private add(place: number, points: NodePoints): void {
