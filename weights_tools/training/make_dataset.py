@@ -125,6 +125,8 @@ def main() -> int:
                         help="folders of tracks of supertuxkart-data")  # fmt: skip
     parser.add_argument("--maps", type=Path, nargs="*", default=[],
                         help="maps (.bsp) of Quake 3 in the game's folder")  # fmt: skip
+    parser.add_argument("--walks", type=int, nargs=2, default=(0, 1), metavar=("FIRST", "END"),
+                        help="through each of these maps (default: one)")  # fmt: skip
     parser.add_argument("--interiors", type=int, nargs=2, default=(0, 0), metavar=("FIRST", "END"))
     parser.add_argument("--stereo-worlds", action="store_true",
                         help="SLAM also tracks circuits, karts, maps and interiors")  # fmt: skip
@@ -139,7 +141,8 @@ def main() -> int:
             require_for_training(path.stem)
     specs = [circuit_spec(mesh, frames, width) for mesh in arguments.circuits]
     specs += [kart_spec(track, frames, width) for track in arguments.karts]
-    specs += [map_spec(file, 0, frames, width) for file in arguments.maps]
+    walks = range(*arguments.walks)
+    specs += [map_spec(file, walk, frames, width) for file in arguments.maps for walk in walks]
     specs += [interior_spec(seed, frames, width) for seed in range(*arguments.interiors)]
     if arguments.stereo_worlds:
         specs += [tracked(spec, arguments.tracked_frames, SPEED) for spec in specs]
