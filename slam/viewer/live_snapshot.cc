@@ -13,7 +13,7 @@
 namespace orb360 {
 namespace {
 
-constexpr int kMinShared = 15;   // landmarks, as in the finished keyframe graph
+constexpr int kMinShared = 15;  // landmarks, as in the finished keyframe graph
 // Of images for the page, which are encoded on a processor that the run needs:
 constexpr int kMaxWidth = 1280;  // pixels
 constexpr int kJpegQuality = 80;
