@@ -182,7 +182,7 @@ orb360::RefinedDisparities MatchByOpenCv(const cv::Mat& first, const cv::Mat& se
 }
 
 void Measure(const fs::path& sequence, const std::optional<fs::path>& images, bool uses_opencv,
-             const std::vector<int>& gaps) {
+             const std::optional<orb360::PlaneHypothesis>& ground, const std::vector<int>& gaps) {
   const auto poses = orb360::ReadTrajectory(sequence / "groundtruth.txt");
   const auto count = static_cast<int>(poses.size());
   if (images) fs::create_directories(*images);
@@ -205,7 +205,7 @@ void Measure(const fs::path& sequence, const std::optional<fs::path>& images, bo
     }
     if (static_cast<int>(sources.size()) < options.fusion.min_support) continue;
     const auto start = std::chrono::steady_clock::now();
-    const orb360::InverseRanges fused = MatchSpheres(reference, sources, options, 2);
+    const orb360::InverseRanges fused = MatchSpheres(reference, sources, options, 2, ground);
     totals.milliseconds.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
             .count());
@@ -232,9 +232,12 @@ void Measure(const fs::path& sequence, const std::optional<fs::path>& images, bo
 }
 
 constexpr char kUsage[] =
-    "usage: stereo_accuracy SEQUENCE [--images DIR] [--opencv] [--avx2] [GAP...]\n"
-    "SEQUENCE: folder with rgb/, depth/ and groundtruth.txt; --opencv: OpenCV's matcher; --avx2:\n"
-    "without AVX-512;\n"
+    "usage: stereo_accuracy SEQUENCE [--images DIR] [--ground HEIGHT] [--opencv] [--avx2] "
+    "[GAP...]\n"
+    "SEQUENCE: folder with rgb/, depth/ and groundtruth.txt, the world's z axis up; --ground: "
+    "level\n"
+    "ground HEIGHT below the camera is tried as well; --opencv: OpenCV's matcher; --avx2: without\n"
+    "AVX-512;\n"
     "GAP: frames from a reference view to a source view, two or more, not 0 [1 -1 2 -2]\n";
 
 }  // namespace
@@ -242,12 +245,19 @@ constexpr char kUsage[] =
 int main(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   std::optional<fs::path> images;
+  std::optional<orb360::PlaneHypothesis> ground;
   bool uses_opencv = false;
   std::vector<int> gaps;
   bool is_valid = !arguments.empty();
   for (size_t i = 1; i < arguments.size(); ++i) {
     if (arguments[i] == "--images" && i + 1 < arguments.size()) {
       images = arguments[++i];
+      continue;
+    }
+    if (arguments[i] == "--ground" && i + 1 < arguments.size()) {
+      const double height = std::atof(arguments[++i].c_str());
+      ground = {Eigen::Vector3d::UnitZ(), height};
+      is_valid = is_valid && height > 0;
       continue;
     }
     if (arguments[i] == "--opencv") {
@@ -268,7 +278,7 @@ int main(int argc, char** argv) {
     return wants_help ? 0 : 2;
   }
   try {
-    Measure(arguments[0], images, uses_opencv, gaps);
+    Measure(arguments[0], images, uses_opencv, ground, gaps);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "stereo_accuracy: %s\n", error.what());
     return 1;

@@ -56,9 +56,13 @@ std::map<int, double> PathLengths(std::span<const DenseView> views) {
 
 /// The first pass of ComputeDepth.
 ViewDepthReport MeasureViews(std::span<const DenseView> views, const NeighbourFinder& neighbours_of,
-                             const LandmarkProjector& landmarks_of, const ViewDepthOptions& options,
-                             const ImageStore& images, DepthCompleter* completer, int num_threads,
-                             const DepthMapStore& store, const ViewProgress& progress) {
+                             const LandmarkProjector& landmarks_of,
+                             const std::optional<Eigen::Vector3d>& up,
+                             const ViewDepthOptions& options, const ImageStore& images,
+                             DepthCompleter* completer, int num_threads, const DepthMapStore& store,
+                             const ViewProgress& progress) {
+  std::optional<PlaneHypothesis> ground;
+  if (up && options.camera_height > 0) ground = {*up, options.camera_height};
   GrayImages gray(images);
   const auto stereo_view = [&](const DenseView& view) {
     return StereoView{gray.Get(view.frame_index), view.world_from_camera};
@@ -96,7 +100,7 @@ ViewDepthReport MeasureViews(std::span<const DenseView> views, const NeighbourFi
       if (static_cast<int>(sources.size()) < options.stereo.fusion.min_support) {
         ++report.without_sources;
       } else {
-        seen = MatchSpheres(stereo_view(view), sources, options.stereo, num_threads);
+        seen = MatchSpheres(stereo_view(view), sources, options.stereo, num_threads, ground);
         is_measured = SampleSquares(seen, options.sparse_spacing, options.min_fraction,
                                     options.sparse, &sparse);
         ++(is_measured ? report.measured : report.unseen);
@@ -143,7 +147,7 @@ ViewDepthReport ComputeDepth(std::span<const DenseView> views, const NeighbourFi
                              const ViewDepthOptions& options, const ImageStore& images,
                              DepthCompleter* completer, int num_threads, const DepthMapStore& first,
                              const DepthMapStore& store, const ViewDepthCallbacks& callbacks) {
-  ViewDepthReport report = MeasureViews(views, neighbours_of, landmarks_of, options, images,
+  ViewDepthReport report = MeasureViews(views, neighbours_of, landmarks_of, up, options, images,
                                         completer, num_threads, first, callbacks.progress);
   report.with_moving_objects =
       CompleteViews(views, neighbours_of, landmarks_of, up, options, images, completer, num_threads,

@@ -66,6 +66,25 @@ cv::Mat IsReliable(const cv::Mat& image, const cv::Mat& cost,
   return (mean_cost <= options.max_cost) & (mean_gradient >= options.min_gradient);
 }
 
+// Takes the disparities that are found around a hypothesis where they cost less.
+void TryHypothesis(const cv::Mat& first, const cv::Mat& second, const cv::Mat& hypothesis,
+                   const SemiGlobalMatchingOptions& options, MatchedLevel* level) {
+  const cv::Size window(9, 9);
+  const cv::Mat is_given = hypothesis >= 0;
+  cv::Mat surface = level->disparity.clone();
+  hypothesis.copyTo(surface, is_given);
+  const MatchedLevel other = MatchLevel(first, second, surface, options);
+  cv::Mat cost;
+  cv::Mat other_cost;
+  cv::boxFilter(level->found.cost, cost, CV_32F, window);
+  cv::boxFilter(other.found.cost, other_cost, CV_32F, window);
+  const cv::Mat is_better = is_given & (other_cost < cost);
+  other.disparity.copyTo(level->disparity, is_better);
+  other.found.cost.copyTo(level->found.cost, is_better);
+  other.found.uniqueness.copyTo(level->found.uniqueness, is_better);
+  other.found.difference.copyTo(level->found.difference, is_better);
+}
+
 // The disparities of a finer level, known where all that are interpolated are known.
 cv::Mat Interpolate(const cv::Mat& coarse, const cv::Size& size) {
   const double ratio = static_cast<double>(size.width) / coarse.cols;
@@ -81,7 +100,7 @@ cv::Mat Interpolate(const cv::Mat& coarse, const cv::Size& size) {
 }  // namespace
 
 cv::Mat MatchSemiGlobally(const cv::Mat& first, const cv::Mat& second,
-                          const SemiGlobalMatchingOptions& options) {
+                          const SemiGlobalMatchingOptions& options, const cv::Mat& hypothesis) {
   ORB360_CHECK(options.num_skipped_levels >= 0, options.num_skipped_levels);
   ORB360_CHECK(first.cols >= kCoarsestStereoWidth && first.cols % kCoarsestStereoWidth == 0 &&
                    std::has_single_bit(static_cast<unsigned>(first.cols)) &&
@@ -102,12 +121,21 @@ cv::Mat MatchSemiGlobally(const cv::Mat& first, const cv::Mat& second,
     const auto& [image1, image2] = pyramid[i];
     level = MatchLevel(image1, image2, ExpectedSurface(level.disparity, image1.size()), options);
   }
+  if (!hypothesis.empty()) {
+    const auto& [image1, image2] = pyramid[finest];
+    ORB360_CHECK(hypothesis.size() == image1.size(), hypothesis.size(), image1.size());
+    TryHypothesis(image1, image2, hypothesis, options, &level);
+  }
   const cv::Mat is_seen = (level.found.difference <= options.max_difference) &
                           (level.found.uniqueness >= options.min_uniqueness);
   level.disparity.setTo(-1.0f,
                         ~(is_seen & IsReliable(pyramid[finest][0], level.found.cost, options)));
   RemoveSpeckles(options.speckles, &level.disparity);
   return finest == 0 ? level.disparity : Interpolate(level.disparity, first.size());
+}
+
+int SearchedWidth(int width, const SemiGlobalMatchingOptions& options) {
+  return std::max(width >> options.num_skipped_levels, kCoarsestStereoWidth);
 }
 
 }  // namespace orb360

@@ -38,8 +38,17 @@ inline constexpr int kCoarsestStereoWidth = 64;
 /// follow the surface (Scharstein, Taniai, Sinha, 3DV 2017): on the ground below a camera the
 /// disparity changes by more than a pixel from pixel to pixel.
 ///
-/// Throws ContractError unless the width is kCoarsestStereoWidth times a power of two.
+/// `hypothesis` (may be empty): the disparities of a surface that may be there, CV_32F; negative
+/// where there is none. The finest level is searched around it as well, and what costs less is
+/// taken. Levels above may have missed it, where its texture is too fine for them, and then a
+/// regular texture matches at a wrong place.
+///
+/// Throws ContractError unless the width is kCoarsestStereoWidth times a power of two and the
+/// hypothesis as large as the level that is searched last, SearchedWidth.
 cv::Mat MatchSemiGlobally(const cv::Mat& first, const cv::Mat& second,
-                          const SemiGlobalMatchingOptions& options);
+                          const SemiGlobalMatchingOptions& options, const cv::Mat& hypothesis = {});
+
+/// Width of the finest level that is searched for images of this width, pixels.
+int SearchedWidth(int width, const SemiGlobalMatchingOptions& options);
 
 }  // namespace orb360

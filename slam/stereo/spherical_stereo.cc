@@ -27,7 +27,8 @@ void CheckViews(const StereoView& reference, const StereoView& source) {
 }  // namespace
 
 InverseRanges MatchSphere(const StereoView& reference, const StereoView& source,
-                          const SphericalStereoOptions& options) {
+                          const SphericalStereoOptions& options,
+                          const std::optional<PlaneHypothesis>& plane) {
   CheckViews(reference, source);
   const Eigen::Vector3d baseline =
       source.world_from_camera.translation - reference.world_from_camera.translation;
@@ -40,22 +41,31 @@ InverseRanges MatchSphere(const StereoView& reference, const StereoView& source,
   const int width = StereoWidth(reference.gray.cols);
   const cv::Mat first = RectifySphere(reference.gray, reference_axes, width);
   const cv::Mat second = RectifySphere(source.gray, source_axes, width);
-  const RefinedDisparities disparities =
-      options.matcher
-          ? options.matcher(first, second)
-          : RefineDisparities(first, second, MatchSemiGlobally(first, second, options.matching),
-                              options.refinement);
+  RefinedDisparities disparities;
+  if (options.matcher) {
+    disparities = options.matcher(first, second);
+  } else {
+    cv::Mat hypothesis;
+    if (plane) {
+      hypothesis = PlaneDisparities({axes.transpose() * plane->normal, plane->distance}, length,
+                                    SearchedWidth(width, options.matching));
+    }
+    disparities = RefineDisparities(first, second,
+                                    MatchSemiGlobally(first, second, options.matching, hypothesis),
+                                    options.refinement);
+  }
   return UnrectifySphere(TriangulateDisparities(disparities, length, options.triangulation),
                          reference_axes, reference.gray.size());
 }
 
 InverseRanges MatchSpheres(const StereoView& reference, std::span<const StereoView> sources,
-                           const SphericalStereoOptions& options, int num_threads) {
+                           const SphericalStereoOptions& options, int num_threads,
+                           const std::optional<PlaneHypothesis>& plane) {
   for (const StereoView& source : sources) CheckViews(reference, source);
   std::vector<InverseRanges> measured(sources.size());
 #pragma omp parallel for num_threads(num_threads) schedule(dynamic)
   for (size_t i = 0; i < sources.size(); ++i) {
-    measured[i] = MatchSphere(reference, sources[i], options);
+    measured[i] = MatchSphere(reference, sources[i], options, plane);
   }
   return FuseInverseRanges(measured, options.fusion, num_threads);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 
 #include <opencv2/core.hpp>
@@ -8,6 +9,7 @@
 #include "slam/stereo/disparity_refinement.h"
 #include "slam/stereo/disparity_triangulation.h"
 #include "slam/stereo/inverse_ranges.h"
+#include "slam/stereo/plane_disparities.h"
 #include "slam/stereo/semi_global_matching.h"
 #include <orb360/slam/geometry/rigid3.h>
 
@@ -34,13 +36,17 @@ struct SphericalStereoOptions {
 
 /// Measures the inverse ranges of `reference` from another view. Both are matched at the resolution
 /// that is nearest to theirs and that MatchSemiGlobally takes. Throws ContractError unless both are
-/// as large and were taken from different places.
+/// as large and were taken from different places. `plane`: one that the reference may see, such as
+/// level ground below it, normal in the world's frame; it is tried beside what the images say by
+/// themselves.
 InverseRanges MatchSphere(const StereoView& reference, const StereoView& source,
-                          const SphericalStereoOptions& options);
+                          const SphericalStereoOptions& options,
+                          const std::optional<PlaneHypothesis>& plane = {});
 
 /// Measures the inverse ranges of `reference` from several views and joins them
 /// (FuseInverseRanges). The result does not depend on the number of threads.
 InverseRanges MatchSpheres(const StereoView& reference, std::span<const StereoView> sources,
-                           const SphericalStereoOptions& options, int num_threads = 1);
+                           const SphericalStereoOptions& options, int num_threads = 1,
+                           const std::optional<PlaneHypothesis>& plane = {});
 
 }  // namespace orb360

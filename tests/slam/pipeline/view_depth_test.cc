@@ -1,6 +1,7 @@
 #include "slam/pipeline/view_depth.h"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -66,12 +67,13 @@ class ComputeDepthTest : public testing::Test {
 
   ViewDepthReport Compute(const std::vector<DenseView>& views,
                           const ViewDepthOptions& options = kAll,
-                          const ViewDepthCallbacks& callbacks = {}) {
+                          const ViewDepthCallbacks& callbacks = {},
+                          const std::optional<Eigen::Vector3d>& up = {}) {
     for (const DenseView& view : views) Show(view.frame_index, view.world_from_camera);
     return ComputeDepth(
         views, [&views](size_t view) { return views[view].neighbours; },
-        [this](const DenseView&) { return landmarks_; }, std::nullopt, options, images_,
-        &completer_, 2, first_, store_, callbacks);
+        [this](const DenseView&) { return landmarks_; }, up, options, images_, &completer_, 2,
+        first_, store_, callbacks);
   }
 
   // Stores an image of the room.
@@ -120,6 +122,31 @@ TEST_F(ComputeDepthTest, RangesAreMeasuredByStereo) {
   EXPECT_EQ(Compute(views).measured, 4);
   for (const DenseView& view : views) EXPECT_LT(MedianError(view), 0.05) << view.frame_index;
   EXPECT_EQ(store_.Get(0).color.size(), cv::Size(256, 128));
+}
+
+TEST_F(ComputeDepthTest, MeasuresMoreOfLevelGroundAtAKnownHeightWhereSourcesAreFar) {
+  const std::vector<DenseView> views = ViewsAt({0, 2.7, -2.7, 3.1});
+  ViewDepthOptions options{.spacing = 0, .baselines = {0.9, 1.0}, .keeps_completed = false};
+  // Pixels of the floor of the first view with the right range.
+  const auto num_right = [&](double camera_height) {
+    options.camera_height = camera_height;
+    Compute(views, options, {}, Eigen::Vector3d::UnitZ());
+    const cv::Mat range = store_.Get(0).range;
+    int count = 0;
+    for (int row = range.rows / 2; row < range.rows; ++row) {
+      for (int column = 0; column < range.cols; ++column) {
+        const Eigen::Vector3d ray =
+            views[0].world_from_camera.rotation * kCamera.Bearing({column + 0.5, row + 0.5});
+        const double truth = kRoom.Range(Eigen::Vector3d::Zero(), ray);
+        const bool is_floor = std::abs(truth * ray.z() + 2.0) < 1e-6;
+        count += is_floor && std::abs(range.at<float>(row, column) / truth - 1) < 0.05;
+      }
+    }
+    return count;
+  };
+  const int unknown = num_right(0);
+  const int known = num_right(2.0);
+  EXPECT_GT(known, 1.3 * unknown);
 }
 
 TEST_F(ComputeDepthTest, ShowsWhatItStoresOfEachView) {

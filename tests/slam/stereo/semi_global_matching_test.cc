@@ -177,6 +177,65 @@ TEST(MatchSemiGlobally, KnowsLittleOfNoise) {
             0.2 * kHeight * kWidth);
 }
 
+// Fine texture, of which a level of a quarter of the width sees nothing, with one disparity, and
+// large blots on it, which it sees, with another one, as of a shadow or a reflection.
+Pair MakeBlotted(const std::function<double(double, double)>& disparity,
+                 const std::function<double(double, double)>& disparity_of_blots) {
+  Pair pair = MakePair(disparity);
+  Pair blots = MakePair(disparity_of_blots);
+  const auto blur = [](const cv::Mat& image, double sigma) {
+    cv::Mat blurred;
+    image.convertTo(blurred, CV_32F);
+    cv::GaussianBlur(blurred, blurred, {0, 0}, sigma);
+    return blurred;
+  };
+  const auto join = [&](cv::Mat* image, const cv::Mat& blot) {
+    cv::Mat fine;
+    image->convertTo(fine, CV_32F);
+    fine = 128 + (fine - blur(*image, 1.5)) + 3 * (blur(blot, 8) - 128);
+    fine.convertTo(*image, CV_8U);
+  };
+  join(&pair.first, blots.first);
+  join(&pair.second, blots.second);
+  return pair;
+}
+
+cv::Mat HypothesisOf(const std::function<double(double, double)>& disparity) {
+  cv::Mat hypothesis(kHeight / 2, kWidth / 2, CV_32F);
+  for (int y = 0; y < hypothesis.rows; ++y) {
+    for (int x = 0; x < hypothesis.cols; ++x) {
+      hypothesis.at<float>(y, x) = static_cast<float>(disparity(2 * x + 0.5, 2 * y + 0.5) / 2);
+    }
+  }
+  return hypothesis;
+}
+
+TEST(MatchSemiGlobally, FindsBesideAHypothesisWhatCoarserLevelsMiss) {
+  const auto disparity = [](double x, double) { return 50 + 0.1 * x; };
+  const Pair pair = MakeBlotted(disparity, [](double, double) { return 5.0; });
+  const Accuracy without = Compare(MatchSemiGlobally(pair.first, pair.second, kOptions), disparity);
+  // The hypothesis need not be exact.
+  const cv::Mat hypothesis = HypothesisOf([&](double x, double y) { return disparity(x, y) + 3; });
+  const Accuracy with =
+      Compare(MatchSemiGlobally(pair.first, pair.second, kOptions, hypothesis), disparity);
+  EXPECT_LT(without.right * without.known, 0.1);
+  EXPECT_GT(with.right, 0.95);
+  EXPECT_GT(with.known, 0.8);
+}
+
+TEST(MatchSemiGlobally, KeepsWhatItFoundWhereAHypothesisIsWrong) {
+  const auto disparity = [](double x, double) { return 20 + 0.1 * x; };
+  const Pair pair = MakePair(disparity);
+  const cv::Mat hypothesis = HypothesisOf([](double, double y) { return y < 200 ? 90.0 : -1.0; });
+  const cv::Mat without = MatchSemiGlobally(pair.first, pair.second, kOptions);
+  const cv::Mat with = MatchSemiGlobally(pair.first, pair.second, kOptions, hypothesis);
+  EXPECT_GT(Compare(with, disparity).known, Compare(without, disparity).known - 0.02);
+  EXPECT_GT(Compare(with, disparity).right, 0.97);
+  // Below it nothing changes.
+  const cv::Mat unlike = (with != without).mul(cv::Mat((without >= 0) & (with >= 0)));
+  EXPECT_EQ(cv::countNonZero(unlike.rowRange(240, kHeight)), 0);
+}
+
 TEST(MatchSemiGlobally, ChecksTheSizes) {
   const cv::Mat odd(192, 96, CV_8U, cv::Scalar(0));
   const cv::Mat small(64, 32, CV_8U, cv::Scalar(0));
@@ -184,6 +243,9 @@ TEST(MatchSemiGlobally, ChecksTheSizes) {
   EXPECT_THROW(MatchSemiGlobally(odd, odd, kOptions), ContractError);
   EXPECT_THROW(MatchSemiGlobally(small, small, kOptions), ContractError);
   EXPECT_THROW(MatchSemiGlobally(image, image.rowRange(0, 64), kOptions), ContractError);
+  const cv::Mat hypothesis(256, 128, CV_32F, cv::Scalar(1));
+  EXPECT_EQ(SearchedWidth(128, kOptions), 64);
+  EXPECT_THROW(MatchSemiGlobally(image, image, kOptions, hypothesis), ContractError);
 }
 
 }  // namespace

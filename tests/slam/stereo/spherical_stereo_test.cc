@@ -137,6 +137,30 @@ TEST(MatchSphere, StatesLargerErrorsTowardsTheBaseline) {
 
 const std::vector<Eigen::Vector3d> kOffsets = {{0.15, 0.2, 0.02}, {-0.2, 0.15, 0}, {0, 0, 0.25}};
 
+TEST(MatchSphere, SeesMoreOfAFloorThatItExpectsWhereTheBaselineIsLong) {
+  const StereoView reference = ViewFrom(kRoom, kReference);
+  const StereoView source = SourceAt({2.5, 1.9, 0.1});
+  const PlaneHypothesis floor{{0, 0, 1}, 1.5 + kReference.translation.z()};
+  const auto known_floor = [&](const InverseRanges& measured) {
+    int num_right = 0;
+    for (int row = kCamera.height() / 2; row < kCamera.height(); ++row) {
+      for (int column = 0; column < kCamera.width(); ++column) {
+        const Eigen::Vector3d bearing =
+            kReference.rotation * kCamera.Bearing({column + 0.5, row + 0.5});
+        const double truth = kRoom.Range(kReference.translation, bearing);
+        const bool is_floor = std::abs(truth * bearing.z() + floor.distance) < 1e-6;
+        const double ratio = truth * measured.value.at<float>(row, column);
+        num_right += is_floor && std::abs(ratio - 1) < 0.05;
+      }
+    }
+    return num_right;
+  };
+  const int without = known_floor(MatchSphere(reference, source, {}));
+  const int with = known_floor(MatchSphere(reference, source, {}, floor));
+  EXPECT_GT(with, 1.5 * without);
+  EXPECT_GT(with, 10000);
+}
+
 TEST(MatchSpheres, SourcesThatAgreeAreMoreExactThanOneForAnyNumberOfThreads) {
   const StereoView reference = ViewFrom(kRoom, kReference);
   std::vector<StereoView> sources;
