@@ -172,12 +172,28 @@ void MatchTwoSpheres(benchmark::State& state) {
   }
 }
 
+void FindPlaneDisparities(benchmark::State& state) {
+  const PlaneHypothesis floor{{0.1, 0.9, -0.4}, 1.5};
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(PlaneDisparities(floor, 0.5, kWidth / 2));
+  }
+}
+
+void MatchTwoSpheresAboveAPlane(benchmark::State& state) {
+  const PlaneHypothesis floor{{0, 0, 1}, 1.5};
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(MatchSphere(Hall().reference, Hall().source, {}, floor));
+  }
+}
+
 BENCHMARK(Rectify)->Unit(benchmark::kMillisecond);
 BENCHMARK(Search)->Unit(benchmark::kMillisecond);
 BENCHMARK(Match)->Unit(benchmark::kMillisecond);
 BENCHMARK(Refine)->Unit(benchmark::kMillisecond);
 BENCHMARK(Speckles)->Unit(benchmark::kMillisecond);
 BENCHMARK(MatchTwoSpheres)->Unit(benchmark::kMillisecond);
+BENCHMARK(FindPlaneDisparities)->Unit(benchmark::kMillisecond);
+BENCHMARK(MatchTwoSpheresAboveAPlane)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace orb360
