@@ -87,6 +87,7 @@ void ProcessFrames(Sequence* sequence, System* system, RunOutput* output, LiveVi
       const FrameReport report = system->Process(*frame);
       if (report.world_from_camera) output->Append(frame->timestamp, *report.world_from_camera);
       record->times.Add(report.timing_ms);
+      if (live != nullptr) live->feed().AddTimes(report.timing_ms);
       progress.Update(frame->index, report);
     }
   } catch (const UserError&) {
@@ -243,7 +244,10 @@ int Run(const RunOptions& options) {
   }
   if (stored) options.localizes ? system.Localize(*stored) : system.LoadMap(*stored);
   stored.reset();
-  if (live) live->Watch(&system);
+  if (live) {
+    live->feed().SetMask(mask);
+    live->Watch(&system);
+  }
   const auto start = Clock::now();
   ProcessFrames(sequence.get(), &system, &output, live ? &*live : nullptr, options.is_quiet,
                 &record);

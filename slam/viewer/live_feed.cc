@@ -2,12 +2,15 @@
 
 #include <chrono>
 #include <utility>
+#include <vector>
 
+#include "nn/base/statistics.h"
 #include <orb360/slam/io/trajectory.h>
 
 namespace orb360 {
 namespace {
 
+constexpr size_t kNumTimes = 300;  // frames whose times are shown
 constexpr int kMapInterval = 100;  // least time from copy to copy of the map, in terms of its own
 
 /// Each corner once, although it is a feature of several levels of the pyramid.
@@ -71,6 +74,21 @@ void LiveFeed::Take(const PresentState& state) {
   latest_ = std::move(snapshot);
 }
 
+void LiveFeed::SetMask(const cv::Mat& mask) {
+  const std::lock_guard lock(mutex_);
+  mask_ = mask.clone();
+  control_.is_masked = !mask.empty();
+}
+
+void LiveFeed::AddTimes(const std::map<std::string, double>& timing_ms) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [stage, time] : timing_ms) {
+    std::deque<double>& times = times_[stage];
+    times.push_back(time);
+    if (times.size() > kNumTimes) times.pop_front();
+  }
+}
+
 bool LiveFeed::WaitForTurn(const std::function<bool()>& is_ended) {
   constexpr std::chrono::milliseconds kStep(50);  // after which `is_ended` is asked again
   std::unique_lock lock(mutex_);
@@ -123,6 +141,10 @@ std::string LiveFeed::StateSince(std::uint64_t since) {
     control = control_;
     // A step that the run has not yet begun is no waiting.
     control.is_waiting = control.is_waiting && steps_ == 0;
+    for (const auto& [stage, times] : times_) {
+      std::vector<double> values(times.begin(), times.end());
+      control.times[stage] = {NearestRankQuantile(values, 0.5), NearestRankQuantile(values, 0.95)};
+    }
   }
   is_wanted_ = true;
   return LiveJson(*snapshot, control, cloud_.num_views(), since);
@@ -154,6 +176,10 @@ ResourceTable LiveFeed::Resources() {
   });
   since("live.cloud", bytes, [this](std::uint64_t views) { return cloud_.Bytes(views); });
   table["live.image"] = {bytes, {}, [this] { return LiveImage(*Latest()); }};
+  table["live.mask"] = {"image/png", {}, [this] {
+                          const std::lock_guard lock(mutex_);
+                          return LiveMask(mask_);
+                        }};
   const std::string text = "text/plain; charset=utf-8";
   table["pause"] = {text, {}, action([this] { control_.is_paused = true; }), true};
   table["resume"] = {text, {}, action([this] { control_.is_paused = false; }), true};

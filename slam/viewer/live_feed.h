@@ -3,10 +3,13 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "slam/viewer/live_cloud.h"
@@ -27,6 +30,11 @@ class LiveFeed {
   explicit LiveFeed(std::function<Clock::time_point()> now = &Clock::now) : now_(std::move(now)) {}
 
   // --- called by the run ---
+  /// Shows what is left out of all images: CV_8U, 0 there; empty for nothing. To be called before
+  /// the first frame.
+  void SetMask(const cv::Mat& mask);
+  /// Adds the wall times of a frame (FrameReport::timing_ms); those of the last frames are shown.
+  void AddTimes(const std::map<std::string, double>& timing_ms);
   /// Copies a state if a page wants it (System::Watch).
   void Take(const PresentState& state);
   /// Waits while a page has paused the run, unless `is_ended` returns true. False where the run is
@@ -43,8 +51,8 @@ class LiveFeed {
   void AddView(int frame, const Rigid3& map_from_camera, const DenseDepth& depth);
 
   // --- called by the server ---
-  /// `live.json`, `live.points`, `live.cloud`, `live.image`, and the actions `pause`, `resume`,
-  /// `step`, `finish`. They refer to this object.
+  /// `live.json`, `live.points`, `live.cloud`, `live.image`, `live.mask`, and the actions `pause`,
+  /// `resume`, `step`, `finish`. They refer to this object.
   ResourceTable Resources();
 
  private:
@@ -57,6 +65,8 @@ class LiveFeed {
   // Guarded by the mutex:
   std::shared_ptr<const LiveSnapshot> latest_ = std::make_shared<LiveSnapshot>();
   LiveControl control_;
+  std::map<std::string, std::deque<double>> times_;  ///< Of the last frames, ms by stage.
+  cv::Mat mask_;
   int steps_ = 0;    ///< Frames that may pass although the run is paused.
   LiveCloud cloud_;  ///< Has a mutex of its own.
   // Used by the run only:

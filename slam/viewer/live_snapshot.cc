@@ -42,12 +42,12 @@ nlohmann::json PoseJson(const Rigid3& world_from_camera) {
   return json;
 }
 
-std::string EncodeForPage(const cv::Mat& image) {
+std::string EncodeForPage(const std::string& extension, const cv::Mat& image) {
   if (image.empty()) return {};
-  if (image.cols <= kMaxWidth) return EncodeImage(".jpg", image, kJpegQuality);
+  if (image.cols <= kMaxWidth) return EncodeImage(extension, image, kJpegQuality);
   cv::Mat small;
   cv::resize(image, small, {kMaxWidth, image.rows * kMaxWidth / image.cols}, 0, 0, cv::INTER_AREA);
-  return EncodeImage(".jpg", small, kJpegQuality);
+  return EncodeImage(extension, small, kJpegQuality);
 }
 
 }  // namespace
@@ -84,6 +84,8 @@ std::string LiveJson(const LiveSnapshot& snapshot, const LiveControl& control, s
                          {"progress", nullptr},
                          {"isPaused", control.is_paused},
                          {"isWaiting", control.is_waiting},
+                         {"isMasked", control.is_masked},
+                         {"times", nlohmann::json::object()},
                          {"map", snapshot.map_number},
                          {"revision", snapshot.revision},
                          {"size", {size.width, size.height}},
@@ -105,6 +107,9 @@ std::string LiveJson(const LiveSnapshot& snapshot, const LiveControl& control, s
     }
     json["keyframes"] = keyframes;
     json["links"] = snapshot.map->links;
+  }
+  for (const auto& [stage, time] : control.times) {
+    json["times"][stage] = {{"median", time[0]}, {"p95", time[1]}};
   }
   if (const auto& progress = control.progress) {
     json["progress"] = {{"what", progress->what},
@@ -132,7 +137,9 @@ std::string LiveImage(const LiveSnapshot& snapshot) {
     AppendLittleEndian(code(feature.pixel.y(), snapshot.image.rows), &bytes);
     AppendLittleEndian(static_cast<std::uint16_t>(feature.is_matched ? 1 : 0), &bytes);
   }
-  return bytes + EncodeForPage(snapshot.image);
+  return bytes + EncodeForPage(".jpg", snapshot.image);
 }
+
+std::string LiveMask(const cv::Mat& mask) { return EncodeForPage(".png", mask); }
 
 }  // namespace orb360

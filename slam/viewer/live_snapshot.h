@@ -65,6 +65,9 @@ struct LiveControl {
     std::string of_what;  ///< What is counted, such as `frames`.
   };
   std::optional<Progress> progress = {};
+  bool is_masked = false;  ///< Some of every image is left out: there is a `live.mask`.
+  /// Wall times of the last frames by stage, ms: the median, and what 95 % of them do not exceed.
+  std::map<std::string, std::array<double, 2>> times = {};
 };
 
 /// Copies maps, which have one world, as GroupLandmarks does.
@@ -79,7 +82,8 @@ LiveSnapshot::MapPart CopyMaps(std::span<const Map> maps, int revision,
 /// | `age` | milliseconds since this was the state of the run |
 /// | `state` | `initializing`, `tracking`, `lost`, `finishing` |
 /// | `progress` | `what`, `done`, `count`, `ofWhat` of LiveControl::Progress, or null |
-/// | `isPaused`, `isWaiting` | as in LiveControl |
+/// | `isPaused`, `isWaiting`, `isMasked` | as in LiveControl |
+/// | `times` | by stage: `median` and `p95` of LiveControl::times |
 /// | `map`, `revision` | as in LiveSnapshot |
 /// | `size` | width and height of the image |
 /// | `pose` | of the frame, or null: x y z qx qy qz qw of the optical camera frame in the world |
@@ -95,5 +99,9 @@ std::string LiveJson(const LiveSnapshot& snapshot, const LiveControl& control, s
 /// number of features (uint32), for each u and v in 1/10000 of width and height and 1 where it is
 /// matched (3 uint16), then a JPEG of at most 1280 pixels' width; none before the first frame.
 std::string LiveImage(const LiveSnapshot& snapshot);
+
+/// The page's `live.mask`: a PNG with one channel of at most 1280 pixels' width, black where
+/// nothing is looked for. Empty where `mask` is.
+std::string LiveMask(const cv::Mat& mask);
 
 }  // namespace orb360

@@ -1,6 +1,7 @@
 // A run that goes on, in a real browser (ORB360_RUN: a finished run, beside which runs are written,
 // ORB360_TOWN: its input).
 import assert from "node:assert/strict";
+import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { coverage, launch, serveLive } from "./page.mjs";
@@ -88,11 +89,42 @@ test("shows, steps and finishes a run that goes on", async (t) => {
       Number(document.querySelector("#view").dataset.landmarks) > 100,
   );
   assert.ok(await page.$eval(".live-image canvas", (canvas) => canvas.width > 300));
+  assert.deepEqual(
+    await page.$$eval(".bar-name", (names) => names.map((name) => name.textContent).sort()),
+    ["Features", "Tracking", "Waiting for mapping", "Whole frame"],
+  );
   assert.deepEqual(page.problems, []);
   await click("Finish early");
   assert.equal(await live.ended, 0);
   await page.waitForFunction(() => document.body.dataset.connection === "lost");
   assert.match(await page.$eval("#banner", (banner) => banner.textContent), /has ended/);
+  await page.close();
+});
+
+test("darkens what is left out of the images", async (t) => {
+  // The right half of the image.
+  const mask = join(out, "mask.pgm");
+  const row = [...Array(32).fill(255), ...Array(32).fill(0)];
+  const pixels = Buffer.from(Array(32).fill(row).flat());
+  writeFileSync(mask, Buffer.concat([Buffer.from("P5 64 32 255\n"), pixels]));
+  const options = ["--weights", "none"];
+  const live = await serveLive(town, join(out, "live_masked"), options, mask);
+  t.after(live.kill);
+  const page = await openLive(live.url);
+  await clickButton(page, "One frame");
+  await page.waitForFunction(() => document.body.dataset.state === "ready");
+  const [left, right] = await page.$eval(".live-image canvas", (canvas) => {
+    const { width, height } = canvas;
+    const context = canvas.getContext("2d");
+    return [0, width / 2].map((x) => {
+      const { data } = context.getImageData(x, 0, width / 2, height / 3); // the sky
+      return data.reduce((sum, value, i) => sum + (i % 4 < 3 ? value : 0), 0) / data.length;
+    });
+  });
+  assert.ok(right < 0.5 * left, `${left} and ${right}`);
+  assert.deepEqual(page.problems, []);
+  await clickButton(page, "Finish early");
+  await live.ended;
   await page.close();
 });
 

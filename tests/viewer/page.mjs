@@ -38,17 +38,9 @@ export async function serve(run, port = 0, more = []) {
 }
 
 /** Starts a run that is shown, and pauses it at once. */
-export async function serveLive(input, out, more = ["--weights", "none"]) {
-  const { program, ended, url } = await start([
-    "run",
-    input,
-    "--out",
-    out,
-    "--mask",
-    "none",
-    "--view=0",
-    ...more,
-  ]);
+export async function serveLive(input, out, more = ["--weights", "none"], mask = "none") {
+  const options = ["--out", out, "--mask", mask, "--view=0", ...more];
+  const { program, ended, url } = await start(["run", input, ...options]);
   const { host, origin } = new URL(url);
   const status = await new Promise((resolve) =>
     request(

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
 
 #include "slam/io/byte_number.h"
 #include "slam/io/optical_frame.h"
@@ -75,6 +76,30 @@ TEST_F(LiveFeedTest, ShowsTheFrameWithItsFeatures) {
   }
   EXPECT_THAT(features, testing::ElementsAre(2500, 2000, 0, 5000, 2000, 1));
   EXPECT_THAT(image.substr(20), testing::StartsWith("\xff\xd8"));
+}
+
+TEST_F(LiveFeedTest, ShowsWhatIsLeftOutOfTheImages) {
+  EXPECT_EQ(Json()["isMasked"], false);
+  EXPECT_EQ(table_.at("live.mask").make(), "");
+  cv::Mat mask(1000, 2000, CV_8U, cv::Scalar(255));
+  mask.rowRange(900, 1000) = 0;
+  feed_.SetMask(mask);
+  EXPECT_EQ(Json()["isMasked"], true);
+  const std::string bytes = table_.at("live.mask").make();
+  const cv::Mat shown = cv::imdecode(std::vector<char>(bytes.begin(), bytes.end()), -1);
+  ASSERT_EQ(shown.type(), CV_8UC1);
+  ASSERT_EQ(shown.size(), cv::Size(1280, 640));
+  EXPECT_EQ(shown.at<std::uint8_t>(570, 7), 255);
+  EXPECT_EQ(shown.at<std::uint8_t>(580, 7), 0);
+}
+
+TEST_F(LiveFeedTest, ShowsTheTimesOfTheLastThreeHundredFrames) {
+  EXPECT_TRUE(Json()["times"].empty());
+  for (int i = 0; i < 500; ++i) feed_.AddTimes({{"frame", i}, {"tracking", 2.5}});
+  const nlohmann::json times = Json()["times"];
+  EXPECT_EQ(times["frame"]["median"], 349);  // of 200 to 499
+  EXPECT_EQ(times["frame"]["p95"], 484);
+  EXPECT_EQ(times["tracking"]["p95"], 2.5);
 }
 
 TEST_F(LiveFeedTest, BeginsTheWorldAtTheFirstCamera) {

@@ -1,5 +1,5 @@
 import { h, svg } from "./dom";
-import type { Comparison, Run } from "./run";
+import type { Comparison, Run, StageTimes } from "./run";
 
 const STAGES: Record<string, string> = {
   frame: "Whole frame",
@@ -9,8 +9,8 @@ const STAGES: Record<string, string> = {
 };
 
 /** Time of a frame by stage: the median as a bar, up to the 95th percentile as a thin one. */
-export function stageChart(run: Run): HTMLElement | null {
-  const times = Object.entries(run.summary.timing_ms ?? {});
+export function stageChart(stages: StageTimes, caption: string): HTMLElement | null {
+  const times = Object.entries(stages);
   if (times.length === 0) return null;
   times.sort(([, a], [, b]) => b.p95 - a.p95);
   const longest = Math.max(...times.map(([, time]) => time.p95), 1e-9);
@@ -33,7 +33,7 @@ export function stageChart(run: Run): HTMLElement | null {
     "div",
     { class: "chart" },
     ...rows,
-    h("p", { class: "caption" }, "Median · 95th percentile of the frames. Stages may overlap."),
+    h("p", { class: "caption" }, caption),
   );
 }
 

@@ -1,4 +1,5 @@
 import * as THREE from "three";
+import { stageChart } from "./charts";
 import { announce, h } from "./dom";
 import { grouped, length, short } from "./format";
 import { obliquePose } from "./framing";
@@ -8,6 +9,7 @@ import {
   control,
   liveCloud,
   liveImage,
+  liveMask,
   livePoints,
   liveState,
   type LiveState,
@@ -47,6 +49,7 @@ export class LiveViewer {
   private readonly layer = new LiveLayer();
   private readonly strip = new LiveStrip(() => this.makeRoom());
   private readonly facts = h("dl", { class: "tiles" });
+  private readonly times = h("div");
   private readonly follow = h("input", { type: "checkbox", checked: true });
   private readonly pause = h(
     "button",
@@ -56,6 +59,7 @@ export class LiveViewer {
   private readonly buttons: HTMLButtonElement[];
   private revision = 0; // of poses and landmarks
   private numViews = 0; // of the dense cloud
+  private hasMask = false;
   private last: LiveState | null = null;
   private isPaused = false;
   private hasEnded = false;
@@ -119,6 +123,7 @@ export class LiveViewer {
         this.facts,
         h("label", { class: "check" }, this.follow, h("span", {}, "Follow the camera")),
       ),
+      section("Time of a frame", true, this.times),
     );
   }
 
@@ -182,6 +187,10 @@ export class LiveViewer {
     this.last = state;
     this.page.center.replaceChildren();
     const isTracking = state.state !== "finishing";
+    if (state.isMasked && !this.hasMask) {
+      this.hasMask = true;
+      await this.strip.setMask(await liveMask());
+    }
     if (isTracking && state.frame !== this.strip.frame) {
       await this.strip.show(await liveImage());
       dataset.latency = (state.age + performance.now() - begin).toFixed(0);
@@ -216,6 +225,7 @@ export class LiveViewer {
     this.revision = 0;
     this.numViews = 0;
     this.strip.frame = -1;
+    this.hasMask = false;
   }
 
   /** The camera has stopped: the whole path is shown, and its cloud in place of the image. */
@@ -262,6 +272,11 @@ export class LiveViewer {
         "camera height",
       ),
     );
+    const times = stageChart(
+      state.times,
+      "Median · 95th percentile of the last 300 frames. Stages may overlap.",
+    );
+    this.times.replaceChildren(...(times ? [times] : []));
     const { chip } = this.page;
     chip.hidden = false;
     const isPaused = state.isPaused && state.state !== "finishing";

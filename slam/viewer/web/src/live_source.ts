@@ -1,3 +1,4 @@
+import type { StageTimes } from "./run";
 import { timeout } from "./timeout";
 
 /** What the server tells of a run that goes on (slam/viewer/live_snapshot.h). */
@@ -10,6 +11,10 @@ export interface LiveState {
   isPaused: boolean;
   /** The run stands still because it is paused. */
   isWaiting: boolean;
+  /** Some of every image is left out. */
+  isMasked: boolean;
+  /** Wall times of the last frames by stage, ms. */
+  times: StageTimes;
   map: number;
   revision: number;
   size: [number, number];
@@ -75,6 +80,11 @@ export async function liveState(since: number): Promise<LiveState> {
 
 export async function liveImage(): Promise<LiveImage> {
   return readLiveImage(await (await get("live.image")).arrayBuffer());
+}
+
+/** Black where nothing is looked for. */
+export async function liveMask(): Promise<Blob> {
+  return (await get("live.mask")).blob();
 }
 
 export function readLiveImage(bytes: ArrayBuffer): LiveImage {

@@ -74,7 +74,10 @@ export function fillPanel(
   const scale = section("Scale", true, h("p", {}, scaleState(run).sentence), scaleChart(run));
   scale.id = "scale-section";
   const facts = factTiles(run);
-  const times = stageChart(run);
+  const times = stageChart(
+    run.summary.timing_ms ?? {},
+    "Median · 95th percentile of the frames. Stages may overlap.",
+  );
   const notices = notes(run);
   page.panelBody.append(
     ...[

@@ -1,4 +1,7 @@
 /** What `run.json` has of a run (slam/viewer/run_scene.h). */
+/** Wall times of frames by stage, ms. */
+export type StageTimes = Record<string, { median: number; p95: number }>;
+
 export interface Run {
   folder: string;
   summary: Summary;
@@ -66,7 +69,7 @@ export interface Summary {
   interrupted?: boolean;
   warnings?: string[];
   scale?: Scale;
-  timing_ms?: Record<string, { median: number; p95: number }>;
+  timing_ms?: StageTimes;
   cloud?: { points?: number; seconds?: number };
   positions?: { source?: string; failure?: string | null } | null;
 }
