@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { launch, orb360, serveLive } from "./page.mjs";
 
 process.env.ORB360_CHROMIUM ??= "/usr/bin/chromium";
-const POLL_MS = 100; // as in slam/viewer/web/src/live.ts
+const POLL_MS = 130; // as in slam/viewer/web/src/live.ts
 const [input, out, pairs = "5"] = process.argv.slice(2);
 const options = ["--weights", "none", "--mask", "none"];
 

@@ -19,7 +19,7 @@ import { followTheme } from "./theme";
 import { Viewport } from "./viewport";
 import { viewportKeys } from "./viewport_keys";
 
-const POLL_MS = 100;
+const POLL_MS = 130;
 /** Between two requests, for the page to draw. */
 const MIN_WAIT_MS = 20;
 /** How far behind the camera the view follows it, units of the world. */
