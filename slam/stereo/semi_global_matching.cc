@@ -69,6 +69,7 @@ cv::Mat IsReliable(const cv::Mat& image, const cv::Mat& cost,
 // Takes the disparities that are found around a hypothesis where they cost less.
 void TryHypothesis(const cv::Mat& first, const cv::Mat& second, const cv::Mat& hypothesis,
                    const SemiGlobalMatchingOptions& options, MatchedLevel* level) {
+  // The bits of one signature are few, and a window much larger would reach over edges.
   const cv::Size window(9, 9);
   const cv::Mat is_given = hypothesis >= 0;
   cv::Mat surface = level->disparity.clone();

@@ -135,16 +135,17 @@ std::shared_ptr<const LiveSnapshot> LiveFeed::Latest() const {
 std::string LiveFeed::StateSince(std::uint64_t since) {
   std::shared_ptr<const LiveSnapshot> snapshot;
   LiveControl control;
+  std::map<std::string, std::vector<double>> times;
   {
     const std::lock_guard lock(mutex_);
     snapshot = latest_;
     control = control_;
     // A step that the run has not yet begun is no waiting.
     control.is_waiting = control.is_waiting && steps_ == 0;
-    for (const auto& [stage, times] : times_) {
-      std::vector<double> values(times.begin(), times.end());
-      control.times[stage] = {NearestRankQuantile(values, 0.5), NearestRankQuantile(values, 0.95)};
-    }
+    for (const auto& [stage, last] : times_) times[stage].assign(last.begin(), last.end());
+  }
+  for (auto& [stage, values] : times) {
+    control.times[stage] = {NearestRankQuantile(values, 0.5), NearestRankQuantile(values, 0.95)};
   }
   is_wanted_ = true;
   return LiveJson(*snapshot, control, cloud_.num_views(), since);
@@ -177,8 +178,12 @@ ResourceTable LiveFeed::Resources() {
   since("live.cloud", bytes, [this](std::uint64_t views) { return cloud_.Bytes(views); });
   table["live.image"] = {bytes, {}, [this] { return LiveImage(*Latest()); }};
   table["live.mask"] = {"image/png", {}, [this] {
-                          const std::lock_guard lock(mutex_);
-                          return LiveMask(mask_);
+                          cv::Mat mask;  // the same pixels, which never change
+                          {
+                            const std::lock_guard lock(mutex_);
+                            mask = mask_;
+                          }
+                          return LiveMask(mask);
                         }};
   const std::string text = "text/plain; charset=utf-8";
   table["pause"] = {text, {}, action([this] { control_.is_paused = true; }), true};
