@@ -68,14 +68,16 @@ class RetrainTest(unittest.TestCase):
         with mock.patch.object(
             retrain.make_dataset, "make_all", lambda specs, _, out: made.update({out.name: specs})
         ):
-            retrain.render_all(Path("out"), None, [Path("forza.acc")])
+            files = [Path("forza.acc")], [Path("zengarden")], [Path("oa_dm1.bsp")]
+            retrain.render_all(Path("out"), None, *files)
         training, validation = ({s.name for s in made[n]} for n in ("training", "validation"))
         self.assertFalse(training & validation)
-        self.assertIn("forza", training)
+        self.assertLess({"forza", "kart-zengarden", "map-oa_dm1-0", "interior100"}, training)
         self.assertEqual(sum(spec.is_tracked for spec in made["training"]), 8)
         for name in RESERVED:
-            with self.assertRaisesRegex(ValueError, "kept for measurements"):
-                retrain.render_all(Path("out"), None, [Path(f"{name}.acc")])
+            for option in ("circuits", "karts", "maps"):
+                with self.assertRaisesRegex(ValueError, "kept for measurements"):
+                    retrain.render_all(Path("out"), None, **{option: [Path(name)]})
 
 
 if __name__ == "__main__":

@@ -17,10 +17,8 @@ from weights_tools.training import shards
 from weights_tools.training.make_shard import halved, read_drive
 from weights_tools.training.worlds import (
     DriveSpec,
-    circuit_spec,
+    file_specs,
     interior_spec,
-    kart_spec,
-    map_spec,
     require_for_training,
     town_spec,
     tracked,
@@ -105,6 +103,16 @@ def _call(command: Sequence[object]) -> None:
         raise DriveError(f"{command[0]} failed: {done.stderr.strip()}")
 
 
+def add_files(parser: argparse.ArgumentParser) -> None:
+    """The options that name worlds by their files."""
+    parser.add_argument("--circuits", type=Path, nargs="*", default=[],
+                        help="meshes (.acc) of circuits of torcs-data")  # fmt: skip
+    parser.add_argument("--karts", type=Path, nargs="*", default=[],
+                        help="folders of tracks of supertuxkart-data")  # fmt: skip
+    parser.add_argument("--maps", type=Path, nargs="*", default=[],
+                        help="maps (.bsp) of Quake 3 in the game's folder")  # fmt: skip
+
+
 @refusing("make_dataset")
 def main() -> int:
     parser = argparse.ArgumentParser(description="Renders drives and packs them for training.")
@@ -119,12 +127,7 @@ def main() -> int:
                         help="towns that SLAM tracks, for landmarks and ranges by stereo as points")
     parser.add_argument("--tracked-frames", type=int, default=TRACKED_FRAMES,
                         help="of these (default: %(default)s)")
-    parser.add_argument("--circuits", type=Path, nargs="*", default=[],
-                        help="meshes (.acc) of circuits of torcs-data")  # fmt: skip
-    parser.add_argument("--karts", type=Path, nargs="*", default=[],
-                        help="folders of tracks of supertuxkart-data")  # fmt: skip
-    parser.add_argument("--maps", type=Path, nargs="*", default=[],
-                        help="maps (.bsp) of Quake 3 in the game's folder")  # fmt: skip
+    add_files(parser)
     parser.add_argument("--walks", type=int, nargs=2, default=(0, 1), metavar=("FIRST", "END"),
                         help="through each of these maps (default: one)")  # fmt: skip
     parser.add_argument("--interiors", type=int, nargs=2, default=(0, 0), metavar=("FIRST", "END"))
@@ -139,10 +142,8 @@ def main() -> int:
     if not arguments.held_out:
         for path in (*arguments.circuits, *arguments.karts, *arguments.maps):
             require_for_training(path.stem)
-    specs = [circuit_spec(mesh, frames, width) for mesh in arguments.circuits]
-    specs += [kart_spec(track, frames, width) for track in arguments.karts]
-    walks = range(*arguments.walks)
-    specs += [map_spec(file, walk, frames, width) for file in arguments.maps for walk in walks]
+    files = (arguments.circuits, arguments.karts, arguments.maps)
+    specs = file_specs(*files, frames, width, range(*arguments.walks))
     specs += [interior_spec(seed, frames, width) for seed in range(*arguments.interiors)]
     if arguments.stereo_worlds:
         specs += [tracked(spec, arguments.tracked_frames, SPEED) for spec in specs]

@@ -26,10 +26,16 @@ from weights_tools.training.make_dataset import (
     Programs,
 )
 from weights_tools.training.train import Settings, train
-from weights_tools.training.worlds import circuit_spec, require_for_training, town_spec
+from weights_tools.training.worlds import (
+    file_specs,
+    interior_spec,
+    require_for_training,
+    town_spec,
+)
 
-# Towns by seed. The validation towns are never used for training.
-VALIDATION_SEEDS, VALIDATION_FRAMES = range(2000, 2008), 6
+# Interiors, towns and their frames for validation, which are never used for training.
+INTERIORS = range(100, 200)
+VALIDATION_SEEDS, VALIDATION_INTERIORS, VALIDATION_FRAMES = range(2000, 2006), range(900, 906), 6
 TRACKED_SEEDS = range(3000, 3008)  # their sparse points come from SLAM
 
 
@@ -78,14 +84,22 @@ RELEASED = {
 }
 
 
-def render_all(out: Path, programs: Programs, circuits: Sequence[Path]) -> None:
-    for mesh in circuits:
-        require_for_training(mesh.stem)
+def render_all(
+    out: Path,
+    programs: Programs,
+    circuits: Sequence[Path] = (),
+    karts: Sequence[Path] = (),
+    maps: Sequence[Path] = (),
+) -> None:
+    for path in (*circuits, *karts, *maps):
+        require_for_training(path.stem)
     specs = [town_spec(seed, FRAMES, WIDTH) for seed in SEEDS]
     specs += [town_spec(seed, TRACKED_FRAMES, WIDTH, is_tracked=True) for seed in TRACKED_SEEDS]
-    specs += [circuit_spec(mesh, FRAMES, WIDTH) for mesh in circuits]
+    specs += [interior_spec(seed, FRAMES, WIDTH) for seed in INTERIORS]
+    specs += file_specs(circuits, karts, maps, FRAMES, WIDTH)
     make_dataset.make_all(specs, programs, out / "training")
     specs = [town_spec(seed, VALIDATION_FRAMES, WIDTH) for seed in VALIDATION_SEEDS]
+    specs += [interior_spec(seed, VALIDATION_FRAMES, WIDTH) for seed in VALIDATION_INTERIORS]
     make_dataset.make_all(specs, programs, out / "validation")
 
 
@@ -115,8 +129,7 @@ def main() -> None:
     parser.add_argument("out", type=Path, help="folder for shards, checkpoints and weights")
     parser.add_argument("--steps", type=float, default=1.0, metavar="FACTOR",
                         help="on the numbers of steps (default: 1, a night on two cores)")  # fmt: skip
-    parser.add_argument("--circuits", type=Path, nargs="*", default=[],
-                        help="meshes (.acc) of circuits of torcs-data to train on too")  # fmt: skip
+    make_dataset.add_files(parser)
     parser.add_argument("--device", default="cpu", help="as PyTorch names it (default: cpu)")
     root = Path(__file__).resolve().parent.parent.parent
     parser.add_argument("--build", type=Path, default=root / "build", help="folder of the programs")
@@ -124,7 +137,7 @@ def main() -> None:
     torch.set_num_threads(os.cpu_count() or 1)  # PyTorch itself takes half of them
     programs = Programs(arguments.build / "town", arguments.build / "orb360")
     shards = arguments.out / "shards"
-    render_all(shards, programs, arguments.circuits)
+    render_all(shards, programs, arguments.circuits, arguments.karts, arguments.maps)
     train_all(arguments.out, shards, arguments.steps, torch.device(arguments.device))
     release(arguments.out)
 

@@ -93,6 +93,20 @@ def map_spec(file: Path, seed: int, frames: int, width: int) -> DriveSpec:
     )
 
 
+def file_specs(
+    circuits: Sequence[Path],
+    karts: Sequence[Path],
+    maps: Sequence[Path],
+    frames: int,
+    width: int,
+    walks: Sequence[int] = (0,),
+) -> list[DriveSpec]:
+    """A drive through each world that is given by a file, and these walks through each map."""
+    specs = [circuit_spec(mesh, frames, width) for mesh in circuits]
+    specs += [kart_spec(track, frames, width) for track in karts]
+    return specs + [map_spec(file, walk, frames, width) for file in maps for walk in walks]
+
+
 def tracked(spec: DriveSpec, frames: int, speed: float) -> DriveSpec:
     """The same drive with 20 frames a second, slower, for SLAM to follow."""
     options = list(spec.options)
