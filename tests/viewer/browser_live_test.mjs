@@ -148,14 +148,23 @@ test("shows the dense cloud as depth is computed", async (t) => {
     await page.$$eval(".live-buttons button", (all) => all.every((button) => button.disabled)),
     "there is nothing left to pause",
   );
-  await waitFor(page, "densePoints", 1000);
-  const few = await numberOf(page, "densePoints");
-  assert.ok(few <= 5000 * 40, `${few} points at once`);
+  // How many parts the page has seen by now depends on how busy the machine is.
+  const shown = await page.evaluateHandle(() => {
+    const { dataset } = document.querySelector("#view");
+    const counts = [Number(dataset.densePoints)];
+    new MutationObserver(() => counts.push(Number(dataset.densePoints))).observe(
+      document.querySelector("#view"),
+      { attributeFilter: ["data-dense-points"] },
+    );
+    return counts;
+  });
+  await waitFor(page, "densePoints", 5001); // more than one view has
   assert.ok(await page.$eval(".live-image", (strip) => strip.hidden), "the image hides the cloud");
-  await waitFor(page, "densePoints", few + 5000);
   assert.ok((await coverage(page)) > 0.02);
   assert.match(await page.$eval(".tiles", (tiles) => tiles.textContent), /points of depth maps/);
   assert.deepEqual(page.problems, []);
   assert.equal(await live.ended, 0);
+  const counts = await shown.jsonValue();
+  assert.deepEqual(counts, [...counts].sort((a, b) => a - b), "points were lost");
   await page.close();
 });
