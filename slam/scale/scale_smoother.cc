@@ -85,7 +85,12 @@ std::optional<SmoothedScale> SmoothScale(std::span<const ScaleNode> nodes) {
       weights[i] = residual > kHuber ? kHuber / residual : 1.0;
       sum_of_squares += weights[i] * residual * residual;
     }
+    for (size_t i = 1; i < nodes.size(); ++i) {
+      const double drift = result.log_scale[i] - result.log_scale[i - 1];
+      sum_of_squares += drift * drift / nodes[i].drift_variance;
+    }
   }
+  // As many degrees of freedom as measurements and drifts together have more than there are nodes.
   const double birge =
       std::max(1.0, std::sqrt(sum_of_squares / std::max<double>(1.0, count - 1.0)));
   const Tridiagonal information(nodes, weights);

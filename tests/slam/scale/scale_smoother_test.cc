@@ -89,6 +89,18 @@ TEST(SmoothScale, AnOutlierMovesItLittleAndAContradictionWidensIt) {
   EXPECT_GT(contradicting->mean_sigma, 4 * agreed->mean_sigma);
 }
 
+TEST(SmoothScale, DriftLargerThanStatedWidensIt) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  std::vector<ScaleNode> nodes(41, {1.0, 1e-4, 0.0, 1e-4});
+  const auto agreed = SmoothScale(nodes);
+  // Measurements are exact, so that the scale follows them; only its steps are ten times too large.
+  double x = 0;
+  for (ScaleNode& node : nodes) node.measured = x += 0.1 * normal(random);
+  const auto drifting = SmoothScale(nodes);
+  EXPECT_NEAR(drifting->mean_sigma / agreed->mean_sigma, 10, 3);
+}
+
 TEST(SmoothScale, IsEmptyWhereNothingWasMeasured) {
   EXPECT_FALSE(SmoothScale({}));
   EXPECT_FALSE(SmoothScale(std::vector<ScaleNode>(4, {1.0, 1e-4, 0.0, 0.0})));
