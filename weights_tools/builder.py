@@ -31,6 +31,7 @@ class Layer:
     is_normalized: bool = False  # of a normalized convolution: never negative
     slope: float = 1.0  # of the activation that follows, for x < 0; 1 if there is none
     gain: float = 1.0  # factor on the initial weights
+    prior: tuple[float, ...] = ()  # added to the initial bias
 
     @property
     def outputs(self) -> int:
@@ -115,9 +116,11 @@ class Builder:
         stride: int = 1,
         slope: float = 1.0,
         gain: float = 1.0,
+        prior: tuple[float, ...] = (),
     ) -> Symbol:
         """A convolution and its activation: none for slope 1, ReLU for 0, else leaky ReLU."""
-        layer = self.layer(Layer(name, (outputs, x.channels, size, size), False, slope, gain))
+        shape = (outputs, x.channels, size, size)
+        layer = self.layer(Layer(name, shape, False, slope, gain, prior))
         assert x.level is not None
         linear = Symbol(_before_activation(name, slope), outputs, x.level + stride // 2)
         self.node("convolution", [x], [linear], layer, stride=stride, padding=self.padding)
@@ -197,6 +200,12 @@ class Builder:
     def convex_upsample(self, name: str, x: Symbol, weights: Symbol) -> Symbol:
         result = _twice(name, x)
         self.node("convex_upsample", [x, weights], [result], padding=self.padding)
+        return result
+
+    def convex_filter(self, name: str, x: Symbol, weights: Symbol) -> Symbol:
+        """A convex combination of the neighbours of each pixel, by a softmax of nine weights."""
+        result = Symbol(name, x.channels, x.level)
+        self.node("convex_upsample", [x, weights], [result], padding=self.padding, factor=1)
         return result
 
     def median_log(self, name: str, depth: Symbol, confidence: Symbol) -> tuple[Pair, Symbol]:

@@ -165,6 +165,8 @@ def _initial(layer: Layer, generator: np.random.RandomState) -> dict[str, np.nda
         bound = layer.gain * math.sqrt(6 / ((1 + layer.slope**2) * fan_in))
         weight = generator.uniform(-bound, bound, layer.shape)
         bias = generator.uniform(-1, 1, layer.outputs) * layer.gain / math.sqrt(fan_in)
+        if layer.prior:
+            bias = bias + layer.prior
     return {"weight": weight.astype(np.float32), "bias": bias.astype(np.float32)}
 
 

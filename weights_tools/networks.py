@@ -49,8 +49,7 @@ def depth_completion(
     half_points = b.confidence_pool("points.half", squared, "sqrt")
     half_image = b.average_pool("image.half", image)
     coarse = _complete(b, half_points, half_image, widths, hidden)
-    log_depth = _refine(b, image, points, half_points, coarse.log_depth, refined)
-    odds = b.upsample_bilinear("log_odds.half", coarse.log_odds)
+    log_depth, odds = _refine(b, image, points, half_points, coarse, refined)
     return _build_completion(b, log_depth, odds, scale, coarse.log_metric_scale)
 
 
@@ -103,9 +102,11 @@ def _complete(
 
 
 def _refine(
-    b: Builder, image: Symbol, points: Pair, half_points: Pair, log_depth: Symbol, width: int
-) -> Symbol:
-    """Spreads what the points differ by from a depth of half the size, and doubles its size."""
+    b: Builder, image: Symbol, points: Pair, half_points: Pair, coarse: _Completion, width: int
+) -> tuple[Symbol, Symbol]:
+    """Spreads what the points differ by from a depth of half the size, and doubles its size. Also
+    gives the odds, still of half the size: near points the depth errs less than before."""
+    log_depth = coarse.log_depth
     against = b.pointwise("affine", "completed.negative", log_depth, scale=-1.0, offset=0.0)
     off = b.pointwise("add", "refined.difference", half_points.x, against)
     known = b.pointwise("multiply", "refined.known", off, half_points.c)
@@ -121,12 +122,25 @@ def _refine(
     believed = b.pointwise("multiply", "refined.points.c", half_points.c, believed)
     spread = _spread(b, Pair(off, believed))
     near = b.pointwise("clamp", "refined.clamped", spread.c, minimum=1e-8, maximum=1.0)
-    near = b.convolution("refined5", b.pointwise("log", "refined.near", near), 1, size=1)
-    reach = b.pointwise("add", "refined.reach", b.slice("refined.far", heads, 1, 1), near)
+    near = b.pointwise("log", "refined.near", near)
+    distance = b.convolution("refined5", near, 1, size=1)
+    reach = b.pointwise("add", "refined.reach", b.slice("refined.far", heads, 1, 1), distance)
     reach = b.pointwise("sigmoid", "refined.share", reach)
     change = b.pointwise("multiply", "refined.change", reach, spread.x)
-    corrected = b.pointwise("add", "refined.corrected", log_depth, change)
-    return b.convex_upsample("log_depth", corrected, b.slice("refined.shares", heads, 2, 36))
+    refined = b.pointwise("add", "refined.corrected", log_depth, change)
+    # Spatial propagation (Cheng, Wang, Yang, "Depth Estimation via Affinity Learned with Convolutional
+    # Spatial Propagation Network"): edges move by up to a pixel in each step.
+    affinity = b.convolution("refined7", x, 9, size=1, gain=_SMALL, prior=_KEEP)
+    for i in range(_STEPS):
+        refined = b.convex_filter(f"refined.step{i}", refined, affinity)
+    refined = b.convex_upsample("log_depth", refined, b.slice("refined.shares", heads, 2, 36))
+
+    odds = b.upsample_bilinear("log_odds.half", coarse.log_odds)
+    certain, ground = (b.slice(f"log_odds.half{i}", odds, i, 1) for i in range(2))
+    known = b.concatenate("refined.certainty", x, near, certain)
+    more = b.convolution("refined6", known, 1, size=1, gain=_SMALL)
+    certain = b.pointwise("add", "refined.certain", certain, more)
+    return refined, b.concatenate("refined.log_odds", certain, ground)
 
 
 def _spread(b: Builder, pair: Pair) -> Pair:
@@ -166,6 +180,10 @@ _LEAK = 0.1  # slope of the activations below zero
 # Gain of what is added to something else, before training: sums then keep the size of their parts,
 # and with it the gradient. With 1 its norm was 90 at first, and training hardly got anywhere.
 _SMALL = 0.1
+# Steps of spatial propagation, and the weights of a pixel's neighbourhood before training, as
+# logarithms: most of it is its own.
+_STEPS = 4
+_KEEP = (0.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0, 0.0)
 _LEVELS = 7  # fewer leave pixels of a panorama that see none of SLAM's points
 
 

@@ -90,11 +90,11 @@ def _halfway(size: int, edge: str, like: Tensor) -> Tensor:
     return matrix
 
 
-def convex_upsample(x: Tensor, weights: Tensor, *, padding: str) -> Tensor:
+def convex_upsample(x: Tensor, weights: Tensor, *, padding: str, factor: int = 2) -> Tensor:
     n, _, height, width = x.shape
     neighbours = F.unfold(pad(x, 1, padding), 3).view(n, 1, 9, height, width)
-    fractions = weights.view(n, 4, 9, height, width).softmax(dim=2)
-    return F.pixel_shuffle((fractions * neighbours).sum(dim=2), 2)
+    fractions = weights.view(n, factor * factor, 9, height, width).softmax(dim=2)
+    return F.pixel_shuffle((fractions * neighbours).sum(dim=2), factor)
 
 
 def average_pool(x: Tensor) -> Tensor:

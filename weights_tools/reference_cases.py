@@ -80,7 +80,9 @@ def stored(path: Path) -> Reference:
     """A network file on a panorama with as many depths as SLAM has."""
     graph, weights = network_file.read(path)
     size = (256, 512)
-    inputs = _panorama_inputs(graph, size, 0.006, seed=0)
+    # Pooling by confidence takes the one or the other of two that differ by rounding only, which changes
+    # the result by more than rounding. With this seed no two are so alike.
+    inputs = _panorama_inputs(graph, size, 0.006, seed=1)
     dtype = next(iter(weights.values())).dtype.type
     return Reference(path.stem, graph, weights, {f"{size[0]}x{size[1]}": inputs}, dtype)
 
@@ -213,10 +215,12 @@ def _pooling(b: Builder, _: Sizes) -> dict[str, list[str]]:
 
 def _upsampling(b: Builder, sizes: Sizes) -> dict[str, list[str]]:
     wide, x, weights = b.input("wide", 18), b.input("x", 1), b.input("weights", 36)
+    affinity = b.slice("affinity", weights, 9, 9)
     b.upsample_nearest("nearest", wide)
     for b.padding in sizes.paddings:
         b.upsample_bilinear(f"bilinear_{b.padding}", wide)
         b.convex_upsample(f"convex_{b.padding}", x, weights)
+        b.convex_filter(f"filter_{b.padding}", x, affinity)
     return {"not_finite": ["wide", "x"]}
 
 

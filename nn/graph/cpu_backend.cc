@@ -59,8 +59,8 @@ class RunMaker {
     };
   }
   Step::Run operator()(const ConvexUpsampleOp& op) const {
-    return [padding = op.padding, threads = threads_](Views in, Views out, Scratch) {
-      ConvexUpsample(in[0], in[1], out[0], padding, threads);
+    return [op, threads = threads_](Views in, Views out, Scratch) {
+      ConvexUpsample(in[0], in[1], out[0], op.factor, op.padding, threads);
     };
   }
   Step::Run operator()(const AveragePoolOp&) const { return Simple(AveragePool); }

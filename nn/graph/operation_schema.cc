@@ -54,6 +54,12 @@ Operation ReadPadded(JsonObject* attributes) {
   return Op{ReadPadding(attributes)};
 }
 
+Operation ReadConvexUpsample(JsonObject* attributes) {
+  ConvexUpsampleOp op{.padding = ReadPadding(attributes)};
+  if (attributes->Has("factor")) op.factor = attributes->Integer("factor", 1, 2);
+  return op;
+}
+
 Operation ReadConvolution(JsonObject* attributes) {
   return ConvolutionOp{attributes->Integer("stride", 1, 2), ReadPadding(attributes)};
 }
@@ -84,7 +90,7 @@ constexpr std::array<OperationSchema, std::variant_size_v<Operation>> kSchemas =
     {"dense", 1, 1, 1, true, ReadNothing<DenseOp>},
     Unary("upsample_nearest", ReadNothing<UpsampleNearestOp>),
     Unary("upsample_bilinear", ReadPadded<UpsampleBilinearOp>),
-    {"convex_upsample", 2, 2, 1, false, ReadPadded<ConvexUpsampleOp>},
+    {"convex_upsample", 2, 2, 1, false, ReadConvexUpsample},
     Unary("average_pool", ReadNothing<AveragePoolOp>),
     Unary("global_average_pool", ReadNothing<GlobalAveragePoolOp>),
     Unary("relu", ReadNothing<ReluOp>),

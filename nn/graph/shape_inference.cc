@@ -72,9 +72,9 @@ class Inference {
   std::vector<Tensor> operator()(const ConvexUpsampleOp& op) const {
     RequirePadding(op.padding);
     RequireChannels(0, 1);
-    RequireChannels(1, 36);  // 3x3 neighbours of each of 2x2 pixels
+    RequireChannels(1, 9 * op.factor * op.factor);  // 3x3 neighbours of each pixel of the output
     if (input(0).extent != input(1).extent) Refuse(Describe(0) + ", but " + Describe(1));
-    return {Make(1, Double())};
+    return {Make(1, op.factor == 2 ? Double() : input(0).extent)};
   }
   std::vector<Tensor> operator()(const AveragePoolOp&) const {
     return {Make(input(0).channels, Half())};

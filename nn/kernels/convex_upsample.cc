@@ -38,8 +38,10 @@ HWY_INLINE V Mix(const float* weights, std::ptrdiff_t plane_stride, const V (&ne
   return hn::Div(value, sum);
 }
 
-// Computes two rows of the output from row v of the input.
-void ConvexRows(const TensorView& x, const TensorView& weights, int v, const TensorView& y) {
+// Computes the rows of the output that belong to row v of the input: one, or two if the size is
+// doubled.
+void ConvexRows(const TensorView& x, const TensorView& weights, int v, bool doubles,
+                const TensorView& y) {
   const D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const int columns = x.shape.width;
@@ -47,6 +49,11 @@ void ConvexRows(const TensorView& x, const TensorView& weights, int v, const Ten
     V neighbour[9];
     for (int k = 0; k < 9; ++k) {
       neighbour[k] = hn::LoadU(d, x.row<float>(0, v + k / 3 - 1) + u + k % 3 - 1);
+    }
+    if (!doubles) {
+      hn::Store(Mix(weights.row<float>(0, v) + u, weights.plane_stride, neighbour), d,
+                y.row<float>(0, v) + u);
+      continue;
     }
     for (int i = 0; i < 2; ++i) {
       const V left = Mix(weights.row<float>(18 * i, v) + u, weights.plane_stride, neighbour);
@@ -68,7 +75,7 @@ namespace orb360::nn {
 
 HWY_EXPORT(ConvexRows);
 
-void ConvexUpsample(const TensorView& x, const TensorView& weights, const TensorView& y,
+void ConvexUpsample(const TensorView& x, const TensorView& weights, const TensorView& y, int factor,
                     Padding padding, int threads) {
   for (const TensorView* tensor : {&x, &weights, &y}) {
     ORB360_CHECK(tensor->layout == Layout::kPlanar && tensor->type == DataType::kFloat);
@@ -76,12 +83,13 @@ void ConvexUpsample(const TensorView& x, const TensorView& weights, const Tensor
   const int rows = x.shape.height;
   const int columns = x.shape.width;
   ORB360_CHECK(x.shape.channels == 1, x.shape.channels);
-  ORB360_CHECK((weights.shape == Shape{kConvexUpsampleWeights, rows, columns}));
-  ORB360_CHECK((y.shape == Shape{1, 2 * rows, 2 * columns}));
+  ORB360_CHECK(factor == 1 || factor == 2, factor);
+  ORB360_CHECK((weights.shape == Shape{ConvexUpsampleWeights(factor), rows, columns}));
+  ORB360_CHECK((y.shape == Shape{1, factor * rows, factor * columns}));
   FillHalo(x, padding, kConvexUpsampleHalo);
   const auto convex_rows = HWY_DYNAMIC_DISPATCH(ConvexRows);
 #pragma omp parallel for num_threads(threads) schedule(static)
-  for (int v = 0; v < rows; ++v) convex_rows(x, weights, v, y);
+  for (int v = 0; v < rows; ++v) convex_rows(x, weights, v, factor == 2, y);
 }
 
 }  // namespace orb360::nn

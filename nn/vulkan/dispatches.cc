@@ -148,7 +148,8 @@ class DispatchMaker {
         {&in_[0], &out_[0]}));
   }
   Result operator()(const ConvexUpsampleOp& op) const {
-    return One(ForEachPixel(Shader::kConvexUpsample, {Word(op.padding)}, in_[0].shape,
+    return One(ForEachPixel(Shader::kConvexUpsample, {Word(op.padding), Word(op.factor)},
+                            in_[0].shape,
                             Sized(Parameters() << in_[0] << in_[1] << out_[0], in_[0])));
   }
   Result operator()(const AveragePoolOp&) const {

@@ -115,14 +115,15 @@ class Interpreter {
     return result;
   }
   NodeResult operator()(const ConvexUpsampleOp& op) const {
-    NodeResult result = Make({1, 2 * x().height, 2 * x().width}, 1);
+    const int f = op.factor;
+    NodeResult result = Make({1, f * x().height, f * x().width}, 1);
     ForEach(result.outputs[0].shape, [&](int, int v, int u) {
-      const int first = 9 * (2 * (v % 2) + u % 2);
+      const int first = 9 * (f * (v % f) + u % f);
       double largest = -HUGE_VAL, total = 0, sum = 0, magnitude = 0;
-      for (int i = 0; i < 9; ++i) largest = std::max(largest, in(1).at(first + i, v / 2, u / 2));
+      for (int i = 0; i < 9; ++i) largest = std::max(largest, in(1).at(first + i, v / f, u / f));
       for (int i = 0; i < 9; ++i) {
-        const double fraction = std::exp(in(1).at(first + i, v / 2, u / 2) - largest);
-        const double value = in(0).padded(op.padding, 0, v / 2 + i / 3 - 1, u / 2 + i % 3 - 1);
+        const double fraction = std::exp(in(1).at(first + i, v / f, u / f) - largest);
+        const double value = in(0).padded(op.padding, 0, v / f + i / 3 - 1, u / f + i % 3 - 1);
         total += fraction;
         sum += fraction * value;
         magnitude += fraction * std::abs(value);

@@ -55,7 +55,7 @@ class SizeTest(unittest.TestCase):
         self.check(networks.multi_stream(), 356_242, 186.54)
 
     def test_depth_completion(self) -> None:
-        self.check(networks.depth_completion(), 2_483_253, 5.61)
+        self.check(networks.depth_completion(), 2_483_585, 5.66)
         self.check(networks.coarse_depth_completion(), 2_463_944, 12.39)
 
     def test_layers_of_coarse_depth_completion_cost_what_was_planned(self) -> None:

@@ -189,19 +189,21 @@ class SizeTest(unittest.TestCase):
                 self.assertTrue(torch.equal(pad(x, width, padding), pad(last, width, padding)))
 
     def test_convex_upsampling_weighs_neighbours_by_the_softmax(self) -> None:
-        for padding in PADDINGS:
+        for padding, factor in itertools.product(PADDINGS, (1, 2)):
             for height, width in sizes_for(padding):
-                x, weights = random(1, 1, height, width), random(1, 36, height, width, high=3.0)
-                y = OPERATIONS["convex_upsample"](x, weights, padding=padding)
-                for v, u, i, j in np.ndindex(height, width, 2, 2):
-                    first = 9 * (2 * i + j)
+                x = random(1, 1, height, width)
+                weights = random(1, 9 * factor**2, height, width, high=3.0)
+                y = OPERATIONS["convex_upsample"](x, weights, padding=padding, factor=factor)
+                self.assertEqual(tuple(y.shape[2:]), (factor * height, factor * width))
+                for v, u, i, j in np.ndindex(height, width, factor, factor):
+                    first = 9 * (factor * i + j)
                     fractions = weights[0, first : first + 9, v, u].exp().tolist()
                     neighbours = [
                         pixel(x[0, 0].numpy(), v + dy, u + dx, padding)
                         for dy, dx in itertools.product((-1, 0, 1), repeat=2)
                     ]
                     expected = sum(map(math.prod, zip(fractions, neighbours))) / sum(fractions)
-                    result = y[0, 0, 2 * v + i, 2 * u + j].item()
+                    result = y[0, 0, factor * v + i, factor * u + j].item()
                     self.assertAlmostEqual(result, expected, places=14)
 
 

@@ -19,6 +19,8 @@ from typing import Any
 
 import torch
 
+from weights_tools.ablation import without
+from weights_tools.builder import Description
 from weights_tools.network import Network
 from weights_tools.networks import NETWORKS
 from weights_tools.refusal import refusing
@@ -44,7 +46,12 @@ class Settings:
     fixed_propagation: bool = False  # normalized convolutions of the first estimate stay as they start
     only: str = ""  # layers whose names begin so are trained, the others stay as they start
     batch_normalization: bool = False  # while it is trained; it ends up in the weights
+    zeroed: str = ""  # tensors that count nothing, for ablations; their names with spaces between
     checkpoint_every: int = 500  # steps
+
+
+def describe(network: str, zeroed: str) -> Description:
+    return without(NETWORKS[network](), zeroed.split())
 
 
 def learning_rate(settings: Settings, step: int) -> float:
@@ -72,7 +79,8 @@ class Training:
         self.shards = [path.name for path in shards]
         self.step = 0
         self.stages: list[dict[str, Any]] = []  # of training, before this one
-        description, normalizes = NETWORKS[settings.network](), settings.batch_normalization
+        description = describe(settings.network, settings.zeroed)
+        normalizes = settings.batch_normalization
         self.network = Network(description, settings.seed, normalizes, settings.only).to(device)
         self._model = NoiseModel()
         if not self.network.knows_any_unit:
@@ -233,7 +241,8 @@ def checkpoint_network(state: dict[str, Any]) -> Network:
     settings = state["settings"]
     normalizes = settings["batch_normalization"]
     only = settings.get("only", "")
-    network = Network(NETWORKS[settings["network"]](), normalizes=normalizes, only=only)
+    description = describe(settings["network"], settings.get("zeroed", ""))
+    network = Network(description, normalizes=normalizes, only=only)
     network.load_state_dict(state["mean"])
     return network.eval()
 

@@ -112,12 +112,12 @@ void MedianLogarithm(benchmark::State& state) {
 
 void Convex(benchmark::State& state) {
   const Shape half{1, kHeight / 2, kWidth / 2};
-  const Shape stack{kConvexUpsampleWeights, kHeight / 2, kWidth / 2};
+  const Shape stack{ConvexUpsampleWeights(2), kHeight / 2, kWidth / 2};
   const FilledTensor x(RandomImage(half, -3.0f, 3.0f, 1), Layout::kPlanar, 1);
   const FilledTensor weights(RandomImage(stack, -3.0f, 3.0f, 1), Layout::kPlanar, 0);
   const TensorMemory y(Format({1, kHeight, kWidth}));
   Time(state, Count(stack) + 5 * Count(half),
-       [&](int threads) { ConvexUpsample(x.view, weights.view, y.view, kPadding, threads); });
+       [&](int threads) { ConvexUpsample(x.view, weights.view, y.view, 2, kPadding, threads); });
 }
 
 // The skip of the decoder's largest level: up-sampled there, pooled back.

@@ -36,8 +36,11 @@ NetworkBuilder EveryOperation() {
   net.Node("sum", "add", {"a1", "bilinear"});
   net.Node("product", "multiply", {"sum", "a1"});
   net.Node("first", "slice", {"product"}, {{"first", 3}, {"count", 1}});
+  net.Convolution("affinity", "product", 20, 9, 1);
+  net.Node("filtered", "convex_upsample", {"first", "affinity"},
+           {{"padding", "wrap_replicate"}, {"factor", 1}});
   net.Convolution("mask", "product", 20, 36, 1);
-  net.Node("full", "convex_upsample", {"first", "mask"}, {{"padding", "wrap_replicate"}});
+  net.Node("full", "convex_upsample", {"filtered", "mask"}, {{"padding", "wrap_replicate"}});
   net.Node("mean", "global_average_pool", {"product"});
   net.Dense("g", "mean", 20, 1);
   std::string last = "full";

@@ -192,10 +192,12 @@ class Author {
     if (x.level == kSingle || x.level == 0) return;
     const std::string value =
         net_.Node(NewName(), "slice", {x.name}, {{"first", x.channels - 1}, {"count", 1}});
-    const std::string weights = net_.Convolution(NewName(), x.name, x.channels, 36, 1);
-    made_.push_back(
-        {net_.Node(NewName(), "convex_upsample", {value, weights}, {{"padding", Padding(x)}}), 1,
-         x.level - 1});
+    const int factor = 1 + Below(2);
+    const std::string weights =
+        net_.Convolution(NewName(), x.name, x.channels, 9 * factor * factor, 1);
+    made_.push_back({net_.Node(NewName(), "convex_upsample", {value, weights},
+                               {{"padding", Padding(x)}, {"factor", factor}}),
+                     1, x.level - factor + 1});
   }
   void AddGlobalBranch(const Made& x) {
     const std::string mean = net_.Node(NewName(), "global_average_pool", {x.name});

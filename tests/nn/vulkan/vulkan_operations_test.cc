@@ -72,8 +72,10 @@ TEST_F(VulkanOperations, ChangeTheSizeOfImagesOfAnySize) {
   net.Node("one", "slice", {"average"}, {{"first", 3}, {"count", 1}});
   net.Convolution("weights", "average", 5, 36, 1);
   net.Node("convex", "convex_upsample", {"one", "weights"}, {{"padding", "wrap_replicate"}});
-  for (const char* name :
-       {"quarter", "quarter.1", "root", "root.1", "nearest", "zero", "wrap", "pole", "convex"}) {
+  net.Convolution("nine", "average", 5, 9, 1);
+  net.Node("filter", "convex_upsample", {"one", "nine"}, {{"padding", "zero"}, {"factor", 1}});
+  for (const char* name : {"quarter", "quarter.1", "root", "root.1", "nearest", "zero", "wrap",
+                           "pole", "convex", "filter"}) {
     net.Output(name, name);
   }
   const Graph graph = net.Build();

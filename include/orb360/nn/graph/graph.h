@@ -36,10 +36,12 @@ struct UpsampleNearestOp {};
 struct UpsampleBilinearOp {
   Padding padding = Padding::kZero;  ///< Values around the input.
 };
-/// Doubles height and width of a tensor of one channel: each output pixel is a convex combination
-/// of 3x3 input pixels, with the softmax of nine of the 36 channels of the second input as weights.
+/// Multiplies height and width of a tensor of one channel by `factor`: each output pixel is a
+/// convex combination of 3x3 input pixels, with the softmax of nine of the 9 factor^2 channels of
+/// the second input as weights.
 struct ConvexUpsampleOp {
   Padding padding = Padding::kZero;  ///< Values around the first input.
+  int factor = 2;                    ///< 1 or 2; 1 is a filter whose weights differ at each pixel.
 };
 /// Halves height and width: the mean of each 2x2 square.
 struct AveragePoolOp {};

@@ -1,0 +1,28 @@
+"""Networks in which some tensors count nothing, to measure what these parts gain."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from weights_tools.builder import Description
+from weights_tools.graph import Node
+
+
+def without(description: Description, tensors: Sequence[str]) -> Description:
+    """The same network, but nodes that read one of these tensors read zeros of its shape. Layers stay,
+    those that only led there without an influence. An unknown name is a ValueError."""
+    graph = description.graph
+    inputs = {port["name"] for port in graph.inputs}
+    known = inputs.union(*(node.outputs for node in graph.nodes))
+    for name in tensors:
+        if name not in known:
+            raise ValueError(f'"{graph.name}" has no tensor "{name}"')
+    zero = {name: f"{name}.zero" for name in tensors}
+
+    def zeros(name: str) -> Node:
+        return Node(zero[name], "affine", [name], [zero[name]], {}, {"scale": 0.0, "offset": 0.0})
+
+    nodes = [zeros(port["name"]) for port in graph.inputs if port["name"] in zero]
+    for node in graph.nodes:
+        nodes.append(replace(node, inputs=[zero.get(name, name) for name in node.inputs]))
+        nodes += [zeros(name) for name in node.outputs if name in zero]
+    return replace(description, graph=replace(graph, nodes=nodes))

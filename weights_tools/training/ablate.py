@@ -1,0 +1,101 @@
+"""Trains the coarse network briefly with and without its parts, and prints what each gains:
+
+    python3 -m weights_tools.training.ablate OUT --shards DRIVE.npz ... --validation OTHER.npz ...
+
+Every variant starts from the same weights, whose first estimate was trained before, and sees the same
+images and points. Training is short, so the table compares the variants with each other; it does not
+tell what a released network would reach. Can be stopped at any time, like training.
+"""
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from weights_tools.evaluation.evaluate_shards import evaluate
+from weights_tools.refusal import refusing
+from weights_tools.training.train import Settings, describe, train
+
+NETWORK = "coarse_depth_completion"
+# Each variant and the tensors that count nothing in it.
+VARIANTS = {
+    "complete": "",
+    "without the image": "image",
+    "without the latitude": "latitude level",
+    "without the points beside their first estimate": "points.off points.c",
+    "without the first estimate (the points instead)": "propagated certainty trust",
+    "first estimate as an input only": "trust",
+    "without residual blocks": " ".join(
+        f"encoder{level}_block{block}_second"
+        for level, blocks in ((2, 1), (3, 1), (4, 2), (5, 2))
+        for block in range(1, blocks + 1)
+    ),
+    "encoder of three levels": "lateral3.up",
+    "upsampling by equal weights": "shares",
+}
+POINTS = ("300", "1000", "20000")
+# The size of images for which products are counted.
+HEIGHT, WIDTH = 256, 512
+_FIRST = Settings(network="propagation", steps=200, warm_up=20, rate=1e-2, decay=0, average=0.98)
+
+
+def products(zeroed: str) -> float:
+    """Millions of multiply-accumulates of the layers that a result depends on."""
+    description = describe(NETWORK, zeroed)
+    needed = {port["tensor"] for port in description.graph.outputs}
+    for node in reversed(description.graph.nodes):
+        if needed.intersection(node.outputs) and not node.name.endswith(".zero"):
+            needed.update(node.inputs)
+    costs = description.multiply_accumulates(HEIGHT, WIDTH)
+    return sum(cost for node, cost in costs.items() if node in needed) / 1e6
+
+
+def ablate(
+    out: Path, settings: Settings, shards: Sequence[Path], validation: Sequence[Path]
+) -> None:
+    """Trains all variants and prints a line for each."""
+    device = torch.device("cpu")
+    first = replace(_FIRST, steps=min(_FIRST.steps, settings.steps), bfloat16=settings.bfloat16)
+    train(first, out / "propagation", shards, [], device)
+    starts = [out / "propagation" / "checkpoint.pt"]
+    rows = []
+    for number, (name, zeroed) in enumerate(VARIANTS.items()):
+        folder = out / f"variant{number}"
+        network = train(replace(settings, zeroed=zeroed), folder, shards, [], device, starts).eval()
+        errors: dict[str, list[float]] = {}
+        for _, kind, measured in evaluate(network, validation, POINTS, 1):
+            errors.setdefault(kind, []).extend(measured.absrel)
+        means = [f"{np.mean(errors[kind]):.3f}" for kind in POINTS]
+        rows.append("| " + " | ".join([name, *means, f"{products(zeroed):.0f}"]) + " |")
+        print(rows[-1], flush=True)
+    print("\n| | " + " | ".join(f"{count} points" for count in POINTS) + " | MMAC |")
+    print("|---|" + "---:|" * (len(POINTS) + 1))
+    print("\n".join(rows))
+
+
+@refusing("ablate")
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("out", type=Path, help="folder for the variants")
+    parser.add_argument("--shards", type=Path, nargs="+", required=True, help="to train on")
+    parser.add_argument("--validation", type=Path, nargs="+", required=True, help="to measure on")
+    parser.add_argument("--steps", type=int, default=1000, help="(default: %(default)s)")
+    parser.add_argument("--batch", type=int, default=8, help="(default: %(default)s)")
+    parser.add_argument("--threads", type=int, default=torch.get_num_threads())
+    parser.add_argument("--bfloat16", action="store_true")
+    arguments = parser.parse_args()
+    torch.set_num_threads(arguments.threads)
+    settings = Settings(
+        network=NETWORK, steps=arguments.steps, batch=arguments.batch, rate=1.5e-3, warm_up=50,
+        average=0.99, fixed_propagation=True, batch_normalization=True, bfloat16=arguments.bfloat16,
+    )  # fmt: skip
+    ablate(arguments.out, settings, arguments.shards, arguments.validation)
+
+
+if __name__ == "__main__":
+    main()
