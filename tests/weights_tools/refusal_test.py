@@ -17,6 +17,8 @@ from tests.weights_tools import drives
 from weights_tools.refusal import refusing
 from weights_tools.training import make_shard, shards
 
+WEIGHTS = Path(__file__).resolve().parent.parent.parent / "weights/encoder_decoder.h5"
+
 
 class RefusalTest(unittest.TestCase):
     def setUp(self) -> None:
@@ -50,7 +52,9 @@ class RefusalTest(unittest.TestCase):
         log.write_text("depth\n0.1\n")
         for command in (
             ("training.train", out, "--shards", damaged),
+            ("training.ablate", out, "--shards", damaged, "--validation", damaged),
             ("training.compare_points", damaged),
+            ("evaluation.error_parts", WEIGHTS, damaged),
             ("training.make_dataset", out, "--seeds", 0, 0, "--circuits", "street-1.acc"),
             ("training.retrain", out, "--circuits", "street-1.acc"),
             ("training.make_shard", damaged, out),

@@ -21,10 +21,10 @@ from weights_tools.evaluation.evaluate_shards import Completes, read_network
 from weights_tools.evaluation.given_points import points_of
 from weights_tools.refusal import refusing
 from weights_tools.training.batches import Frames, collate, plain
-from weights_tools.training.loss import pixel_weights, predicted_depth
+from weights_tools.training.loss import predicted_depth
 from weights_tools.training.shards import Frame
 from weights_tools.training.sparse_points import SparsePoints
-from weights_tools.training.validate import FARTHEST
+from weights_tools.training.validate import measured_weights
 from weights_tools.training.worlds import kind_of
 
 PARTS = ("moving objects", "edges", "near points", "elsewhere")
@@ -54,7 +54,7 @@ def measure(network: Completes, frame: Frame, points: SparsePoints) -> np.ndarra
     """2 x parts: solid angle and its product with the error, as fractions of the solid angle of all
     pixels; None where no surface is near enough."""
     batch = collate([plain(frame, points)])
-    weight = pixel_weights(batch.truth) * (batch.truth <= FARTHEST)
+    weight = measured_weights(batch.truth)
     if weight.sum() == 0:
         return None
     truth = torch.where(batch.truth > 0, batch.truth, 1.0)
@@ -93,13 +93,13 @@ def main() -> None:
     parser.add_argument("--every", type=int, default=1, help="of that many frames one is used")
     arguments = parser.parse_args()
     network = read_network(arguments.network)
+    results = list(evaluate(network, arguments.shards, arguments.points, arguments.every))
     print("| world | points | part | solid angle | AbsRel there | of AbsRel |")
     print("|---|---|---|---:|---:|---:|")
-    results = evaluate(network, arguments.shards, arguments.points, arguments.every)
     for world, kind, (weights, errors) in results:
         for part, weight, error in zip(PARTS, weights, errors):
             inside = f"{error / weight:.3f}" if weight > 0 else "–"
-            print(f"| {world} | {kind} | {part} | {weight:.3f} | {inside} | {error:.4f} |", flush=True)
+            print(f"| {world} | {kind} | {part} | {weight:.3f} | {inside} | {error:.4f} |")
 
 
 if __name__ == "__main__":

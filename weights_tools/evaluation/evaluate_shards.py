@@ -21,11 +21,11 @@ from weights_tools import network_file
 from weights_tools.evaluation.given_points import SLAM, points_of
 from weights_tools.refusal import refusing
 from weights_tools.training.batches import Frames, collate, plain
-from weights_tools.training.loss import pixel_weights, predicted_depth
+from weights_tools.training.loss import predicted_depth
 from weights_tools.training.shards import Frame
 from weights_tools.training.sparse_points import SparsePoints
 from weights_tools.training.train import checkpoint_network, read_checkpoint
-from weights_tools.training.validate import FARTHEST
+from weights_tools.training.validate import measured_weights
 from weights_tools.training.worlds import kind_of
 
 # Outputs of a network by name, of its inputs.
@@ -74,7 +74,7 @@ def read_network(path: Path) -> Completes:
 def measure(network: Completes, frame: Frame, points: SparsePoints, errors: Errors) -> None:
     batch = collate([plain(frame, points)])
     outputs = network(batch.inputs)
-    weight = pixel_weights(batch.truth) * (batch.truth <= FARTHEST)
+    weight = measured_weights(batch.truth)
     if weight.sum() == 0:
         return
     truth = torch.where(batch.truth > 0, batch.truth, 1.0)

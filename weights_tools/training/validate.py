@@ -12,10 +12,15 @@ from weights_tools.training.batches import Batch, Frames, collate, plain
 from weights_tools.training.loss import pixel_weights, predicted_depth
 from weights_tools.training.sparse_points import NoiseModel, simulate
 
-FARTHEST = 80.0  # metres; farther pixels are ignored
+_FARTHEST = 80.0  # metres; farther pixels are ignored
 # Metres between the bins of range in which the least confident pixels are dropped.
 BINS = (0.0, 5.0, 10.0, 20.0, 40.0, 80.0)
 DROPPED = 0.2
+
+
+def measured_weights(truth: Tensor) -> Tensor:
+    """Solid angle of the pixels in which errors are measured: surfaces that are not too far."""
+    return pixel_weights(truth) * (truth <= _FARTHEST)
 
 
 def fixed_batches(frames: Frames, size: int, model: NoiseModel) -> Iterator[Batch]:
@@ -46,7 +51,7 @@ def validate(
 def _sums(network: Network, tensors: Mapping[str, Tensor], batch: Batch) -> dict[str, float]:
     """`absrel` and `delta1` times the weight of their pixels, the others times the frames."""
     outputs = {port["name"]: tensors[port["tensor"]] for port in network.description.graph.outputs}
-    weight = pixel_weights(batch.truth) * (batch.truth <= FARTHEST)
+    weight = measured_weights(batch.truth)
     depth = predicted_depth(outputs) / batch.scale
     truth = torch.where(batch.truth > 0, batch.truth, 1.0)
     relative = (depth - truth).abs() / truth

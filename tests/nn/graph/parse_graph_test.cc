@@ -184,6 +184,8 @@ TEST(ParseGraph, RefusesNodesWithTheirNameAndTheReason) {
       {"full", R"({"inputs": ["first", "product"]})", "should have 36"},
       {"full", R"({"inputs": ["product", "mask"]})", "should have 1"},
       {"full", R"({"inputs": ["latitude", "mask"]})", "\"mask\" has 36 channels at 1/2"},
+      {"filtered", R"({"attributes": {"factor": 3}})", "integer from 1 to 2"},
+      {"filtered", R"({"attributes": {"factor": 2}})", "should have 36"},
       {"pooled", R"({"attributes": {"rule": "half"}})", "should be one of quarter, sqrt"},
       {"pooled", R"({"inputs": ["points.2", "points.2"]})", "has no half"},
       {"up", R"({"inputs": ["points.2"]})", "not up-sampled"},
@@ -201,7 +203,7 @@ TEST(ParseGraph, RefusesNodesWithTheirNameAndTheReason) {
     });
     EXPECT_THAT(refusal, HasSubstr(reason)) << node << " " << patch;
     if (!json::parse(patch).contains("op") || json::parse(patch)["op"].is_string()) {
-      EXPECT_THAT(refusal, HasSubstr("\"" + std::string(node) + "\"")) << patch;
+      EXPECT_THAT(refusal, HasSubstr(std::string("\"").append(node).append("\""))) << patch;
     }
   }
 }
