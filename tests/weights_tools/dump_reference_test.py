@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from weights_tools import network_file
+from weights_tools import network_file, networks
 from weights_tools.dump_reference import DATA, dump
 from weights_tools.operations import OPERATIONS
 from weights_tools.reference_cases import full_networks, references
@@ -68,9 +68,8 @@ class DumpReferenceTest(unittest.TestCase):
             reference.name: sum(values.size for values in reference.weights.values())
             for reference in full_networks()
         }
-        self.assertEqual(parameters["encoder_decoder"], 484_203)
-        self.assertEqual(parameters["multi_stream"], 356_242)
-        self.assertEqual(parameters["depth_completion"], 2_483_253)
+        for full in (networks.encoder_decoder, networks.multi_stream, networks.depth_completion):
+            self.assertEqual(parameters[full.__name__], full().parameters)
 
 
 if __name__ == "__main__":
