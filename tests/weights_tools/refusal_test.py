@@ -53,6 +53,7 @@ class RefusalTest(unittest.TestCase):
         for command in (
             ("training.train", out, "--shards", damaged),
             ("training.ablate", out, "--shards", damaged, "--validation", damaged),
+            ("training.scaling", out, "--shards", *[damaged] * 8, "--validation", damaged),
             ("training.compare_points", damaged),
             ("evaluation.error_parts", WEIGHTS, damaged),
             ("training.make_dataset", out, "--seeds", 0, 0, "--circuits", "street-1.acc"),

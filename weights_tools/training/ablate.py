@@ -17,9 +17,14 @@ import torch
 
 from weights_tools.evaluation.evaluate_shards import evaluate
 from weights_tools.refusal import refusing
+from weights_tools.training.short_training import (
+    NETWORK,
+    add_options,
+    settings_of,
+    train_first_estimate,
+)
 from weights_tools.training.train import Settings, describe, train
 
-NETWORK = "coarse_depth_completion"
 # Each variant and the tensors that count nothing in it.
 VARIANTS = {
     "complete": "",
@@ -39,7 +44,6 @@ VARIANTS = {
 POINTS = ("300", "1000", "20000")
 # The size of images for which products are counted.
 HEIGHT, WIDTH = 256, 512
-_FIRST = Settings(network="propagation", steps=200, warm_up=20, rate=1e-2, decay=0, average=0.98)
 
 
 def products(zeroed: str) -> float:
@@ -58,9 +62,7 @@ def ablate(
 ) -> None:
     """Trains all variants and prints a line for each."""
     device = torch.device("cpu")
-    first = replace(_FIRST, steps=min(_FIRST.steps, settings.steps), bfloat16=settings.bfloat16)
-    train(first, out / "propagation", shards, [], device)
-    starts = [out / "propagation" / "checkpoint.pt"]
+    starts = [train_first_estimate(out, settings, shards)]
     rows = []
     for number, (name, zeroed) in enumerate(VARIANTS.items()):
         folder = out / f"variant{number}"
@@ -81,20 +83,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("out", type=Path, help="folder for the variants")
-    parser.add_argument("--shards", type=Path, nargs="+", required=True, help="to train on")
-    parser.add_argument("--validation", type=Path, nargs="+", required=True, help="to measure on")
-    parser.add_argument("--steps", type=int, default=1000, help="(default: %(default)s)")
-    parser.add_argument("--batch", type=int, default=8, help="(default: %(default)s)")
-    parser.add_argument("--threads", type=int, default=torch.get_num_threads())
-    parser.add_argument("--bfloat16", action="store_true")
+    add_options(parser, steps=1000)
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
-    settings = Settings(
-        network=NETWORK, steps=arguments.steps, batch=arguments.batch, rate=1.5e-3, warm_up=50,
-        average=0.99, fixed_propagation=True, batch_normalization=True, bfloat16=arguments.bfloat16,
-    )  # fmt: skip
-    ablate(arguments.out, settings, arguments.shards, arguments.validation)
+    ablate(arguments.out, settings_of(arguments), arguments.shards, arguments.validation)
 
 
 if __name__ == "__main__":
