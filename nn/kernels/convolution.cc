@@ -71,8 +71,8 @@ AlignedVector<float> PackDirect(const ConvolutionSpec& spec, std::span<const flo
 }
 
 // Gives every thread the same number of batches of tiles, or one less.
-int CountBatches(int tiles, int threads) {
-  const int batches = (tiles + kMaxWinogradTiles - 1) / kMaxWinogradTiles;
+int CountBatches(int tiles, int stride, int threads) {
+  const int batches = (tiles + MaxWinogradTiles(stride) - 1) / MaxWinogradTiles(stride);
   return std::min(tiles, (batches + threads - 1) / threads * threads);
 }
 
@@ -82,8 +82,8 @@ void RunByTiles(const WinogradConvolution& run, const DirectConvolution& direct,
   const int width = run.output.shape.width;
   const int tiles = CountWinogradTiles(run.output.shape);
   const int across = (width + kWinogradTile - 1) / kWinogradTile;
-  const std::size_t bytes = WinogradScratchBytes(run.input.shape.channels);
-  const int batches = CountBatches(tiles, threads);
+  const std::size_t bytes = WinogradScratchBytes(run.input.shape.channels, run.stride);
+  const int batches = CountBatches(tiles, run.stride, threads);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
   for (int batch = 0; batch < batches; ++batch) {
     const auto begin = static_cast<int>(std::int64_t{batch} * tiles / batches);
@@ -112,7 +112,7 @@ void RunInBytes(const Int8Convolution& run, int band, std::byte* scratch, std::s
 }  // namespace
 
 bool ConvolutionSpec::is_winograd() const {
-  return type == DataType::kFloat && kernel == 3 && stride == 1 &&
+  return type == DataType::kFloat && kernel == 3 &&
          std::min(in_channels, out_channels) >= kFewestWinogradChannels && may_tile;
 }
 
@@ -145,7 +145,7 @@ Convolution::Convolution(const ConvolutionSpec& spec, std::span<const float> wei
     groups_ = DirectGroups(channels);
     weight_ = PackDirect(spec, weight, groups_);
     if (spec_.is_winograd()) {
-      filters_ = PackWinograd(weight, spec.out_channels, spec.in_channels, groups_);
+      filters_ = PackWinograd(weight, spec.out_channels, spec.in_channels, spec.stride, groups_);
     }
   }
 }
@@ -155,7 +155,7 @@ std::size_t Convolution::ScratchBytes(const Shape& input, int threads) const {
     const int band = RowsInByteBand(spec_, input, OutputShape(input).height, threads);
     return threads * Int8ScratchBytes(input, spec_.kernel, spec_.stride, band);
   }
-  return spec_.is_winograd() ? threads * WinogradScratchBytes(spec_.in_channels) : 0;
+  return spec_.is_winograd() ? threads * WinogradScratchBytes(spec_.in_channels, spec_.stride) : 0;
 }
 
 Shape Convolution::OutputShape(const Shape& input) const {
@@ -186,18 +186,19 @@ std::int64_t Convolution::RunProducts(const TensorView& input, std::span<std::by
                                       int threads) const {
   if (!spec_.is_winograd()) return 0;
   ORB360_CHECK(scratch.size() >= ScratchBytes(input.shape, threads), scratch.size());
-  const WinogradConvolution run{1, &groups_, filters_.data(), bias_.data(), input, {}, {}};
+  const WinogradConvolution run{spec_.stride, 1,     &groups_, filters_.data(),
+                                bias_.data(), input, {},       {}};
   const int tiles = CountWinogradTiles(OutputShape(input.shape));
-  const int batches = CountBatches(tiles, threads);
-  const std::size_t bytes = WinogradScratchBytes(spec_.in_channels);
+  const int batches = CountBatches(tiles, spec_.stride, threads);
+  const std::size_t bytes = WinogradScratchBytes(spec_.in_channels, spec_.stride);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
   for (int batch = 0; batch < batches; ++batch) {
     const auto begin = static_cast<int>(std::int64_t{batch} * tiles / batches);
     const auto end = static_cast<int>((std::int64_t{batch} + 1) * tiles / batches);
     RunWinogradProducts(run, end - begin, scratch.data() + omp_get_thread_num() * bytes);
   }
-  constexpr int kProductsOfTile = (kWinogradTile + 2) * (kWinogradTile + 2);
-  return std::int64_t{kProductsOfTile} * tiles * spec_.in_channels * spec_.out_channels;
+  return std::int64_t{WinogradProducts(spec_.stride)} * tiles * spec_.in_channels *
+         spec_.out_channels;
 }
 
 void Convolution::Run(const TensorView& input, const TensorView* residual, const TensorView& output,
@@ -211,8 +212,9 @@ void Convolution::Run(const TensorView& input, const TensorView* residual, const
   const DirectConvolution direct{spec_.kernel, spec_.stride, spec_.slope, &groups_, weight_.data(),
                                  bias_.data(), input,        added,       output};
   if (spec_.is_winograd()) {
-    RunByTiles({spec_.slope, &groups_, filters_.data(), bias_.data(), input, added, output}, direct,
-               scratch.data(), threads);
+    RunByTiles(
+        {spec_.stride, spec_.slope, &groups_, filters_.data(), bias_.data(), input, added, output},
+        direct, scratch.data(), threads);
     return;
   }
   if (spec_.type == DataType::kInt8) {

@@ -27,7 +27,8 @@ struct ConvolutionSpec {
   DataType type = DataType::kFloat;
   /// Whether 3x3 convolutions of floats with many channels may be computed in tiles of
   /// kConvolutionTile x kConvolutionTile outputs by Winograd's method, which is 2 to 3 times as
-  /// fast. An image that is shifted by a fraction of a tile is then rounded differently.
+  /// fast, with a stride of 2 1.3 times. An image that is shifted by a fraction of a tile is then
+  /// rounded differently.
   bool may_tile = true;
   /// For kInt8: the range of inputs that is rounded to 8 bits; what is outside becomes its end. NaN
   /// becomes the upper end.

@@ -75,14 +75,17 @@ HWY_NOINLINE void StorePlanarTile(const Row& row, const float* sums, int vectors
   int whole_channels = 0;
   int whole_pixels = 0;
 #if HWY_TARGET != HWY_SCALAR
-  // Squares of 4 channels x 4 pixels are transposed in registers.
+  // Squares of 4 channels x 4 pixels are transposed in registers. The last ones may overlap, but
+  // for a residual, which may be in the place of the output.
   const hn::Full128<float> d;
   const hn::Full128<double> d_pair;
   const auto slope = hn::Set(d, row.slope);
   whole_channels = channels / 4 * 4;
-  whole_pixels = pixels / 4 * 4;
+  const bool may_overlap = residual == nullptr && pixels >= 4;
+  whole_pixels = may_overlap ? pixels : pixels / 4 * 4;
   for (int c = 0; c < whole_channels; c += 4) {
-    for (int p = 0; p < whole_pixels; p += 4) {
+    for (int first = 0; first < whole_pixels; first += 4) {
+      const int p = std::min(first, pixels - 4);
       const float* from = sums + (c / kLanes * pixels + p) * kLanes + c % kLanes;
       const auto p0 = hn::LoadU(d, from);
       const auto p1 = hn::LoadU(d, from + kLanes);

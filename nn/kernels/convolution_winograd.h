@@ -10,11 +10,13 @@
 
 namespace orb360::nn {
 
-/// One run of a 3x3 convolution of stride 1 by Winograd's minimal filtering F(4x4, 3x3). Every tile
-/// of 4x4 outputs takes 36 products for each pair of channels in place of 144. Input tiles of 6x6,
-/// filters and outputs are transformed (Lavin and Gray, "Fast Algorithms for Convolutional Neural
-/// Networks", 2016).
+/// One run of a 3x3 convolution by Winograd's minimal filtering (Lavin and Gray, "Fast Algorithms
+/// for Convolutional Neural Networks", 2016). Every tile of 4x4 outputs takes 36 products for each
+/// pair of channels in place of 144, F(4x4, 3x3), or 81 with a stride of 2, where the polyphase
+/// components of the filter have 2x2, 2x1, 1x2 and 1x1 taps: F(4, 2) in the directions of two taps.
+/// Input tiles of 6x6 or 9x9, filters and outputs are transformed.
 struct WinogradConvolution {
+  int stride = 1;  // or 2
   float slope = 1;
   const std::vector<int>* groups = nullptr;  // as for the direct kernel
   const float* weight = nullptr;             // by PackWinograd
@@ -24,26 +26,26 @@ struct WinogradConvolution {
   TensorView output;                         // floats
 };
 
-/// Transforms the filters, out_channels x in_channels x 3 x 3, to [group][product of 36][input
+/// Transforms the filters, out_channels x in_channels x 3 x 3, to [group][36 of them][input
 /// channel][output channel].
 AlignedVector<float> PackWinograd(std::span<const float> weight, int out_channels, int in_channels,
-                                  const std::vector<int>& groups);
+                                  int stride, const std::vector<int>& groups);
 
 /// Number of outputs of a tile in a row.
 constexpr int kWinogradTile = 4;
 
-/// Products of a tile over those of its definition.
-constexpr double kWinogradProductFraction = 36.0 / 144;
+/// Products of a tile for each pair of channels; the definition has 144.
+constexpr int WinogradProducts(int stride) { return stride == 1 ? 36 : 81; }
 
 /// Returns the number of tiles that cover the output; they are counted row by row.
 int CountWinogradTiles(const Shape& output);
 
-/// Largest number of tiles that RunWinograd takes at once: two register tiles of 14; it may be at
-/// most 32.
-constexpr int kMaxWinogradTiles = 28;
+/// Largest number of tiles that RunWinograd takes at once, at most 32: register tiles of 14, or of
+/// 12 or 6 where tiles have more products. They stay in the second-level cache.
+constexpr int MaxWinogradTiles(int stride) { return stride == 1 ? 28 : 12; }
 
 /// Bytes of scratch memory that RunWinograd needs.
-std::size_t WinogradScratchBytes(int in_channels);
+std::size_t WinogradScratchBytes(int in_channels, int stride);
 
 /// Computes tiles `first` to `last` - 1. `scratch` is aligned to kAlignment. Tiles whose input
 /// contains NaN or infinity, which would spread over the whole tile, are not computed: bit i of the

@@ -25,24 +25,32 @@ struct Row {
   int count;
 };
 
-// Copies channel by channel, for any layouts and types.
+// Copies channel by channel, for any layouts and types, in parts of a row whose blocks stay in the
+// first-level cache until all their channels are written.
 template <typename From, typename To>
 void CopySingly(const TensorView& from, const TensorView& to, const Row& row) {
+  constexpr int kPixels = 128;
   const int from_step = StepOf(from);
   const int to_step = StepOf(to);
-  for (int i = 0; i < row.count; ++i) {
-    const int source = row.from_first + i;
-    const int target = row.to_first + i;
-    const From* read = from.row<From>(source / from_step, row.y) + source % from_step;
-    To* write = to.row<To>(target / to_step, row.y) + target % to_step;
-    for (int x = 0; x < to.shape.width; ++x) {
-      write[x * to_step] = Converted(ToFloat(read[x * from_step]), write);
+  // A last block that is not full ends with zeros.
+  const int in_last = to.shape.channels % to_step;
+  const bool ends_block = row.to_first + row.count == to.shape.channels && in_last != 0;
+  for (int first = 0; first < to.shape.width; first += kPixels) {
+    const int last = std::min(first + kPixels, to.shape.width);
+    for (int i = 0; i < row.count; ++i) {
+      const int source = row.from_first + i;
+      const int target = row.to_first + i;
+      const From* read = from.row<From>(source / from_step, row.y) + source % from_step;
+      To* write = to.row<To>(target / to_step, row.y) + target % to_step;
+      for (int x = first; x < last; ++x) {
+        write[x * to_step] = Converted(ToFloat(read[x * from_step]), write);
+      }
     }
-  }
-  if (row.to_first + row.count != to.shape.channels) return;
-  for (int channel = to.shape.channels; channel % to_step != 0; ++channel) {
-    To* write = to.row<To>(channel / to_step, row.y) + channel % to_step;
-    for (int x = 0; x < to.shape.width; ++x) write[x * to_step] = To{};
+    if (!ends_block) continue;
+    To* block = to.row<To>(to.shape.channels / to_step, row.y);
+    for (int x = first; x < last; ++x) {
+      std::fill(block + x * to_step + in_last, block + (x + 1) * to_step, To{});
+    }
   }
 }
 

@@ -56,7 +56,7 @@ nlohmann::json Work(const Graph& graph, int height, DataType precision) {
     if (!std::holds_alternative<ConvolutionOp>(node.operation)) continue;
     const ConvolutionSpec spec = CpuConvolutionSpec(graph, nodes[i], precision);
     double count = static_cast<double>(MultiplyAdds(graph, node, height, 2 * height));
-    if (spec.is_winograd()) count *= kWinogradProductFraction;
+    if (spec.is_winograd()) count *= WinogradProducts(spec.stride) / 144.0;
     // Images are multiplied as floats.
     const bool is_float =
         spec.type == DataType::kBFloat16 && spec.in_channels <= kMaxPlanarChannels;

@@ -13,28 +13,31 @@ constexpr Layout kLayouts[] = {Layout::kPlanar, Layout::kBlocked};
 constexpr DataType kTypes[] = {DataType::kFloat, DataType::kBFloat16};
 
 TEST(CopyChannels, MovesAnyChannelsBetweenAnyLayouts) {
-  const PlainImage source = RandomImage({50, 3, 7}, -1, 1, 1);
-  struct Range {
-    int from, to, count, channels;  // the last: of the target
-  };
-  for (const Layout from_layout : kLayouts) {
-    for (const Layout to_layout : kLayouts) {
-      for (const Range& range : {Range{0, 0, 50, 50}, Range{16, 32, 16, 48}, Range{3, 5, 20, 40},
-                                 Range{49, 0, 1, 1}, Range{32, 16, 18, 34}, Range{32, 0, 18, 20}}) {
-        for (const int threads : {1, 2}) {
-          const FilledTensor from(source, from_layout, 1);
-          PlainImage expected = RandomImage({range.channels, 3, 7}, 2, 3, 2);
-          const FilledTensor to(expected, to_layout, 0);
-          CopyChannels(from.view, range.from, to.view, range.to, range.count, threads);
-          for (int i = 0; i < range.count; ++i) {
-            for (int y = 0; y < 3; ++y) {
-              for (int x = 0; x < 7; ++x) {
-                expected.at(range.to + i, y, x) = source.at(range.from + i, y, x);
+  for (const int width : {7, 300}) {
+    const PlainImage source = RandomImage({50, 3, width}, -1, 1, 1);
+    struct Range {
+      int from, to, count, channels;  // the last: of the target
+    };
+    for (const Layout from_layout : kLayouts) {
+      for (const Layout to_layout : kLayouts) {
+        for (const Range& range :
+             {Range{0, 0, 50, 50}, Range{16, 32, 16, 48}, Range{3, 5, 20, 40}, Range{49, 0, 1, 1},
+              Range{32, 16, 18, 34}, Range{32, 0, 18, 20}}) {
+          for (const int threads : {1, 2}) {
+            const FilledTensor from(source, from_layout, 1);
+            PlainImage expected = RandomImage({range.channels, 3, width}, 2, 3, 2);
+            const FilledTensor to(expected, to_layout, 0);
+            CopyChannels(from.view, range.from, to.view, range.to, range.count, threads);
+            for (int i = 0; i < range.count; ++i) {
+              for (int y = 0; y < 3; ++y) {
+                for (int x = 0; x < width; ++x) {
+                  expected.at(range.to + i, y, x) = source.at(range.from + i, y, x);
+                }
               }
             }
+            SCOPED_TRACE(testing::Message() << range.from << " to " << range.to);
+            ExpectEqual(to.view, expected);
           }
-          SCOPED_TRACE(testing::Message() << range.from << " to " << range.to);
-          ExpectEqual(to.view, expected);
         }
       }
     }
