@@ -31,7 +31,7 @@ HWY_INLINE V Mix(const float* weights, std::ptrdiff_t plane_stride, const V (&ne
   V sum = hn::Zero(d);
   V value = hn::Zero(d);
   for (int k = 0; k < 9; ++k) {
-    const V fraction = UnlessNan(weight[k], hn::Exp(d, hn::Sub(weight[k], largest)));
+    const V fraction = ExpOfWeight(d, hn::Sub(weight[k], largest));
     sum = hn::Add(sum, fraction);
     value = hn::MulAdd(fraction, neighbour[k], value);
   }

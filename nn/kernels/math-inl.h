@@ -31,6 +31,25 @@ HWY_INLINE V TotalExp(D d, V x) {
   return UnlessNan(x, hn::Exp(d, hn::Min(x, hn::Set(d, 104.0f))));
 }
 
+/// e^x for weights of a softmax, where x is at most 0: within 4 units and a relative error of 2^-24
+/// |x|; 2^-126 below that. Takes a third of the time of TotalExp.
+template <class D, class V>
+HWY_INLINE V ExpOfWeight(D d, V x) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::RebindToSigned<D> di;
+  const V binary = hn::Max(hn::Mul(x, hn::Set(d, 1.44269504f)), hn::Set(d, -126.0f));
+  const V whole = hn::Round(binary);
+  const V rest = hn::Sub(binary, whole);
+  // 2^rest between -1/2 and 1/2, of the least largest relative error: 9e-8.
+  V y = hn::MulAdd(rest, hn::Set(d, 0.00132647203f), hn::Set(d, 0.00967151299f));
+  y = hn::MulAdd(rest, y, hn::Set(d, 0.0555073358f));
+  y = hn::MulAdd(rest, y, hn::Set(d, 0.240222424f));
+  y = hn::MulAdd(rest, y, hn::Set(d, 0.693147004f));
+  y = hn::MulAdd(rest, y, hn::Set(d, 1.0f));
+  const auto exponent = hn::ShiftLeft<23>(hn::ConvertTo(di, whole));
+  return UnlessNan(x, hn::BitCast(d, hn::Add(hn::BitCast(di, y), exponent)));
+}
+
 /// ln x, within 4 units; -infinity at zero, NaN below.
 template <class D, class V>
 HWY_INLINE V TotalLog(D d, V x) {
