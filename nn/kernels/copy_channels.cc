@@ -89,6 +89,25 @@ void WidenBlocks(const TensorView& from, const TensorView& to, const Row& row) {
   }
 }
 
+// Copies channels that have the same places in their blocks, of the same type.
+template <typename T>
+void CopyLanes(const TensorView& from, const TensorView& to, const Row& row) {
+  const int block = StepOf(to);
+  for (int i = 0; i < row.count;) {
+    const int lane = (row.to_first + i) % block;
+    const int lanes = std::min(block - lane, row.count - i);
+    const T* read = from.row<T>((row.from_first + i) / block, row.y) + lane;
+    T* write = to.row<T>((row.to_first + i) / block, row.y) + lane;
+    const bool ends_block = row.to_first + i + lanes == to.shape.channels;
+    const int fill = ends_block ? block - lane - lanes : 0;
+    for (int x = 0; x < to.shape.width; ++x, read += block, write += block) {
+      std::copy_n(read, lanes, write);
+      std::fill_n(write + lanes, fill, T{});
+    }
+    i += lanes;
+  }
+}
+
 // Copies whole planes of the same layout and type.
 void CopyPlanes(const TensorView& from, const TensorView& to, const Row& row) {
   const int step = StepOf(to);
@@ -119,6 +138,10 @@ CopyRow Choose(const TensorView& from, int from_first, const TensorView& to, int
       from.layout == to.layout && from_first % step == 0 && to_first % step == 0 && ends_whole;
   if (are_whole && from.type == to.type) return CopyPlanes;
   if (are_whole && to.layout == Layout::kBlocked) return from_float ? RoundBlocks : WidenBlocks;
+  if (from.layout == Layout::kBlocked && to.layout == Layout::kBlocked && from.type == to.type &&
+      from_first % step == to_first % step) {
+    return from_float ? CopyLanes<float> : CopyLanes<BFloat16>;
+  }
   if (from_float) return to_float ? CopySingly<float, float> : CopySingly<float, BFloat16>;
   return to_float ? CopySingly<BFloat16, float> : CopySingly<BFloat16, BFloat16>;
 }

@@ -20,9 +20,9 @@ TEST(CopyChannels, MovesAnyChannelsBetweenAnyLayouts) {
     };
     for (const Layout from_layout : kLayouts) {
       for (const Layout to_layout : kLayouts) {
-        for (const Range& range :
-             {Range{0, 0, 50, 50}, Range{16, 32, 16, 48}, Range{3, 5, 20, 40}, Range{49, 0, 1, 1},
-              Range{32, 16, 18, 34}, Range{32, 0, 18, 20}}) {
+        for (const Range& range : {Range{0, 0, 50, 50}, Range{16, 32, 16, 48}, Range{3, 5, 20, 40},
+                                   Range{49, 0, 1, 1}, Range{32, 16, 18, 34}, Range{32, 0, 18, 20},
+                                   Range{0, 0, 24, 27}, Range{21, 5, 29, 40}}) {
           for (const int threads : {1, 2}) {
             const FilledTensor from(source, from_layout, 1);
             PlainImage expected = RandomImage({range.channels, 3, width}, 2, 3, 2);
