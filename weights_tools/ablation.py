@@ -4,13 +4,17 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from weights_tools.builder import Description
-from weights_tools.graph import Node
+from weights_tools.graph import Graph, Node
 
 
 def without(description: Description, tensors: Sequence[str]) -> Description:
-    """The same network, but nodes that read one of these tensors read zeros of its shape. Layers stay,
+    """The same network without what graph_without takes out of it."""
+    return replace(description, graph=graph_without(description.graph, tensors))
+
+
+def graph_without(graph: Graph, tensors: Sequence[str]) -> Graph:
+    """The same graph, but nodes that read one of these tensors read zeros of its shape. Layers stay,
     those that only led there without an influence. An unknown name is a ValueError."""
-    graph = description.graph
     inputs = {port["name"] for port in graph.inputs}
     known = inputs.union(*(node.outputs for node in graph.nodes))
     for name in tensors:
@@ -25,4 +29,4 @@ def without(description: Description, tensors: Sequence[str]) -> Description:
     for node in graph.nodes:
         nodes.append(replace(node, inputs=[zero.get(name, name) for name in node.inputs]))
         nodes += [zeros(name) for name in node.outputs if name in zero]
-    return replace(description, graph=replace(graph, nodes=nodes))
+    return replace(graph, nodes=nodes)

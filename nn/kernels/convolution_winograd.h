@@ -40,8 +40,9 @@ constexpr int WinogradProducts(int stride) { return stride == 1 ? 36 : 81; }
 /// Returns the number of tiles that cover the output; they are counted row by row.
 int CountWinogradTiles(const Shape& output);
 
-/// Largest number of tiles that RunWinograd takes at once, at most 32: register tiles of 14, or of
-/// 12 or 6 where tiles have more products. They stay in the second-level cache.
+/// Largest number of tiles that RunWinograd takes at once, at most 32: whole register tiles, 2 x 14
+/// with AVX-512, and 12 or 2 x 6 with a stride of 2, where a tile has more products. What they take
+/// is about as large as a second-level cache.
 constexpr int MaxWinogradTiles(int stride) { return stride == 1 ? 28 : 12; }
 
 /// Bytes of scratch memory that RunWinograd needs.

@@ -14,7 +14,7 @@ constexpr double kStride1[kFilters][3] = {{1, 0, 0},
                                           {1 / 6.0, kB / 6, 2 / 6.0},
                                           {1 / 6.0, -kB / 6, 2 / 6.0},
                                           {0, 0, 1}};
-// Likewise powers 0 and 1, of the taps of even inputs; that of odd ones stays as it is.
+// Likewise powers 0 and 1, of the two outer taps; that of the centre stays as it is.
 constexpr double kStride2[kFilters][3] = {{1, 0, 0},
                                           {-1 / 1.125, 0, -0.5 / 1.125},
                                           {-1 / 4.5, 0, 1 / 4.5},

@@ -6,17 +6,18 @@ namespace orb360::nn {
 
 constexpr int kOut = kWinogradTile;  // outputs of a tile in a row
 
-// Inputs of a tile in a row, and products of it. With a stride of 2 the even inputs have two taps
-// of the filter, F(4, 2) with 5 products, and the odd ones have one, 4 products.
+// Inputs of a tile in a row, and products of it. With a stride of 2 every second input from the
+// first one on, before the first output's centre, has two taps of the filter, F(4, 2) with 5
+// products; the others, the centres, have one, 4 products.
 constexpr int InputsOf(int stride) { return stride == 1 ? kOut + 3 - 1 : 2 * kOut + 1; }
 constexpr int ProductsOf(int stride) { return InputsOf(stride) * InputsOf(stride); }
 
-// Transformed filters in a row. With a stride of 2 the last one is multiplied with all odd inputs.
+// Transformed filters in a row. With a stride of 2 the last one is multiplied with all centres.
 constexpr int kFilters = 6;
-constexpr int kEvenProducts = kFilters - 1;
+constexpr int kPairProducts = kFilters - 1;
 // The products in a row that take filter `f` are f, f + 1, ... before this one.
 constexpr int EndOfProducts(int stride, int f) {
-  return stride == 2 && f == kEvenProducts ? InputsOf(2) : f + 1;
+  return stride == 2 && f == kPairProducts ? InputsOf(2) : f + 1;
 }
 
 // With a stride of 1 polynomials of degree 5 are evaluated at 0, a, -a, b, -b and infinity, where a

@@ -51,7 +51,7 @@ HWY_INLINE void TransformInput(const V* x, V* out) {
     out[3] = hn::MulAdd(half, difference, x[6]);
     out[4] = hn::NegMulAdd(three_halves, hn::Add(x[4], x[6]), hn::Add(x[2], x[8]));
     HWY_UNROLL(4)
-    for (int i = 0; i < kOut; ++i) out[kEvenProducts + i] = x[2 * i + 1];
+    for (int i = 0; i < kOut; ++i) out[kPairProducts + i] = x[2 * i + 1];
   }
 }
 
@@ -75,12 +75,12 @@ HWY_INLINE void TransformOutput(const V* in, V* out) {
   } else {
     const V half_in = hn::Mul(half, in[1]);
     const V two_in = hn::Mul(two, in[3]);
-    const V* odd = in + kEvenProducts;
-    out[0] = hn::Add(hn::Add(in[0], in[1]), hn::Add(in[2], hn::Add(in[3], odd[0])));
-    out[1] = hn::Add(hn::Sub(half_in, in[2]), hn::Add(two_in, odd[1]));
-    out[2] = hn::Add(hn::MulAdd(half, half_in, in[2]), hn::MulAdd(two, two_in, odd[2]));
+    const V* centre = in + kPairProducts;
+    out[0] = hn::Add(hn::Add(in[0], in[1]), hn::Add(in[2], hn::Add(in[3], centre[0])));
+    out[1] = hn::Add(hn::Sub(half_in, in[2]), hn::Add(two_in, centre[1]));
+    out[2] = hn::Add(hn::MulAdd(half, half_in, in[2]), hn::MulAdd(two, two_in, centre[2]));
     out[3] = hn::Add(hn::MulAdd(hn::Set(d, 0.25f), half_in, hn::Sub(in[4], in[2])),
-                     hn::MulAdd(hn::Set(d, 4.0f), two_in, odd[3]));
+                     hn::MulAdd(hn::Set(d, 4.0f), two_in, centre[3]));
   }
 }
 
@@ -89,15 +89,15 @@ struct Tile {
   int x;
 };
 
-// True for products that together depend on every input of a row: those at 0 and at infinity depend
-// on the even inputs and on the odd ones, or, with a stride of 2, on the even ones alone.
+// True for products that together depend on every input of a row: those at 0 and at infinity, and
+// with a stride of 2 those of the centres.
 template <int kStride>
 constexpr bool IsChecked(int product) {
-  return product == 0 || (kStride == 1 ? product == kFilters - 1 : product >= kEvenProducts - 1);
+  return product == 0 || (kStride == 1 ? product == kFilters - 1 : product >= kPairProducts - 1);
 }
 
 // Transforms the inputs of one tile to `out`, where the results of a block are `stride` apart.
-// Returns false if the inputs, or the results, are not all finite.
+// Returns false if the inputs, or the results that are checked, are not all finite.
 template <int kStride>
 bool TransformTile(const TensorView& input, Tile tile, float* out, ptrdiff_t block_stride,
                    ptrdiff_t stride) {

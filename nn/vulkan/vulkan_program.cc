@@ -19,13 +19,27 @@ std::size_t BytesOf(const Place& place) {
   return Index(place.shape.channels) * place.plane * sizeof(float);
 }
 
-/// Copies rows of `width` floats between two pieces of memory with distances of `from_row` and
-/// `to_row` floats between rows.
-void CopyRows(const float* from, std::size_t from_row, float* to, std::size_t to_row,
+/// Distances in floats between the rows and the planes of an input or output.
+struct Strides {
+  std::size_t row;
+  std::size_t plane;
+};
+
+Strides StridesOf(const Place& place) { return {place.row, place.plane}; }
+
+/// Of the caller's memory.
+Strides DenseStrides(const Shape& shape) {
+  return {Index(shape.width), Index(shape.width) * Index(shape.height)};
+}
+
+void CopyRows(const float* from, const Strides& from_strides, float* to, const Strides& to_strides,
               const Shape& shape) {
-  const std::size_t width = Index(shape.width);
-  for (std::size_t row = 0; row < Index(shape.channels) * Index(shape.height); ++row) {
-    std::memcpy(to + row * to_row, from + row * from_row, width * sizeof(float));
+  for (std::size_t channel = 0; channel < Index(shape.channels); ++channel) {
+    for (std::size_t y = 0; y < Index(shape.height); ++y) {
+      std::memcpy(to + channel * to_strides.plane + y * to_strides.row,
+                  from + channel * from_strides.plane + y * from_strides.row,
+                  Index(shape.width) * sizeof(float));
+    }
   }
 }
 
@@ -222,8 +236,8 @@ void VulkanProgram::Run(std::span<const std::span<const float>> inputs,
   std::byte* to = vulkan.upload.data();
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const Place place = PlaceOf(lowered_.inputs[i]);
-    CopyRows(inputs[i].data(), Index(place.shape.width), reinterpret_cast<float*>(to), place.row,
-             place.shape);
+    CopyRows(inputs[i].data(), DenseStrides(place.shape), reinterpret_cast<float*>(to),
+             StridesOf(place), place.shape);
     to += BytesOf(place);
   }
   vulkan.commands.RunAndWait();
@@ -232,8 +246,8 @@ void VulkanProgram::Run(std::span<const std::span<const float>> inputs,
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const Place place = PlaceOf(lowered_.outputs[i]);
     if (keeps_values_) from = vulkan.download.data() + place.offset * sizeof(float);
-    CopyRows(reinterpret_cast<const float*>(from), place.row, outputs[i].data(),
-             Index(place.shape.width), place.shape);
+    CopyRows(reinterpret_cast<const float*>(from), StridesOf(place), outputs[i].data(),
+             DenseStrides(place.shape), place.shape);
     from += BytesOf(place);
   }
 }

@@ -28,13 +28,30 @@ TEST(Tensor, RowsAreAlignedInEveryLayout) {
     for (const DataType type : {DataType::kFloat, DataType::kBFloat16}) {
       for (const int halo : {0, 1, 2}) {
         const TensorMemory memory({{3, 5, 7}, layout, type, halo});
-        for (int y = -halo; y < 5 + halo; ++y) {
-          EXPECT_EQ(reinterpret_cast<std::uintptr_t>(memory.view.row<std::byte>(0, 0) +
-                                                     y * memory.view.row_stride *
-                                                         static_cast<int>(SizeOf(type))) %
-                        kAlignment,
-                    0u);
+        const auto size = static_cast<std::ptrdiff_t>(SizeOf(type));
+        const TensorView& view = memory.view;
+        for (int plane = 0; plane < view.planes(); ++plane) {
+          for (int y = -halo; y < 5 + halo; ++y) {
+            const std::byte* const row = view.row<std::byte>(0, 0) +
+                                         (plane * view.plane_stride + y * view.row_stride) * size;
+            EXPECT_EQ(reinterpret_cast<std::uintptr_t>(row) % kAlignment, 0u);
+          }
         }
+      }
+    }
+  }
+}
+
+TEST(Tensor, PlanesLieACacheLineMoreThanTheirRowsApart) {
+  for (const Layout layout : {Layout::kPlanar, Layout::kBlocked}) {
+    for (const DataType type : {DataType::kFloat, DataType::kBFloat16}) {
+      for (const int halo : {0, 1}) {
+        const TensorFormat format{{40, 8, 16}, layout, type, halo};
+        const std::ptrdiff_t line = BlockOf(type);
+        EXPECT_EQ(format.plane_stride(), format.row_stride() * (8 + 2 * halo) + line);
+        const std::ptrdiff_t planes = TensorMemory(format).view.planes();
+        EXPECT_EQ(format.bytes(),
+                  static_cast<std::size_t>(planes * format.plane_stride()) * SizeOf(type));
       }
     }
   }

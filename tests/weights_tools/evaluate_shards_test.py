@@ -17,7 +17,7 @@ from weights_tools import networks
 from weights_tools.evaluation import evaluate_shards, given_points
 from weights_tools.export import export
 from weights_tools.network import Network
-from weights_tools.training import shards
+from weights_tools.training import batches, shards, train
 
 
 def knows(factor: float, confidence: float) -> evaluate_shards.Completes:
@@ -69,6 +69,23 @@ class EvaluateShardsTest(unittest.TestCase):
         self.assertEqual(list(rows), [("karts", "slam")])
         count, _, _, error, _ = rows["karts", "slam"]
         self.assertEqual((int(count), error), (self.points, "0.100"))
+
+    def test_without_a_tensor_a_file_and_a_checkpoint_see_zeros_in_its_place(self) -> None:
+        settings = train.Settings(network="coarse_depth_completion", steps=1, batch=1, warm_up=1)
+        paths = [self.folder / "town3.npz"]
+        with contextlib.redirect_stdout(io.StringIO()):
+            trained = train.train(settings, self.folder / "out", paths, [], torch.device("cpu"))
+        export(self.folder / "network.h5", trained, {})
+        seen = batches.collate([batches.plain(drives.frame(), given_points.points_of(drives.frame(), "300", 0))])
+        dark = {**seen.inputs, "image": torch.zeros_like(seen.inputs["image"])}
+        with torch.no_grad():
+            for path in (self.folder / "out/checkpoint.pt", self.folder / "network.h5"):
+                whole, blind = (evaluate_shards.read_network(path, names) for names in ((), ["image"]))
+                expected = whole(dark)["log_depth"]
+                self.assertTrue(torch.equal(blind(seen.inputs)["log_depth"], expected))
+                self.assertFalse(torch.equal(whole(seen.inputs)["log_depth"], expected))
+                with self.assertRaisesRegex(ValueError, 'has no tensor "imaeg"'):
+                    evaluate_shards.read_network(path, ["imaeg"])
 
     def test_prints_a_row_for_each_world_and_kind(self) -> None:
         network = self.folder / "network.h5"

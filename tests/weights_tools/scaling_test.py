@@ -44,6 +44,16 @@ class ScalingTest(unittest.TestCase):
             number = r"\d+\.\d{3}"
             self.assertRegex(lines[5], rf"^\| 9 \| {number} \| {number} \| {number} \|$")
             self.assertIsNotNone(cv2.imread(str(folder / "out/scaling.png")))
+            # A training that was stopped behind its line and before its checkpoint repeats the line.
+            log = folder / "out/drives2/log.csv"
+            log.write_text(log.read_text() + log.read_text().splitlines()[-1] + "\n")
+            again = io.StringIO()
+            with (
+                mock.patch.object(sys, "argv", [str(each) for each in arguments]),
+                contextlib.redirect_stdout(again),
+            ):
+                scaling.main()
+            self.assertEqual(again.getvalue().split("\n\n")[-1].splitlines()[-6:], lines)
 
 
 if __name__ == "__main__":

@@ -1,11 +1,13 @@
 """Measures a network on packed drives, by kind of world and number of points:
 
     python3 -m weights_tools.evaluation.evaluate_shards NETWORK SHARD.npz ... [--points 1000 20000 slam]
+        [--without TENSOR ...]
 
 NETWORK is a checkpoint of training or a network file; it runs in PyTorch at the size of the shards.
 Up to 3,000 points are simulated landmarks, more are simulated stereo; `slam` are the points that
 SLAM itself gave, where the shards have them. Ranges up to 80 m count, by solid angle, with the
-scale of the points taken as known.
+scale of the points taken as known. What the tensors of --without would tell counts nothing: that
+shows how far a trained network relies on them.
 """
 
 import argparse
@@ -18,6 +20,7 @@ import torch
 from torch import Tensor
 
 from weights_tools import network_file
+from weights_tools.ablation import graph_without
 from weights_tools.evaluation.given_points import SLAM, points_of
 from weights_tools.refusal import refusing
 from weights_tools.training.batches import Frames, collate, plain
@@ -58,10 +61,13 @@ class Errors:
         return f"{(observed / stated).min():.2f} to {(observed / stated).max():.2f}"
 
 
-def read_network(path: Path) -> Completes:
+def read_network(path: Path, without: Sequence[str] = ()) -> Completes:
     if path.suffix != ".h5":
-        return checkpoint_network(read_checkpoint(path, torch.device("cpu")))
+        state = read_checkpoint(path, torch.device("cpu"))
+        zeroed = " ".join([state["settings"].get("zeroed", ""), *without])
+        return checkpoint_network({**state, "settings": {**state["settings"], "zeroed": zeroed}})
     file = network_file.read(path)
+    file = file._replace(graph=graph_without(file.graph, without))
 
     def complete(inputs: Mapping[str, Tensor]) -> dict[str, Tensor]:
         tensors = file.run(inputs)
@@ -139,8 +145,10 @@ def main() -> None:
     parser.add_argument("shards", type=Path, nargs="+")
     parser.add_argument("--points", nargs="+", default=POINTS, help="numbers of them, or slam")
     parser.add_argument("--every", type=int, default=1, help="of that many frames one is used")
+    parser.add_argument("--without", nargs="+", default=(), metavar="TENSOR",
+                        help="as `orb360 weights inspect` names them")  # fmt: skip
     arguments = parser.parse_args()
-    network = read_network(arguments.network)
+    network = read_network(arguments.network, arguments.without)
     print("| world | points | given | AbsRel | within 1.25 | error of the points | observed / stated |")
     print("|---|---|---:|---:|---:|---:|---:|")
     results = evaluate(network, arguments.shards, arguments.points, arguments.every)

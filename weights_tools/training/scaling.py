@@ -37,10 +37,11 @@ def measure(
         folder = out / f"drives{len(own)}"
         train(settings, folder, own, validation, torch.device("cpu"), starts)
         with (folder / "log.csv").open() as file:
-            curves[len(own)] = [
-                (int(line["step"]), float(line["depth"]), float(line["unseen_absrel"]))
-                for line in csv.DictReader(file)
-            ]
+            lines = {int(line["step"]): line for line in csv.DictReader(file)}
+        curves[len(own)] = [
+            (step, float(line["depth"]), float(line["unseen_absrel"]))
+            for step, line in sorted(lines.items())
+        ]
     return curves
 
 

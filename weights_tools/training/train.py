@@ -275,11 +275,12 @@ def train(
         since += 1
         if training.step % settings.checkpoint_every == 0 or training.step == end:
             line = {name: value / since for name, value in sums.items()}
-            training.save()
             if unseen:
                 measured = validate(training.mean, unseen, device, settings.bfloat16)
                 line.update({f"unseen_{name}": value for name, value in measured.items()})
+            # Before the checkpoint: a stop between both repeats a line and leaves none out.
             _log(folder / "log.csv", {"step": training.step, **line})
+            training.save()
             sums, since = {}, 0
     return training.mean
 

@@ -97,7 +97,8 @@ struct TensorFormat {
 
   /// Returns the number of elements from a row to the next one, halo and alignment included.
   std::ptrdiff_t row_stride() const;
-  /// Returns the number of elements from a plane to the next one, halo included.
+  /// Returns the number of elements from a plane to the next one: halo and a cache line included,
+  /// so that planes do not lie a power of two apart.
   std::ptrdiff_t plane_stride() const;
   /// Returns the bytes of the whole tensor with its halo, a multiple of kAlignment.
   std::size_t bytes() const;

@@ -13,11 +13,11 @@ namespace {
 
 TensorFormat Planar(const Shape& shape) { return {shape, Layout::kPlanar, DataType::kFloat, 0}; }
 
-void ExpectMixes(int factor, Padding padding, int rows, int columns) {
+// `range`: of the weights.
+void ExpectMixes(int factor, Padding padding, int rows, int columns, float range) {
   const PlainImage x = RandomImage({1, rows, columns}, -3.0f, 3.0f, 1);
-  // Large enough that e^weight alone would overflow.
   const PlainImage w =
-      RandomImage({ConvexUpsampleWeights(factor), rows, columns}, -120.0f, 120.0f, 2);
+      RandomImage({ConvexUpsampleWeights(factor), rows, columns}, -range, range, 2);
   PlainImage expected({1, factor * rows, factor * columns});
   PlainImage tolerance(expected.shape);
   for (int v = 0; v < factor * rows; ++v) {
@@ -31,9 +31,10 @@ void ExpectMixes(int factor, Padding padding, int rows, int columns) {
         const double fraction = std::exp(w.at(first + k, y, left)) / sum;
         const double value = x.padded(padding, 0, y + k / 3 - 1, left + k % 3 - 1);
         expected.at(0, v, u) += fraction * value;
-        // Exp is good to 2 units in the last place, twice, after a difference of up to 240
-        // that is rounded to 2^-17 of it.
-        tolerance.at(0, v, u) += (30 * 0x1p-24 + 240 * 0x1p-24) * fraction * (std::abs(value) + 3);
+        // Twice 4 units and 2^-23 of the exponent, and sums of nine. What is less than 2^-126 of
+        // the largest counts as that.
+        tolerance.at(0, v, u) +=
+            (40 * 0x1p-24 + 4 * range * 0x1p-24) * fraction * (std::abs(value) + 3) + 1e-37;
       }
     }
   }
@@ -53,7 +54,12 @@ TEST(ConvexUpsample, MixesTheNeighboursByTheSoftmaxOfTheWeights) {
          {Padding::kZero, Padding::kWrapReplicate, Padding::kWrapCrossPole}) {
       for (const auto& [rows, columns] : {std::pair{1, 1}, {3, 2}, {2, 17}, {5, 70}}) {
         if (padding == Padding::kWrapCrossPole && columns % 2 != 0) continue;
-        for (const int factor : {1, 2}) ExpectMixes(factor, padding, rows, columns);
+        for (const int factor : {1, 2}) {
+          // Alike, apart, and so large that e^weight alone would overflow.
+          for (const float range : {1.0f, 20.0f, 120.0f}) {
+            ExpectMixes(factor, padding, rows, columns, range);
+          }
+        }
       }
     }
   });
@@ -77,6 +83,21 @@ TEST(ConvexUpsample, SpreadsWhatIsNotANumberInTheWeightsToItsOutputPixelOnly) {
         }
       }
     }
+  });
+}
+
+TEST(ConvexUpsample, TakesNothingOfANeighbourWhoseWeightIsMinusInfinity) {
+  ForEachDispatchTarget([] {
+    PlainImage x({1, 3, 20});
+    x.at(0, 1, 6) = 1e30;
+    PlainImage w({ConvexUpsampleWeights(1), 3, 20});
+    w.at(5, 1, 5) = -std::numeric_limits<double>::infinity();  // of the pixel to the right
+    const FilledTensor input(x, Layout::kPlanar, kConvexUpsampleHalo);
+    const FilledTensor weights(w, Layout::kPlanar, 0);
+    const TensorMemory y(Planar({1, 3, 20}));
+    ConvexUpsample(input.view, weights.view, y.view, 1, Padding::kWrapReplicate, 1);
+    EXPECT_NEAR(At(y.view, 0, 1, 5), 0, 1e-7);
+    EXPECT_GT(At(y.view, 0, 1, 7), 1e29);
   });
 }
 

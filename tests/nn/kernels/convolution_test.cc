@@ -42,33 +42,40 @@ TEST(Convolution, IsThePlainSumForEveryWidth) {
 }
 
 TEST(Convolution, InTilesIsThePlainSumForEverySize) {
-  for (int width = 1; width <= 17; ++width) {
-    for (const int height : {1, 3, 4, 5, 9}) {
-      Case c{{16, 20, 3, 1, Padding::kWrapReplicate, 0.1f}, height, width};
-      c.with_residual = width % 2 == 0;
-      ExpectRight(c);
-      c.output_layout = Layout::kPlanar;
-      ExpectRight(c);
+  for (const int stride : {1, 2}) {
+    for (int width = 1; width <= 17 * stride; ++width) {
+      for (const int height : {1, 3, 4, 5, 9, 16}) {
+        Case c{{16, 20, 3, stride, Padding::kWrapReplicate, 0.1f}, height, width};
+        c.with_residual = width % 3 == 0;
+        ExpectRight(c);
+        c.output_layout = Layout::kPlanar;
+        ExpectRight(c);
+      }
     }
+    ExpectRight({{48, 80, 3, stride, Padding::kWrapCrossPole, 0}, 26 * stride, 54 * stride});
   }
-  ExpectRight({{48, 80, 3, 1, Padding::kWrapCrossPole, 0}, 26, 54});
 }
 
 TEST(Convolution, TurnsWithTheImageByAnyColumnOrByTiles) {
-  Case c{{32, 32, 3, 1, Padding::kWrapReplicate, 0.1f}, 6, 12};
-  for (const bool may_tile : {false, true}) {
-    c.spec.may_tile = may_tile;
-    Data data(c);
-    const std::vector<float> before = Compute(c, data, 1);
-    const int columns = may_tile ? kConvolutionTile : 1;
-    for (std::size_t row = 0; row < data.input.size(); row += c.width) {
-      const auto begin = data.input.begin() + static_cast<std::ptrdiff_t>(row);
-      std::rotate(begin, begin + columns, begin + c.width);
-    }
-    const std::vector<float> turned = Compute(c, data, 1);
-    for (std::size_t i = 0; i < before.size(); ++i) {
-      const std::size_t column = i % c.width;
-      ASSERT_EQ(turned[i], before[i - column + (column + columns) % c.width]) << i;
+  for (const auto& [stride, padding] : {std::pair{1, Padding::kWrapReplicate},
+                                        {2, Padding::kWrapReplicate},
+                                        {2, Padding::kWrapCrossPole}}) {
+    Case c{{32, 32, 3, stride, padding, 0.1f}, 6, 24};
+    for (const bool may_tile : {false, true}) {
+      c.spec.may_tile = may_tile;
+      Data data(c);
+      const std::vector<float> before = Compute(c, data, 1);
+      const int columns = may_tile ? kConvolutionTile : 1;  // of the output
+      for (std::size_t row = 0; row < data.input.size(); row += c.width) {
+        const auto begin = data.input.begin() + static_cast<std::ptrdiff_t>(row);
+        std::rotate(begin, begin + columns * stride, begin + c.width);
+      }
+      const std::vector<float> turned = Compute(c, data, 1);
+      const std::size_t width = c.width / stride;
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        const std::size_t column = i % width;
+        ASSERT_EQ(turned[i], before[i - column + (column + columns) % width]) << stride << ' ' << i;
+      }
     }
   }
 }
@@ -122,23 +129,28 @@ TEST(Convolution, ActivatesWithAnySlope) {
 }
 
 TEST(Convolution, AddsAResidualInPlace) {
-  Case c{{32, 32, 3, 1, Padding::kWrapReplicate, 0.1f}, 6, 31};
-  c.with_residual = true;
-  Data data(c);
-  // Where infinity is, tiles are computed in another way.
-  for (const float value : {0.0f, std::numeric_limits<float>::infinity()}) {
-    data.input[40] = value;
-    const std::vector<float> expected = Compute(c, data, 1);
-    const Convolution convolution(c.spec, data.weight, data.bias);
-    TensorMemory input({c.input_shape(), Layout::kBlocked, DataType::kFloat, 1});
-    TensorMemory output({c.output_shape(), Layout::kBlocked, DataType::kFloat, 0});
-    Fill(input.view, data.input);
-    Fill(output.view, data.residual);
-    RunOn(convolution, input.view, &output.view, output.view, 2);
-    std::size_t next = 0;
-    for (int o = 0; o < 32; ++o) {
-      for (int y = 0; y < 6; ++y) {
-        for (int x = 0; x < 31; ++x) ASSERT_EQ(At(output.view, o, y, x), expected[next++]);
+  for (const int stride : {1, 2}) {
+    Case c{{32, 32, 3, stride, Padding::kWrapReplicate, 0.1f}, 6, 31};
+    c.with_residual = true;
+    Data data(c);
+    // Where infinity is, tiles are computed in another way.
+    for (const float value : {0.0f, std::numeric_limits<float>::infinity()}) {
+      data.input[40] = value;
+      const std::vector<float> expected = Compute(c, data, 1);
+      const Convolution convolution(c.spec, data.weight, data.bias);
+      TensorMemory input({c.input_shape(), Layout::kBlocked, DataType::kFloat, 1});
+      TensorMemory output({c.output_shape(), Layout::kBlocked, DataType::kFloat, 0});
+      Fill(input.view, data.input);
+      Fill(output.view, data.residual);
+      RunOn(convolution, input.view, &output.view, output.view, 2);
+      const Shape out = c.output_shape();
+      std::size_t next = 0;
+      for (int o = 0; o < out.channels; ++o) {
+        for (int y = 0; y < out.height; ++y) {
+          for (int x = 0; x < out.width; ++x) {
+            ASSERT_EQ(At(output.view, o, y, x), expected[next++]);
+          }
+        }
       }
     }
   }
@@ -168,22 +180,33 @@ TEST(Convolution, ReadsAndWritesSlicesOfChannels) {
 }
 
 TEST(Convolution, CarriesNanAndInfinityToTheirWindowsOnly) {
-  for (const float value :
-       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-    for (const int stride : {1, 2}) {
-      const Case c{{24, 20, 3, stride, Padding::kZero, 0}, 9, 37};
+  const int height = 18;
+  const int width = 37;
+  for (const int stride : {1, 2}) {
+    const Case c{{24, 20, 3, stride, Padding::kZero, 0}, height, width};
+    const Shape out = c.output_shape();
+    const Data plain = [&] {
       Data data(c);
       std::fill(data.weight.begin(), data.weight.end(), 1.0f);
-      data.input[(20 * 9 + 4) * 37 + 18] = value;  // channel 20, row 4, column 18
+      return data;
+    }();
+    // Each place in a tile, and those that two tiles see.
+    for (int place = 0; place < 81; ++place) {
+      const int row = 7 + place / 9;
+      const int column = 15 + place % 9;
+      const float value = place % 2 == 0 ? std::numeric_limits<float>::quiet_NaN()
+                                         : std::numeric_limits<float>::infinity();
+      Data data = plain;
+      data.input[(20 * height + row) * width + column] = value;  // channel 20
       const std::vector<float> values = Compute(c, data, 1);
-      const Shape out = c.output_shape();
       for (int o = 0; o < 32; ++o) {
         for (int y = 0; y < out.height; ++y) {
           for (int x = 0; x < out.width; ++x) {
             const float at = values[(o * out.height + y) * out.width + x];
-            const bool reached =
-                o < out.channels && std::abs(y * stride - 4) <= 1 && std::abs(x * stride - 18) <= 1;
-            ASSERT_EQ(std::isfinite(at), !reached) << o << ' ' << y << ' ' << x;
+            const bool reached = o < out.channels && std::abs(y * stride - row) <= 1 &&
+                                 std::abs(x * stride - column) <= 1;
+            ASSERT_EQ(std::isfinite(at), !reached)
+                << stride << ' ' << place << ' ' << o << ' ' << y << ' ' << x;
             if (reached) {
               ASSERT_EQ(std::isnan(at), std::isnan(value));
             }

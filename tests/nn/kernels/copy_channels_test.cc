@@ -64,6 +64,30 @@ TEST(CopyChannels, ClearsWhatFillsUpTheLastBlock) {
   }
 }
 
+TEST(CopyChannels, ClearsTheLastBlockBehindChannelsThatKeepTheirPlaces) {
+  for (const DataType type : kTypes) {
+    const int block = BlockOf(type);
+    const int channels = block + 4;
+    const PlainImage source = RandomImage({3 * block, 2, 2}, 1, 2, 1);
+    const FilledTensor plain(source, Layout::kPlanar, 0);
+    const TensorMemory from({source.shape, Layout::kBlocked, type, 0});
+    CopyChannels(plain.view, 0, from.view, 0, 3 * block, 1);
+    for (const int first : {0, 3}) {
+      const TensorMemory to({{channels, 2, 2}, Layout::kBlocked, type, 0});  // not a zero anywhere
+      CopyChannels(from.view, first, to.view, first, channels - first, 1);
+      const auto value = [&](const TensorView& view, int plane, int lane) {
+        const std::ptrdiff_t at = block + lane;  // of the second pixel of the second row
+        return type == DataType::kFloat ? view.row<float>(plane, 1)[at]
+                                        : ToFloat(view.row<BFloat16>(plane, 1)[at]);
+      };
+      for (int c = 0; c < 2 * block; ++c) {
+        const float expected = c < channels ? value(from.view, c / block, c % block) : 0;
+        EXPECT_EQ(value(to.view, c / block, c % block) == expected, c >= first) << c;
+      }
+    }
+  }
+}
+
 TEST(CopyChannels, RoundsToBFloat16AndBack) {
   const PlainImage source = RandomImage({40, 2, 3}, -1, 1, 1);
   for (const Layout layout : kLayouts) {

@@ -194,7 +194,9 @@ TEST_F(VulkanProgramTest, HalvesStayNearFloatsAndHaveTheSameBytesInEveryRun) {
     const auto expected = RunOnce(Executor(graph, 16, 32), inputs);
     const auto actual = RunOnce(executor, inputs);
     EXPECT_EQ(RunOnce(executor, inputs), actual) << seed;
-    EXPECT_LE(executor.planned_bytes(), Executor(graph, 16, 32, options()).planned_bytes());
+    // Of an image whose planes are much larger than the line between them.
+    EXPECT_LE(Executor(graph, 128, 256, {.device = halves}).planned_bytes(),
+              Executor(graph, 128, 256, options()).planned_bytes());
     for (std::size_t i = 0; i < expected.size(); ++i) {
       double largest = 1;
       for (const float value : expected[i]) largest = std::max<double>(largest, std::abs(value));
