@@ -43,8 +43,8 @@ TEST(Convolution, IsThePlainSumForEveryWidth) {
 
 TEST(Convolution, InTilesIsThePlainSumForEverySize) {
   for (const int stride : {1, 2}) {
-    for (int width = 1; width <= 17 * stride; ++width) {
-      for (const int height : {1, 3, 4, 5, 9, 16}) {
+    for (int width = 1; width <= 17 * stride; width += 2 * stride - 1) {
+      for (const int height : {1, 4, 9, 16}) {
         Case c{{16, 20, 3, stride, Padding::kWrapReplicate, 0.1f}, height, width};
         c.with_residual = width % 3 == 0;
         ExpectRight(c);
