@@ -86,6 +86,32 @@ TEST(ConvexUpsample, SpreadsWhatIsNotANumberInTheWeightsToItsOutputPixelOnly) {
   });
 }
 
+TEST(ConvexUpsample, WeighsToTheLastPlaces) {
+  ForEachDispatchTarget([] {
+    constexpr int kColumns = 800;
+    PlainImage x({1, 2, kColumns});
+    PlainImage w({ConvexUpsampleWeights(1), 2, kColumns});
+    for (int u = 0; u < kColumns; ++u) {
+      x.at(0, 0, u) = 1;
+      for (int k = 0; k < 9; ++k) w.at(k, 1, u) = -1e4;
+      w.at(4, 1, u) = 0;
+      w.at(1, 1, u) = static_cast<float>(-0.1 * u);  // of the pixel above
+    }
+    const FilledTensor input(x, Layout::kPlanar, kConvexUpsampleHalo);
+    const FilledTensor weights(w, Layout::kPlanar, 0);
+    const TensorMemory y(Planar({1, 2, kColumns}));
+    ConvexUpsample(input.view, weights.view, y.view, 1, Padding::kWrapReplicate, 1);
+    for (int u = 0; u < kColumns; ++u) {
+      const double e = std::exp(w.at(1, 1, u));
+      const double expected = e / (1 + e);
+      // Half a unit of the sum and of the quotient, those of the exponential, and of its exponent;
+      // two neighbours of 1 with the least weight.
+      const double tolerance = (10 - 2 * w.at(1, 1, u)) * 0x1p-24 * expected + 0x1p-124;
+      ASSERT_NEAR(At(y.view, 0, 1, u), expected, tolerance) << w.at(1, 1, u);
+    }
+  });
+}
+
 TEST(ConvexUpsample, TakesNothingOfANeighbourWhoseWeightIsMinusInfinity) {
   ForEachDispatchTarget([] {
     PlainImage x({1, 3, 20});
