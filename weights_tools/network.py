@@ -13,6 +13,8 @@ from weights_tools.graph import run
 
 # Sharpness of the softplus that keeps the weights of normalized convolutions positive in training.
 SOFTPLUS_BETA = 10.0
+# Size of filters whose training continues, in that of new ones: training makes them grow.
+KEPT_SIZE = 2.0
 
 
 class Network(nn.Module):
@@ -60,24 +62,40 @@ class Network(nn.Module):
         self, inputs: Mapping[str, Tensor], layers: Collection[str], bfloat16: bool = False
     ) -> None:
         """Initializes the batch normalization behind these layers so that it changes nothing for
-        these inputs, and their training continues from loaded weights."""
+        these inputs, and their training continues from loaded weights.
 
-        def observe(norm: nn.BatchNorm2d) -> Callable[[Tensor], Tensor]:
+        Loaded filters have taken in the normalization of their own training, and some are a
+        twentieth of what they were. Steps of a given size would turn those so much farther, so each
+        filter gets `KEPT_SIZE` times the size of a new one, which normalization takes out again.
+        """
+        of_layer = {layer.name: layer for layer in self.description.layers}
+        factors: dict[str, Tensor] = {}
+        for name in layers:
+            weight = self.layers[name]["weight"]
+            size = weight.square().mean(dim=(1, 2, 3)).sqrt()
+            wanted = KEPT_SIZE * initial_bound(of_layer[name]) / math.sqrt(3)
+            factors[name] = wanted / size.clamp(min=0.01 * wanted)  # what is nearly zero stays so
+
+        def observe(norm: nn.BatchNorm2d, factor: Tensor) -> Callable[[Tensor], Tensor]:
             def identity(x: Tensor) -> Tensor:
                 variance, mean = torch.var_mean(x.float(), dim=(0, 2, 3), unbiased=False)
-                for kept, seen in ((norm.running_mean, mean), (norm.running_var, variance)):
+                scaled = variance * factor.square()
+                for kept, seen in ((norm.running_mean, mean * factor), (norm.running_var, scaled)):
                     kept.copy_(seen)
-                norm.weight.copy_((variance + norm.eps).sqrt())
+                norm.weight.copy_((scaled + norm.eps).sqrt() / factor)
                 norm.bias.copy_(mean)
                 return x
 
             return identity
 
         behind = {
-            name: observe(norm) if name in layers else norm
+            name: observe(norm, factors[name]) if name in layers else norm
             for name, norm in self.normalizations.items()
         }
         run(self.description.graph, self._plain_weights(), inputs, bfloat16, behind)
+        for name, factor in factors.items():
+            self.layers[name]["weight"].mul_(factor[:, None, None, None])
+            self.layers[name]["bias"].mul_(factor)
 
     @property
     def knows_any_unit(self) -> bool:
@@ -149,6 +167,12 @@ def initial_weights(description: Description, seed: int) -> dict[str, np.ndarray
     }
 
 
+def initial_bound(layer: Layer) -> float:
+    """The largest of a layer's initial weights, which are spread evenly and keep the variance from
+    layer to layer (He et al., "Delving Deep into Rectifiers")."""
+    return layer.gain * math.sqrt(6 / ((1 + layer.slope**2) * (layer.weights / layer.outputs)))
+
+
 def _initial(layer: Layer, generator: np.random.RandomState) -> dict[str, np.ndarray]:
     """Uniform numbers only: they are made of whole ones and equal on every processor."""
     if layer.is_normalized:
@@ -160,9 +184,8 @@ def _initial(layer: Layer, generator: np.random.RandomState) -> dict[str, np.nda
         weight = bump * generator.uniform(0.5, 1.5, layer.shape)
         bias = generator.uniform(-0.01, 0.01, layer.outputs)
     else:
-        # He et al., "Delving Deep into Rectifiers": keeps the variance from layer to layer.
         fan_in = layer.weights / layer.outputs
-        bound = layer.gain * math.sqrt(6 / ((1 + layer.slope**2) * fan_in))
+        bound = initial_bound(layer)
         weight = generator.uniform(-bound, bound, layer.shape)
         bias = generator.uniform(-1, 1, layer.outputs) * layer.gain / math.sqrt(fan_in)
         if layer.prior:

@@ -10,7 +10,7 @@ from torch import Tensor
 
 from weights_tools import networks
 from weights_tools.builder import Builder, Description
-from weights_tools.network import Network
+from weights_tools.network import KEPT_SIZE, Network, initial_bound
 
 HEIGHT, WIDTH = 128, 256
 NARROW = (8, 12, 20, 24, 36)
@@ -253,6 +253,31 @@ class PublishedTest(unittest.TestCase):
             tensors = guided.tensors(inputs)
             difference = tensors["propagated"] - propagated["depth"]
             self.assertLess(difference.abs().max().item(), 1e-12)
+
+    def test_loaded_filters_get_a_size_for_training_and_change_nothing(self) -> None:
+        description = networks.coarse_depth_completion(NARROW, hidden=10)
+        loaded = Network(description, seed=1).double()
+        random = np.random.RandomState(0)
+        for weight in loaded.inner_convolutions():  # as if they had taken in a normalization
+            factor = np.exp(random.uniform(-3, 0, len(weight)))
+            weight.data *= torch.from_numpy(factor)[:, None, None, None]
+        inputs, weights = panorama(), {n: w.detach() for n, w in loaded.weights().items()}
+        trained = Network(description, seed=2, normalizes=True).double()
+        trained.load(weights)
+        trained.double()
+        trained.calibrate(inputs, list(trained.normalizations))
+        layers = {layer.name: layer for layer in description.layers}
+        for name in trained.normalizations:
+            size = trained.layers[name]["weight"].square().mean(dim=(1, 2, 3)).sqrt()
+            expected = KEPT_SIZE * initial_bound(layers[name]) / math.sqrt(3)
+            torch.testing.assert_close(size, torch.full_like(size, expected))
+        for expected, found in (
+            (loaded(inputs), trained.eval()(inputs)),  # the statistics that it keeps
+            (weights, trained.weights()),
+            (loaded(inputs), trained.train()(inputs)),  # those of this batch
+        ):
+            for name, values in expected.items():
+                torch.testing.assert_close(found[name], values, rtol=1e-4, atol=1e-5)
 
     def test_the_encoder_decoder_sees_the_raw_points_last(self) -> None:
         tensors = Network(networks.encoder_decoder()).double().tensors(panorama())

@@ -164,6 +164,35 @@ class ShardTest(unittest.TestCase):
         self.assertGreater(len(expected), 50)
         np.testing.assert_allclose(*(f[np.lexsort(f.T)] for f in (expected, found)), atol=1e-3)
 
+    def test_corners_are_spread_by_solid_angle(self) -> None:
+        random = np.random.RandomState(0)
+        x, y, response = random.uniform(size=(3, 40_000))
+        response[y < 0.5] += 1  # all of the upper half is stronger
+        chosen = make_shard.select_corners(x, y, response, 1000)
+        self.assertEqual(len(chosen), 1000)
+        self.assertTrue((np.diff(chosen) > 0).all())
+        latitude = np.abs(y[chosen] - 0.5)
+        self.assertAlmostEqual((y[chosen] < 0.5).mean(), 0.5, delta=0.01)
+        self.assertAlmostEqual((latitude < 0.125).mean(), np.sin(np.pi / 8), delta=0.01)
+        # The strongest of each zone are taken.
+        ahead = (y >= 6 / 16) & (y < 8 / 16)
+        left = np.setdiff1d(np.flatnonzero(ahead), chosen)
+        taken = np.intersect1d(np.flatnonzero(ahead), chosen)
+        self.assertGreater(np.median(response[taken]), np.quantile(response[left], 0.95))
+
+    def test_no_cell_has_more_than_its_quotas_of_corners(self) -> None:
+        random = np.random.RandomState(0)
+        x, y, response = random.uniform(size=(3, 5000))
+        x[:4000], y[:4000], response[:4000] = 0.51, 0.51, 2  # a crowd in one cell
+        chosen = make_shard.select_corners(x, y, response, 1000)
+        quota = 1000 / 32 * np.sin(np.pi / 16) / 2  # solid angle of a cell at the equator
+        self.assertAlmostEqual((chosen < 4000).sum(), 4 * quota, delta=1)
+        # What the zone lacks is taken elsewhere.
+        self.assertGreater(len(chosen), 900)
+
+    def test_an_image_without_corners_has_none(self) -> None:
+        self.assertEqual(make_shard.detect(np.zeros((256, 512, 3), np.uint8)).shape, (0, 3))
+
     def test_directions_are_in_the_frame_of_the_camera(self) -> None:
         random = np.random.RandomState(0)
         quaternion = random.standard_normal(4)
@@ -361,14 +390,28 @@ class ComparePointsTest(unittest.TestCase):
         error = np.array([0.1, -0.3, 0.2, 0.0])
         confidence = np.array([0.95, 0.1, 0.6, 0.95])
         truth = np.array([3.0, 30.0, 3.0, 3.0])
-        part = np.stack([error, confidence, truth])
-        result = compare_points.summary([part, part[:, :2]])
+        part = compare_points.Compared(error, confidence, truth, np.array([10.0, 20.0]))
+        first = compare_points.Compared(error[:2], confidence[:2], truth[:2], np.array([30.0, 80.0]))
+        result = compare_points.summary([part, first])
         self.assertEqual(result["points of a frame, median"], 3)
         self.assertAlmostEqual(result["|ln error|, median"], 0.15)
         self.assertAlmostEqual(result["fraction with |ln error| > 0.25"], 2 / 6)
         self.assertAlmostEqual(result["confidence 0.9 to 1.0: fraction"], 0.5)
         self.assertAlmostEqual(result["confidence 0.9 to 1.0: |ln error|, median"], 0.1)
         self.assertAlmostEqual(result["metres 20 to 40: |ln error|, median"], 0.3)
+        self.assertAlmostEqual(result["degrees to the nearest point, mean"], 35)
+
+    def test_gaps_are_angles_to_the_nearest_point_from_everywhere(self) -> None:
+        height, width = 128, 256
+        chosen = np.zeros((height, width), bool)
+        self.assertTrue((compare_points.gaps(chosen) == 180).all())
+        chosen[height // 2, width // 3] = True
+        # From a direction drawn evenly, the cosine of the angle to a point is even in -1..1.
+        cosine = np.sort(np.cos(np.radians(compare_points.gaps(chosen))))
+        even = np.linspace(-1, 1, len(cosine))
+        np.testing.assert_allclose(cosine, even, atol=0.01)
+        chosen[0] = chosen[-1] = chosen[height // 2] = True  # both poles and the equator
+        self.assertLess(compare_points.gaps(chosen).max(), 46)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@
 
 import argparse
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -12,25 +13,44 @@ import numpy as np
 from weights_tools.refusal import refusing
 from weights_tools.training.batches import Frames
 from weights_tools.training.shards import Frame
+from weights_tools.training.sphere import bearings
 from weights_tools.training.sparse_points import NoiseModel, SparsePoints, from_slam, simulate
 from weights_tools.training.stereo_points import simulate_stereo
 
 CONFIDENCES = (0.0, 0.25, 0.5, 0.75, 0.9, 1.0)
 RANGES = (0, 5, 10, 20, 40, 80)  # metres
+DIRECTIONS = 2000
 OUTLIER = 0.25  # of |ln(range / truth)|; noise is smaller than this at the confidences that matter
 
+Source = Callable[[Frame, np.random.RandomState], SparsePoints]
+
+
+def as_many_landmarks(frame: Frame, random: np.random.RandomState) -> SparsePoints:
+    """As many simulated landmarks as SLAM has points in that frame, if it has so many corners."""
+    count = len(frame.points)
+    return simulate(frame, random, NoiseModel(points=(count, count + 0.5)))
+
+
 # Where the points of a column come from.
-SOURCES: dict[str, Callable[[Frame, np.random.RandomState], SparsePoints]] = {
+SOURCES: dict[str, Source] = {
     "SLAM": lambda frame, random: from_slam(frame, random, NoiseModel(thinned=0)),
-    "landmarks": simulate,
+    "landmarks": as_many_landmarks,
     "stereo": simulate_stereo,
 }
 
 
-def errors(
-    frames: Frames, give: Callable[[Frame, np.random.RandomState], SparsePoints]
-) -> Iterator[np.ndarray]:
-    """ln(range / truth), confidence and truth of the points, for each frame with points of SLAM."""
+@dataclass(frozen=True)
+class Compared:
+    """Points of one frame on known surfaces, and how far directions are from the next point."""
+
+    error: np.ndarray  # ln(range / truth)
+    confidence: np.ndarray
+    truth: np.ndarray  # metres
+    gaps: np.ndarray  # degrees, from directions spread evenly over the sphere
+
+
+def compare(frames: Frames, give: Source) -> Iterator[Compared]:
+    """The points of each frame that has points of SLAM."""
     for i in range(len(frames)):
         frame = frames[i]
         if len(frame.points) == 0:
@@ -39,15 +59,35 @@ def errors(
         known = (points.depth > 0) & (frame.range > 0)
         truth = frame.range[known]
         error = np.log(points.depth[known] / points.scale / truth)
-        yield np.stack([error, points.confidence[known], truth])
+        yield Compared(error, points.confidence[known], truth, gaps(points.depth > 0))
 
 
-def summary(parts: list[np.ndarray]) -> dict[str, float]:
+def gaps(chosen: np.ndarray) -> np.ndarray:
+    """Angles in degrees between directions spread evenly over the sphere and the nearest chosen pixel of an
+    image; 180 where none is chosen."""
+    v, u = np.nonzero(chosen)
+    if len(v) == 0:
+        return np.full(DIRECTIONS, 180.0)
+    # A spiral on which each direction has the same solid angle (Fibonacci lattice).
+    index = np.arange(DIRECTIONS) + 0.5
+    longitude = np.pi * (1 + np.sqrt(5)) * index
+    z = 1 - 2 * index / DIRECTIONS
+    radius = np.sqrt(1 - z * z)
+    directions = np.stack([radius * np.cos(longitude), radius * np.sin(longitude), z], axis=1)
+    cosine = (directions @ bearings(u + 0.5, v + 0.5, *chosen.shape).T).max(axis=1)
+    return np.degrees(np.arccos(np.clip(cosine, -1, 1)))
+
+
+def summary(parts: list[Compared]) -> dict[str, float]:
     """Counts, errors and their distribution, by name."""
-    error, confidence, truth = np.concatenate(parts, axis=1)
-    error = np.abs(error)
+    error = np.abs(np.concatenate([part.error for part in parts]))
+    confidence = np.concatenate([part.confidence for part in parts])
+    truth = np.concatenate([part.truth for part in parts])
+    gap = np.concatenate([part.gaps for part in parts])
     result = {
-        "points of a frame, median": float(np.median([part.shape[1] for part in parts])),
+        "points of a frame, median": float(np.median([len(part.error) for part in parts])),
+        "degrees to the nearest point, mean": float(gap.mean()),
+        "degrees to the nearest point, 90th percentile": float(np.percentile(gap, 90)),
         "|ln error|, median": float(np.median(error)),
         "|ln error|, 90th percentile": float(np.percentile(error, 90)),
         f"fraction with |ln error| > {OUTLIER}": float((error > OUTLIER).mean()),
@@ -67,7 +107,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Compares simulated points with those of SLAM.")
     parser.add_argument("shards", type=Path, nargs="+", help="made with --run")
     frames = Frames(parser.parse_args().shards)
-    parts = {name: list(errors(frames, give)) for name, give in SOURCES.items()}
+    parts = {name: list(compare(frames, give)) for name, give in SOURCES.items()}
     if not parts["SLAM"]:
         parser.error("no frame has points of SLAM; make the shards with --run")
     summaries = {name: summary(part) for name, part in parts.items()}

@@ -21,8 +21,13 @@ from weights_tools.training import shards
 from weights_tools.training.ground import ground_pixels
 from weights_tools.training.sphere import bearings
 
-# The number of corners in an image with much texture; training uses a part of them.
-FEATURES = 6000
+# The number of corners in an image with much texture; training uses a part of them. They are chosen
+# from so many of the strongest: all that there are.
+FEATURES, CANDIDATES = 6000, 100_000
+# Bands of latitude and columns of cells, and the bands at which zones begin and the last one ends, as
+# slam/features/corner_selection.h has them.
+BANDS, COLUMNS, MAX_QUOTAS = 16, 32, 4
+ZONES = (0, 4, 6, 8, 10, 12, 16)
 # Scale from level to level of ORB's pyramid, and the standard deviation of a corner at its level.
 SCALE, PIXELS = 1.2, 1.0
 # Columns that are repeated at either side: OpenCV looks for no corner nearer than 31 pixels to the
@@ -181,17 +186,47 @@ def shrink_mask(mask: np.ndarray) -> np.ndarray:
 
 
 def detect(image: np.ndarray) -> np.ndarray:
-    """Corners as SLAM finds them: u, v in pixels, standard deviation in radians."""
-    width = image.shape[1]
+    """Corners spread as SLAM spreads them: u, v in pixels, standard deviation in radians."""
+    height, width = image.shape[:2]
     wide = np.concatenate([image[:, -MARGIN:], image, image[:, :MARGIN]], axis=1)
-    detector = cv2.ORB_create(FEATURES, scaleFactor=SCALE, fastThreshold=7)
-    features = []
-    for corner in detector.detect(wide):
-        # OpenCV's first pixel has its centre at 0.
-        u, v = corner.pt[0] + 0.5 - MARGIN, corner.pt[1] + 0.5
-        if 0 <= u < width:
-            features.append((u, v, PIXELS * SCALE**corner.octave * 2 * np.pi / width))
-    return np.array(features, np.float32).reshape(-1, 3)
+    detector = cv2.ORB_create(CANDIDATES, scaleFactor=SCALE, fastThreshold=7)
+    # OpenCV's first pixel has its centre at 0.
+    found = [
+        (corner.pt[0] + 0.5 - MARGIN, corner.pt[1] + 0.5, corner.octave, corner.response)
+        for corner in detector.detect(wide)
+    ]
+    corners = np.array(found, np.float32).reshape(-1, 4)
+    corners = corners[(corners[:, 0] >= 0) & (corners[:, 0] < width)]
+    u, v, octave, response = corners.T
+    chosen = select_corners(u / width, v / height, response, FEATURES)
+    sigma = PIXELS * SCALE**octave * 2 * np.pi / width
+    return np.stack([u, v, sigma], axis=1)[chosen].astype(np.float32)
+
+
+def select_corners(x: np.ndarray, y: np.ndarray, response: np.ndarray, count: int) -> np.ndarray:
+    """Indices of at most `count` corners by the rule of slam/features/corner_selection.h: each zone of
+    latitude has its part of the solid angle, and no cell more than MAX_QUOTAS times its own. x and
+    y are fractions of the image's width and height. In the order of the corners."""
+    band = np.minimum((y * BANDS).astype(int), BANDS - 1)
+    cell = band * COLUMNS + np.minimum((x * COLUMNS).astype(int), COLUMNS - 1)
+    borders = np.cos(np.pi * np.arange(BANDS + 1) / BANDS)
+    fraction = (borders[:-1] - borders[1:]) / 2
+    strongest = np.argsort(-response, kind="stable")
+    ordered = strongest[np.argsort(cell[strongest], kind="stable")]  # by cell, then by strength
+    first = np.searchsorted(cell[ordered], cell[ordered])
+    rank = np.empty(len(cell), int)
+    rank[ordered] = np.arange(len(cell)) - first
+    quota = MAX_QUOTAS * count * fraction[band] / COLUMNS
+    candidates = strongest[(rank < quota)[strongest]]
+    zones = [
+        candidates[(band[candidates] >= begin) & (band[candidates] < end)][
+            : round(count * fraction[begin:end].sum())
+        ]
+        for begin, end in zip(ZONES, ZONES[1:])
+    ]
+    taken = np.concatenate(zones)
+    rest = candidates[~np.isin(candidates, taken)]  # for what a zone lacks
+    return np.sort(np.concatenate([taken, rest[: max(count - len(taken), 0)]]))
 
 
 def travel_directions(positions: np.ndarray, quaternions: np.ndarray) -> np.ndarray:

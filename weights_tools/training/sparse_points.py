@@ -30,12 +30,11 @@ class NoiseModel:
     scale: tuple[float, float] = (0.05, 20.0)  # units of the map in a metre
     noise: tuple[float, float] = (0.7, 2.5)  # factor on the corners' noise, one for each frame
     largest_error: float = 0.2  # fraction of the range; SLAM makes no landmarks of less parallax
-    near: float = 1.2  # points are chosen by 1 / range to this power; more keyframes saw near ones
     min_confidence: float = 0.5  # as SparseDepthOptions has it
     estimate_bias: float = 0.4  # of the error that SLAM estimates; its estimates are too small
     estimate_error: float = 0.3  # standard deviation of ln of that
     outliers: float = 0.05  # fraction of points matched wrongly, anywhere
-    edge_outliers: float = 0.1  # fraction of those at an occlusion edge with the other side's range
+    edge_outliers: float = 0.5  # fraction of those near an occlusion edge with any range beside them
     moving_kept: float = 0.4  # fraction of the points on moving objects that SLAM does not drop
     from_slam: float = 0.5  # of frames with points of SLAM itself, the fraction that uses them
     from_stereo: float = 0.5  # of the other frames, the fraction with points of stereo
@@ -84,13 +83,14 @@ def simulate(
     moving = frame.moving[rows, columns]
     usable = (ranges > 0) & (error < model.largest_error) & (confidence >= model.min_confidence)
     usable &= ~moving | (random.uniform(size=len(u)) < model.moving_kept)
-    chosen = _choose(np.flatnonzero(usable), ranges, seen, random, model)
+    chosen = _choose(np.flatnonzero(usable), seen, random, model)
 
     rows, columns = rows[chosen], columns[chosen]
+    reach = 2 * frame.features[chosen, 2] * width / (2 * np.pi)  # two standard deviations
     error, confidence = error[chosen], confidence[chosen]
     measured = ranges[chosen]
     at_edge = random.uniform(size=len(chosen)) < model.edge_outliers
-    measured = np.where(at_edge, _beside(frame.range, rows, columns, random), measured)
+    measured = np.where(at_edge, _beside(frame.range, rows, columns, reach, random), measured)
     # Triangulation is regular in the inverse of the range.
     inverse = (1 + error * random.standard_normal(len(chosen))) / measured
     measured = 1 / np.maximum(inverse, 1e-3)  # at most a kilometre
@@ -135,11 +135,7 @@ def _range_errors(
 
 
 def _choose(
-    usable: np.ndarray,
-    ranges: np.ndarray,
-    seen: np.ndarray,
-    random: np.random.RandomState,
-    model: NoiseModel,
+    usable: np.ndarray, seen: np.ndarray, random: np.random.RandomState, model: NoiseModel
 ) -> np.ndarray:
     """Selects points in clusters, because the quality of texture and tracking varies locally."""
     count = min(int(log_uniform(random, model.points)), len(usable))
@@ -149,16 +145,20 @@ def _choose(
     widths = random.uniform(0.1, 0.6, len(centres))  # radians
     squared_angle = 2 - 2 * np.clip(seen[usable] @ centres.T, -1, 1)
     weight = 0.05 + np.exp(-squared_angle / (2 * widths**2)).sum(axis=1)
-    weight *= ranges[usable] ** -model.near
     return random.choice(usable, count, replace=False, p=weight / weight.sum())
 
 
 def _beside(
-    ranges: np.ndarray, rows: np.ndarray, columns: np.ndarray, random: np.random.RandomState
+    ranges: np.ndarray,
+    rows: np.ndarray,
+    columns: np.ndarray,
+    reach: np.ndarray,
+    random: np.random.RandomState,
 ) -> np.ndarray:
-    """The range two pixels away, which differs at edges only; the own range where that is sky."""
+    """The range up to `reach` pixels away, which differs near edges only; the own range where that is
+    sky. A corner of a coarse level lies farther from what it was found at."""
     height, width = ranges.shape
-    shift = random.randint(-2, 3, (2, len(rows)))
+    shift = np.round(reach * random.uniform(-1, 1, (2, len(rows)))).astype(int)
     there = ranges[np.clip(rows + shift[0], 0, height - 1), (columns + shift[1]) % width]
     return np.where(there > 0, there, ranges[rows, columns]).astype(float)
 
