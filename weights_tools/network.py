@@ -13,7 +13,8 @@ from weights_tools.graph import run
 
 # Sharpness of the softplus that keeps the weights of normalized convolutions positive in training.
 SOFTPLUS_BETA = 10.0
-# Size of filters whose training continues, in that of new ones: training makes them grow.
+# Size of filters whose training continues, in that of new ones: steps of a fixed size make filters
+# grow. Other values were not tried.
 KEPT_SIZE = 2.0
 
 

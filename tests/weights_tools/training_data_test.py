@@ -281,6 +281,22 @@ class SparsePointsTest(unittest.TestCase):
         error, _, _ = self.errors(replace(EXACT, outliers=0.2))
         self.assertAlmostEqual((np.abs(error) > 0.06).mean(), 0.2 * 0.95, delta=0.03)
 
+    def test_ranges_beside_an_edge_come_from_within_two_deviations_of_the_corner(self) -> None:
+        frame, edge = drives.frame(), drives.WIDTH // 2
+        near_and_far = np.where(np.arange(drives.WIDTH) < edge, 5, 20) * np.ones((drives.HEIGHT, 1))
+        for pixels in (1.0, 3.0):  # standard deviation of a corner
+            features = frame.features.copy()
+            features[:, 2] = pixels * 2 * np.pi / drives.WIDTH
+            # Noise of a millionth of that: the range is that of a surface.
+            model = replace(EXACT, edge_outliers=1, points=(9999, 9999), noise=(1e-6, 1e-6))
+            wall = replace(frame, range=near_and_far.astype(np.float32), features=features)
+            points = simulate(wall, np.random.RandomState(0), model)
+            rows, columns = np.nonzero(points.depth)
+            other = np.abs(points.depth[rows, columns] / points.scale / near_and_far[rows, columns] - 1)
+            distance = np.abs(columns + 0.5 - edge)[other > 0.5]
+            beside = distance[distance < drives.WIDTH // 4]  # the wall also begins at the seam
+            self.assertTrue(0.5 * 2 * pixels < beside.max() <= 2 * pixels + 0.5, beside.max())
+
     def test_few_points_move_and_those_are_wrong(self) -> None:
         frame = drives.frame()
         moving = np.ones_like(frame.moving)
@@ -400,6 +416,11 @@ class ComparePointsTest(unittest.TestCase):
         self.assertAlmostEqual(result["confidence 0.9 to 1.0: |ln error|, median"], 0.1)
         self.assertAlmostEqual(result["metres 20 to 40: |ln error|, median"], 0.3)
         self.assertAlmostEqual(result["degrees to the nearest point, mean"], 35)
+
+    def test_as_many_landmarks_are_simulated_as_slam_has_points(self) -> None:
+        frame = replace(drives.frame(), points=np.ones((37, 4), np.float32))
+        points = compare_points.as_many_landmarks(frame, np.random.RandomState(0))
+        self.assertTrue(30 < (points.depth > 0).sum() <= 37)  # some share a pixel
 
     def test_gaps_are_angles_to_the_nearest_point_from_everywhere(self) -> None:
         height, width = 128, 256

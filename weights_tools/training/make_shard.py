@@ -205,8 +205,9 @@ def detect(image: np.ndarray) -> np.ndarray:
 
 def select_corners(x: np.ndarray, y: np.ndarray, response: np.ndarray, count: int) -> np.ndarray:
     """Indices of at most `count` corners by the rule of slam/features/corner_selection.h: each zone of
-    latitude has its part of the solid angle, and no cell more than MAX_QUOTAS times its own. x and
-    y are fractions of the image's width and height. In the order of the corners."""
+    latitude has its part of the solid angle, and no cell more than MAX_QUOTAS times its own; here for
+    all levels together. x and y are fractions of the image's width and height. In the order of the
+    corners."""
     band = np.minimum((y * BANDS).astype(int), BANDS - 1)
     cell = band * COLUMNS + np.minimum((x * COLUMNS).astype(int), COLUMNS - 1)
     borders = np.cos(np.pi * np.arange(BANDS + 1) / BANDS)
