@@ -32,12 +32,22 @@ def options(words: list[str]) -> set[str]:
     return {word.split("=")[0] for word in words if re.match(r"--?[a-zA-Z]", word)}
 
 
+def compiles(code: str) -> bool:
+    try:
+        compile(code, "-c", "exec")
+    except SyntaxError:
+        return False
+    return True
+
+
 def missing(words: list[str]) -> list[str]:
     """What of a command does not exist; nothing for programs that are not this project's."""
     name, *arguments = words
     if re.match(r"\w+=", name):  # an assignment
         return missing(arguments) if arguments else []
     if name in ("python3", "/usr/bin/python3"):
+        if arguments[0] == "-c":
+            return [] if compiles(arguments[1]) else [arguments[1]]
         if "-m" not in arguments:
             return [] if (ROOT / arguments[0]).exists() else [arguments[0]]
         module = arguments[arguments.index("-m") + 1]
