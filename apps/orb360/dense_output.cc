@@ -1,6 +1,7 @@
 #include "apps/orb360/dense_output.h"
 
 #include <cstdio>
+#include <string>
 #include <system_error>
 
 #include "slam/io/dataset.h"
@@ -49,6 +50,7 @@ DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMap
 
 void SaveDepth(const std::filesystem::path& folder, const DepthMapStore& store,
                std::span<const DenseView> views) {
+  RemoveSavedDepth(folder);
   const std::filesystem::path ranges = folder / Dataset::kDepthName;
   const std::filesystem::path confidences = folder / Dataset::kConfidenceName;
   for (const std::filesystem::path& images : {ranges, confidences}) {
@@ -62,6 +64,22 @@ void SaveDepth(const std::filesystem::path& folder, const DepthMapStore& store,
     const DenseDepth depth = store.Get(view.frame_index);
     WriteDepthImage(ranges / name, depth.range);
     WriteFractionImage(confidences / name, depth.confidence);
+  }
+}
+
+void RemoveSavedDepth(const std::filesystem::path& folder) {
+  const auto is_of_a_frame = [](const std::filesystem::path& path) {
+    const std::string index = path.stem().string();
+    return path.extension() == ".png" && index.find_first_not_of("0123456789") == std::string::npos;
+  };
+  for (const char* name : {Dataset::kDepthName, Dataset::kConfidenceName}) {
+    std::error_code error;
+    std::vector<std::filesystem::path> images;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / name, error)) {
+      if (is_of_a_frame(entry.path())) images.push_back(entry.path());
+    }
+    for (const std::filesystem::path& image : images) std::filesystem::remove(image, error);
+    std::filesystem::remove(folder / name, error);  // Fails unless it is empty.
   }
 }
 

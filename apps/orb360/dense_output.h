@@ -32,8 +32,11 @@ DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMap
 
 /// Writes the ranges of every view, in the final unit of the world, into `folder`/depth, and their
 /// confidence into `folder`/confidence, each as a 16-bit PNG (WriteDepthImage, WriteFractionImage),
-/// which is named by the index of the frame.
+/// which is named by the index of the frame. Images of an earlier run are removed.
 void SaveDepth(const std::filesystem::path& folder, const DepthMapStore& store,
                std::span<const DenseView> views);
+
+/// Removes what SaveDepth has written into `folder`, and nothing else.
+void RemoveSavedDepth(const std::filesystem::path& folder);
 
 }  // namespace orb360

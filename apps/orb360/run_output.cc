@@ -8,6 +8,7 @@
 #include "apps/orb360/saved_views.h"
 #include "slam/evaluation/map_plot.h"
 #include "slam/io/atomic_file.h"
+#include "slam/io/dataset.h"
 #include "slam/io/json_text.h"
 #include "slam/io/octree/octree_format.h"
 #include "slam/io/octree/octree_writer.h"
@@ -19,8 +20,12 @@ namespace {
 
 constexpr const char* kJournalName = "trajectory.journal";
 
-/// Creates a folder and its parents. False if it existed.
+/// Creates a folder and its parents. False if it existed. Refuses that of a sequence.
 bool Create(const std::filesystem::path& folder) {
+  if (IsDataset(folder)) {
+    throw UserError(folder.string() +
+                    ": has a sequence, whose depth a run would overwrite; choose another folder");
+  }
   std::error_code error;
   const bool is_new = std::filesystem::create_directories(folder, error);
   if (error) ThrowWriteError(folder, error.value());
@@ -98,7 +103,11 @@ DenseOutput RunOutput::WriteDense(const Reconstruction& reconstruction, const De
   const std::vector<DenseView> views = MakeDenseViews(
       reconstruction, WorldOf(reconstruction), [&](int index) { return store.Contains(index); });
   options.voxel_size = CloudOptionsFor(reconstruction, options.num_threads).voxel_size;
-  if (files.depth) SaveDepth(folder_, store, views);
+  if (files.depth) {
+    SaveDepth(folder_, store, views);
+  } else {
+    RemoveSavedDepth(folder_);
+  }
   if (files.views) {
     SaveViews(folder_ / kViewsName, store, {options.voxel_size.has_value(), views});
   }
@@ -119,7 +128,8 @@ void RunOutput::Finish(const Reconstruction& reconstruction, const nlohmann::jso
                   file_world_from_map);
   WriteScales(folder_ / "scale.txt", KnownScales(reconstruction));
   WritePly(folder_ / (dense ? "landmarks.ply" : "cloud.ply"), cloud, file_world_from_map);
-  // One of an earlier run in the same folder would belong to another cloud.
+  // Those of an earlier run in the same folder would belong to another cloud.
+  if (!dense) RemoveSavedDepth(folder_);
   if (!dense || !dense->mesh) std::filesystem::remove(folder_ / kMeshName);
   if (!dense) std::filesystem::remove(folder_ / kOctreeName);
   if (!dense && !cloud.empty()) WriteOctree(folder_ / kOctreeName, folder_ / "cloud.ply");

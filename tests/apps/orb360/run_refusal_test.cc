@@ -28,6 +28,17 @@ TEST_F(RunTest, AMapThatCannotBeWrittenIsRefusedBeforeAnyWork) {
   EXPECT_THAT(Refusal({"--map-out", path}), AllOf(HasSubstr(path), HasSubstr("cannot be written")));
 }
 
+TEST_F(RunTest, TheFolderOfASequenceIsNotOverwritten) {
+  WriteBlanks();
+  std::filesystem::create_directories(folder_ / "drive" / "depth");
+  WriteText(folder_ / "drive" / "sequence.yaml", "fps: 30\n");
+  WriteText(folder_ / "drive" / "depth" / "000000.png", "the truth");
+  const ProgramResult result = RunOrb360({"run", Input(), "--out", folder_ / "drive"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("drive: has a sequence")));
+  EXPECT_EQ(ReadText(folder_ / "drive" / "depth" / "000000.png"), "the truth");
+}
+
 TEST_F(RunTest, RefusesWhatIsNoNetwork) {
   WriteRoom();
   EXPECT_THAT(Refusal({"--weights", Image(0)}), HasSubstr("is not a network of orb360"));

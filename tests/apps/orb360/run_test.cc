@@ -117,6 +117,33 @@ TEST_F(RunTest, WithANetworkTheCloudIsDenseAndTheSameForAnyNumberOfThreads) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "two" / "depth"));
 }
 
+TEST_F(RunTest, DepthOfAnEarlierRunInTheFolderDoesNotStay) {
+  WriteRoom();
+  WriteMeanNetwork(folder_ / "net.h5");
+  const std::filesystem::path old = OutFile("depth") / "999999.png";
+  const std::filesystem::path others = OutFile("depth") / "mine.png";
+  const auto write_old = [&] {
+    std::filesystem::create_directories(OutFile("depth"));
+    WriteText(old, "of an earlier run");
+  };
+  write_old();
+  WriteText(others, "not of a run");
+  ASSERT_EQ(Run({"--weights", folder_ / "net.h5", "--save-depth"}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(old));
+  EXPECT_TRUE(std::filesystem::exists(others));
+  EXPECT_TRUE(std::filesystem::exists(OutFile("confidence")));
+
+  write_old();
+  std::filesystem::remove(others);
+  ASSERT_EQ(Run({"--weights", folder_ / "net.h5"}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(OutFile("depth")));
+  EXPECT_FALSE(std::filesystem::exists(OutFile("confidence")));
+
+  write_old();
+  ASSERT_EQ(Run().status, 0);
+  EXPECT_FALSE(std::filesystem::exists(OutFile("depth")));
+}
+
 TEST_F(RunTest, TheNetworkThatComesWithItIsUsedUnlessNoneIsWanted) {
   WriteRoom();
   const ProgramResult result = RunOrb360({"run", Input(), "--out", Out(), "--threads", "1"});
