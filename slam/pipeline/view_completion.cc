@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 #include <functional>
+#include <future>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -96,6 +97,104 @@ ObjectsOnGround FindObjects(const DenseDepth& depth, const DepthView& view,
   return {FindMovingObjects(below, view, *ground, others.views, options.objects), ground};
 }
 
+/// One view before the network completes it.
+struct PreparedView {
+  DenseDepth depth;        // Of the first pass.
+  InverseRanges measured;  // Of that, without objects that move along.
+  ObjectsOnGround found;
+  SparseDepth sparse;
+  cv::Mat color;
+  bool is_completed = false;
+};
+
+/// Prepares views, one at a time and in their order. It reads the first pass only, so that one view
+/// can be prepared while the network completes another.
+class ViewPreparation {
+ public:
+  ViewPreparation(std::span<const DenseView> views, const NeighbourFinder& neighbours_of,
+                  const LandmarkProjector& landmarks_of, const std::optional<Eigen::Vector3d>& up,
+                  const ViewDepthOptions& options, const ImageStore& images,
+                  const EquirectangularCamera& camera, int num_threads, const DepthMapStore& first)
+      : views_(views),
+        neighbours_of_(neighbours_of),
+        landmarks_of_(landmarks_of),
+        up_(up),
+        options_(options),
+        images_(images),
+        camera_(camera),
+        num_threads_(num_threads),
+        first_(first),
+        recent_(views, first) {}
+
+  PreparedView Prepare(size_t i, bool is_interrupted) {
+    const DenseView& view = views_[i];
+    const ViewCompletionOptions& second = options_.second;
+    const bool has_stereo = !options_.baselines.empty();
+    DenseDepth depth = first_.Get(view.frame_index);
+    InverseRanges measured = has_stereo ? MeasuredOf(depth) : NothingMeasured(depth.range.size());
+    std::vector<size_t> neighbours = neighbours_of_(i);
+    std::erase_if(neighbours, [&](size_t n) { return !first_.Contains(views_[n].frame_index); });
+    const auto load = [&](const std::vector<double>& distances, double unit) {
+      return LoadByDistance(views_, i, neighbours, distances, unit, second.max_distance_ratio,
+                            &recent_);
+    };
+    ObjectsOnGround found;
+    if (up_ && !is_interrupted) {
+      found = FindObjects(depth, *recent_.Get(i), *up_, second,
+                          [&](double height) { return load(second.ground_distances, height); });
+    }
+    const cv::Mat moving = MaskOf(found.objects, depth.range.size());
+    measured.value.setTo(0, moving);
+    SparseDepth sparse = RenderSparseDepth(landmarks_of_(view), camera_);
+    SampleSquares(measured, options_.sparse_spacing, 0, options_.sparse, &sparse);
+    const bool is_completed = has_stereo && !is_interrupted;
+    if (is_completed) {
+      const double range = TrustedRange(depth, options_.min_trusted_confidence);
+      AddReprojectedPoints(view.world_from_camera, load(second.distances, range).views,
+                           {.spacing = options_.sparse_spacing,
+                            .max_error = kLargestMeasuredError,
+                            .sparse = options_.sparse},
+                           &sparse, num_threads_);
+      if (up_ && options_.camera_height > 0) {
+        AddGroundPoints(view.world_from_camera.rotation.inverse() * *up_, options_.camera_height,
+                        {.sparse = options_.sparse}, &sparse);
+      }
+    }
+    sparse.range.setTo(0, moving);
+    sparse.confidence.setTo(0, moving);
+    return {.depth = std::move(depth),
+            .measured = std::move(measured),
+            .found = std::move(found),
+            .sparse = std::move(sparse),
+            .color = images_.Get(view.frame_index),
+            .is_completed = is_completed};
+  }
+
+ private:
+  std::span<const DenseView> views_;
+  const NeighbourFinder& neighbours_of_;
+  const LandmarkProjector& landmarks_of_;
+  const std::optional<Eigen::Vector3d>& up_;
+  const ViewDepthOptions& options_;
+  const ImageStore& images_;
+  const EquirectangularCamera& camera_;
+  int num_threads_;
+  const DepthMapStore& first_;
+  RecentViews recent_;
+};
+
+/// Completes a view by the network, and keeps what was measured.
+void Complete(const PreparedView& view, const ViewDepthOptions& options, DepthCompleter* completer,
+              DenseDepth* depth) {
+  *depth = completer->Complete(view.color, view.sparse);
+  cv::Mat surfaces = depth->range.clone();
+  surfaces.setTo(std::numeric_limits<float>::infinity(), depth->confidence < 1 / (1 + kSkyError));
+  Distrust(options.completion_error_factor, depth);
+  PutMeasured(view.measured, depth);
+  depth->range.copyTo(surfaces, view.measured.value > 0);
+  LimitConfidence(FindOccludingBoundary(surfaces), kBoundaryError, depth);
+}
+
 }  // namespace
 
 int CompleteViews(std::span<const DenseView> views, const NeighbourFinder& neighbours_of,
@@ -103,69 +202,42 @@ int CompleteViews(std::span<const DenseView> views, const NeighbourFinder& neigh
                   const ViewDepthOptions& options, const ImageStore& images,
                   DepthCompleter* completer, int num_threads, const DepthMapStore& first,
                   const DepthMapStore& store, const ViewDepthCallbacks& callbacks) {
-  const ViewCompletionOptions& second = options.second;
-  const bool has_stereo = !options.baselines.empty();
-  RecentViews recent(views, first);
+  ViewPreparation preparation(views, neighbours_of, landmarks_of, up, options, images,
+                              completer->camera(), num_threads, first);
   const auto count = static_cast<int>(views.size());
   bool is_interrupted = false;
-  int num_with_objects = 0;
-  for (size_t i = 0; i < views.size(); ++i) {
-    const DenseView& view = views[i];
-    if (callbacks.progress && !callbacks.progress(count + static_cast<int>(i), 2 * count)) {
-      is_interrupted = true;
-    }
-    if (!first.Contains(view.frame_index)) continue;
-    DenseDepth depth = first.Get(view.frame_index);
-    InverseRanges measured = has_stereo ? MeasuredOf(depth) : NothingMeasured(depth.range.size());
-    std::vector<size_t> neighbours = neighbours_of(i);
-    std::erase_if(neighbours, [&](size_t n) { return !first.Contains(views[n].frame_index); });
-    const auto load = [&](const std::vector<double>& distances, double unit) {
-      return LoadByDistance(views, i, neighbours, distances, unit, second.max_distance_ratio,
-                            &recent);
-    };
-    ObjectsOnGround found;
-    if (up && !is_interrupted) {
-      found = FindObjects(depth, *recent.Get(i), *up, second,
-                          [&](double height) { return load(second.ground_distances, height); });
-    }
-    const cv::Mat moving = MaskOf(found.objects, depth.range.size());
-    measured.value.setTo(0, moving);
-    SparseDepth sparse = RenderSparseDepth(landmarks_of(view), completer->camera());
-    SampleSquares(measured, options.sparse_spacing, 0, options.sparse, &sparse);
-    const bool is_completed = has_stereo && !is_interrupted;
-    if (is_completed) {
-      const double range = TrustedRange(depth, options.min_trusted_confidence);
-      AddReprojectedPoints(view.world_from_camera, load(second.distances, range).views,
-                           {.spacing = options.sparse_spacing,
-                            .max_error = kLargestMeasuredError,
-                            .sparse = options.sparse},
-                           &sparse, num_threads);
-      if (up && options.camera_height > 0) {
-        AddGroundPoints(view.world_from_camera.rotation.inverse() * *up, options.camera_height,
-                        {.sparse = options.sparse}, &sparse);
+  // Reports the progress up to the next view that has a depth, and starts to prepare that one.
+  size_t started = 0;
+  const auto start_next = [&]() -> std::future<PreparedView> {
+    while (started < views.size()) {
+      const size_t i = started++;
+      if (callbacks.progress && !callbacks.progress(count + static_cast<int>(i), 2 * count)) {
+        is_interrupted = true;
+      }
+      if (first.Contains(views[i].frame_index)) {
+        return std::async(std::launch::async, &ViewPreparation::Prepare, &preparation, i,
+                          is_interrupted);
       }
     }
-    sparse.range.setTo(0, moving);
-    sparse.confidence.setTo(0, moving);
-    const cv::Mat color = images.Get(view.frame_index);
+    return {};
+  };
+  int num_with_objects = 0;
+  std::future<PreparedView> next = start_next();
+  while (next.valid()) {
+    const DenseView& view = views[started - 1];
+    PreparedView now = next.get();
+    next = start_next();
     if (callbacks.sink) {
-      callbacks.sink({color, sparse, view.frame_index, view.timestamp, view.world_from_camera});
+      callbacks.sink(
+          {now.color, now.sparse, view.frame_index, view.timestamp, view.world_from_camera});
     }
-    if (is_completed) {
-      depth = completer->Complete(color, sparse);
-      cv::Mat surfaces = depth.range.clone();
-      surfaces.setTo(std::numeric_limits<float>::infinity(),
-                     depth.confidence < 1 / (1 + kSkyError));
-      Distrust(options.completion_error_factor, &depth);
-      PutMeasured(measured, &depth);
-      depth.range.copyTo(surfaces, measured.value > 0);
-      LimitConfidence(FindOccludingBoundary(surfaces), kBoundaryError, &depth);
-    }
-    if (!found.objects.empty()) {
-      PlaceOnGround(found.objects, *found.ground, second.objects, &depth);
+    DenseDepth depth = std::move(now.depth);
+    if (now.is_completed) Complete(now, options, completer, &depth);
+    if (!now.found.objects.empty()) {
+      PlaceOnGround(now.found.objects, *now.found.ground, options.second.objects, &depth);
       ++num_with_objects;
     }
-    if (!options.keeps_completed) depth.confidence.setTo(0, ~(measured.value > 0));
+    if (!options.keeps_completed) depth.confidence.setTo(0, ~(now.measured.value > 0));
     if (callbacks.watcher) callbacks.watcher(view.frame_index, view.world_from_camera, depth);
     store.Put(view.frame_index, depth);
   }
