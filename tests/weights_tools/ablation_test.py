@@ -70,6 +70,13 @@ class AblateTest(unittest.TestCase):
             said = io.StringIO()
             with mock.patch.object(ablate, "VARIANTS", variants), contextlib.redirect_stdout(said):
                 ablate.ablate(folder / "out", settings, [shard], [shard])
+            with contextlib.redirect_stdout(io.StringIO()):
+                start = folder / "out" / "variant0" / "checkpoint.pt"
+                with mock.patch.object(ablate, "VARIANTS", {"complete": ""}):
+                    ablate.ablate(folder / "more", settings, [shard], [shard], start)
+            self.assertEqual([path.name for path in (folder / "more").iterdir()], ["variant0"])
+            stages = torch.load(folder / "more" / "variant0" / "checkpoint.pt")["stages"]
+            self.assertEqual(stages[-1]["network"], ablate.NETWORK)
             table = said.getvalue().split("\n\n")[1].splitlines()
             self.assertEqual(len(table), 4)
             self.assertRegex(table[3], r"^\| without the image \| \d\.\d+ \| \d\.\d+ \| \d\.\d+ \| \d+ \|$")

@@ -2,9 +2,11 @@
 
     python3 -m weights_tools.training.ablate OUT --shards DRIVE.npz ... --validation OTHER.npz ...
 
-Every variant starts from the same weights, whose first estimate was trained before, and sees the same
-images and points. Training is short, so the table compares the variants with each other; it does not
-tell what a released network would reach. Can be stopped at any time, like training.
+Every variant starts from the same weights and sees the same images and points. With --start these are
+those of a trained network: the table then tells how much of a part's gain the others can take over.
+Otherwise only the first estimate was trained before. Training is short, so the table compares the
+variants with each other; it does not tell what a released network would reach. Can be stopped at any
+time, like training.
 """
 
 import argparse
@@ -58,11 +60,15 @@ def products(zeroed: str) -> float:
 
 
 def ablate(
-    out: Path, settings: Settings, shards: Sequence[Path], validation: Sequence[Path]
+    out: Path,
+    settings: Settings,
+    shards: Sequence[Path],
+    validation: Sequence[Path],
+    start: Path | None = None,
 ) -> None:
-    """Trains all variants and prints a line for each."""
+    """Trains all variants and prints a line for each. `start`: a network file or a checkpoint."""
     device = torch.device("cpu")
-    starts = [train_first_estimate(out, settings, shards)]
+    starts = [start or train_first_estimate(out, settings, shards)]
     rows = []
     for number, (name, zeroed) in enumerate(VARIANTS.items()):
         folder = out / f"variant{number}"
@@ -84,9 +90,11 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     add_options(parser, steps=1000)
+    parser.add_argument("--start", type=Path, help="weights of all variants: file or checkpoint")
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
-    ablate(arguments.out, settings_of(arguments), arguments.shards, arguments.validation)
+    settings = settings_of(arguments)
+    ablate(arguments.out, settings, arguments.shards, arguments.validation, arguments.start)
 
 
 if __name__ == "__main__":

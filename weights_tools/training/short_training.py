@@ -27,6 +27,7 @@ def add_options(parser: argparse.ArgumentParser, steps: int) -> None:
     parser.add_argument("--validation", type=Path, nargs="+", required=True, help="to measure on")
     parser.add_argument("--steps", type=int, default=steps, help="(default: %(default)s)")
     parser.add_argument("--batch", type=int, default=8, help="(default: %(default)s)")
+    parser.add_argument("--rate", type=float, default=1.5e-3, help="(default: %(default)s)")
     parser.add_argument("--threads", type=int, default=torch.get_num_threads())
     parser.add_argument("--bfloat16", action="store_true")
 
@@ -34,6 +35,7 @@ def add_options(parser: argparse.ArgumentParser, steps: int) -> None:
 def settings_of(arguments: argparse.Namespace) -> Settings:
     """The settings that the options ask for."""
     return Settings(
-        network=NETWORK, steps=arguments.steps, batch=arguments.batch, rate=1.5e-3, warm_up=50,
-        average=0.99, fixed_propagation=True, batch_normalization=True, bfloat16=arguments.bfloat16,
+        network=NETWORK, steps=arguments.steps, batch=arguments.batch, rate=arguments.rate,
+        warm_up=50, average=0.99, fixed_propagation=True, batch_normalization=True,
+        bfloat16=arguments.bfloat16,
     )  # fmt: skip
