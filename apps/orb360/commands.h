@@ -35,6 +35,9 @@ struct DeviceOptions {
   nn::Device Open() const;
 };
 
+/// Returns the warning about Device::passed_over. Contract: it is not empty.
+std::string PassedOverWarning(const nn::Device& device);
+
 /// Adds the options for it.
 void AddDeviceOptions(CLI::App* command, DeviceOptions* device);
 

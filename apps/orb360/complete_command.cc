@@ -74,7 +74,11 @@ std::filesystem::path Beside(const std::filesystem::path& depth, const char* wha
 class Completer {
  public:
   explicit Completer(const CompleteOptions& options)
-      : options_(options), device_(options.device.Open()) {}
+      : options_(options), device_(options.device.Open()) {
+    if (!device_.passed_over.empty()) {
+      std::cerr << "orb360: warning: " << PassedOverWarning(device_) << '\n';
+    }
+  }
 
   DenseDepth Complete(const cv::Mat& image, const SparseDepth& sparse) {
     if (!completer_ || completer_->camera().width() != image.cols ||

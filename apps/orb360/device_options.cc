@@ -10,12 +10,17 @@ namespace orb360 {
 nn::Device DeviceOptions::Open() const {
   nn::Device device = nn::OpenDevice(name, uses_halves);
   const bool is_short = precision == nn::Precision::kBFloat16 || precision == nn::Precision::kInt8;
-  if (device.backend != nullptr && is_short) {
+  // With "auto" it is for where the CPU runs the network.
+  if (device.backend != nullptr && is_short && name != "auto") {
     throw UserError(
         "--precision bfloat16 and int8 are for the CPU: leave it out, or use --device cpu");
   }
   device.precision = precision;
   return device;
+}
+
+std::string PassedOverWarning(const nn::Device& device) {
+  return "networks run on " + device.name + ", since " + device.passed_over + " cannot be used";
 }
 
 void AddDeviceOptions(CLI::App* command, DeviceOptions* device) {

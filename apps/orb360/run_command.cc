@@ -220,6 +220,7 @@ int Run(const RunOptions& options) {
   const std::optional<RunPositions> positions =
       ReadRunPositions(options.positions, options.input, fps, &unusable);
   if (!unusable.empty()) Warn(unusable, &record);
+  if (!device.passed_over.empty()) Warn(PassedOverWarning(device), &record);
   std::optional<LiveView> live;
   if (!options.view_port.empty()) {
     live.emplace(options.view_address, std::stoi(options.view_port));

@@ -51,6 +51,10 @@ Buffer::Buffer(const LogicalDevice& device, std::size_t bytes, BufferUse use) {
   VkMemoryRequirements needs{};
   functions.GetBufferMemoryRequirements(device.handle(), buffer, &needs);
   const std::uint32_t type = ChooseType(device.memory(), needs.memoryTypeBits, use);
+  // To ask for more than there is would be an error of the caller, of which drivers need not tell.
+  const VkPhysicalDeviceMemoryProperties& memories = device.memory();
+  const VkDeviceSize heap = memories.memoryHeaps[memories.memoryTypes[type].heapIndex].size;
+  device.Check(needs.size <= heap ? VK_SUCCESS : VK_ERROR_OUT_OF_DEVICE_MEMORY, action);
   VkMemoryAllocateInfo allocation{};
   allocation.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   allocation.allocationSize = needs.size;

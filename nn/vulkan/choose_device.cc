@@ -15,7 +15,7 @@ constexpr std::string_view kPrefix = "vulkan:";
 std::optional<int> IndexOf(const std::string& name) {
   if (!name.starts_with(kPrefix)) return {};
   const std::string digits = name.substr(kPrefix.size());
-  constexpr std::size_t kMaxDigits = 4;
+  constexpr std::size_t kMaxDigits = 9;  // of an int
   const bool is_number =
       !digits.empty() && digits.size() <= kMaxDigits &&
       std::ranges::all_of(digits, [](unsigned char c) { return std::isdigit(c) != 0; });
@@ -37,6 +37,16 @@ std::string List(const std::vector<VulkanDevice>& devices) {
     text += ")";
   }
   return text.empty() ? "no device" : text;
+}
+
+/// The graphics processors that are not taken although there is no better one.
+std::string PassedOver(const VulkanDevices& found, const std::optional<int>& chosen) {
+  VulkanDevices passed_over;
+  for (const VulkanDevice& device : found.devices) {
+    if (chosen == device.index && IsGpu(device)) break;
+    if (IsGpu(device)) passed_over.devices.push_back(device);
+  }
+  return passed_over.devices.empty() ? "" : List(passed_over.devices);
 }
 
 }  // namespace
@@ -109,9 +119,13 @@ Device OpenChosen(const std::string& name, VulkanDevices found, bool uses_halves
     VulkanDevice* const chosen =
         index ? &*std::ranges::find(found.devices, *index, &VulkanDevice::index) : nullptr;
     const bool stores_halves = ChooseHalves(name, chosen, uses_halves);
-    if (chosen == nullptr) return {};
+    const bool is_open = name == "auto" || name == "vulkan";
+    const std::string passed_over = is_open ? PassedOver(found, index) : "";
+    if (chosen == nullptr) return {.passed_over = passed_over};
     try {
-      return open(*index, stores_halves);
+      Device device = open(*index, stores_halves);
+      device.passed_over = passed_over;
+      return device;
     } catch (const UserError& error) {
       chosen->problem = error.what();
     } catch (const DeviceError& error) {

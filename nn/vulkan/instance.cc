@@ -106,10 +106,18 @@ Instance::Instance(OnMessage on_message) {
                   }};
   }
   std::uint32_t count = 0;
-  functions_.EnumeratePhysicalDevices(instance, &count, nullptr);
+  VkResult listed = functions_.EnumeratePhysicalDevices(instance, &count, nullptr);
   devices_.resize(count);
-  if (count > 0) functions_.EnumeratePhysicalDevices(instance, &count, devices_.data());
+  if (listed == VK_SUCCESS && count > 0) {
+    // VK_INCOMPLETE: a device was added meanwhile.
+    listed = functions_.EnumeratePhysicalDevices(instance, &count, devices_.data());
+  }
   devices_.resize(count);
+  if (listed != VK_SUCCESS && listed != VK_INCOMPLETE) {
+    throw UserError("Vulkan cannot list its devices (vkEnumeratePhysicalDevices gave " +
+                    std::to_string(listed) +
+                    "); install the driver of the graphics card again, or use --device cpu");
+  }
 }
 
 }  // namespace orb360::nn::vulkan

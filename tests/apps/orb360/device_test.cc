@@ -67,6 +67,7 @@ class DeviceTest : public RunTest {
     EXPECT_THAT(found["problem"].get<std::string>(),
                 AnyOf(HasSubstr("No such file"), HasSubstr("there is no Vulkan driver"),
                       HasSubstr("there is no Vulkan device"), HasSubstr("built without Vulkan")));
+    EXPECT_EQ(std::getenv("ORB360_TEST_REQUIRES_VULKAN"), nullptr) << kNoDevice;
     return false;
   }
 
@@ -96,6 +97,12 @@ std::map<std::string, std::string> FailingDriver(int submissions) {
 std::map<std::string, std::string> DriverWithoutPipelines() {
   return {{"LD_LIBRARY_PATH", ORB360_BINARY_DIR "/tests/apps/orb360/failing_vulkan"},
           {"ORB360_TEST_NO_PIPELINES", "1"}};
+}
+
+/// A driver with whose devices something is wrong (failing_vulkan.cc).
+std::map<std::string, std::string> DriverWhoseDeviceIs(const std::string& what) {
+  return {{"LD_LIBRARY_PATH", ORB360_BINARY_DIR "/tests/apps/orb360/failing_vulkan"},
+          {"ORB360_TEST_DEVICE_IS", what}};
 }
 
 /// No driver at all.
@@ -164,6 +171,69 @@ TEST_F(DeviceTest, ADeviceThatCannotBeOpenedIsToldInOneLine) {
   }
 }
 
+TEST_F(DeviceTest, WhatADeviceLacksIsToldInOneLine) {
+  if (!HasVulkan()) GTEST_SKIP() << kNoDevice;
+  const std::map<std::string, std::string> reasons = {
+      {"gpu old", "it has Vulkan 1.1.0, and 1.2 is needed"},
+      {"gpu inexact", "it does not keep NaN and infinity"},
+      {"hidden", "Vulkan cannot list its devices (vkEnumeratePhysicalDevices gave -3)"}};
+  for (const auto& [what, reason] : reasons) {
+    const Environment environment(DriverWhoseDeviceIs(what));
+    for (const char* device : {"vulkan", "vulkan:0"}) {
+      const ProgramResult result = Complete(device, "refused.png");
+      EXPECT_EQ(result.status, 1) << what;
+      EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("--device vulkan"), HasSubstr(reason)));
+    }
+    const ProgramResult automatic = Complete("auto", "auto.png");
+    EXPECT_EQ(automatic.status, 0) << automatic.err;
+    EXPECT_EQ(nlohmann::json::parse(automatic.out)[0]["device"], "cpu");
+    if (what == "hidden") {
+      EXPECT_THAT(Devices()["problem"].get<std::string>(), HasSubstr(reason));
+    } else {
+      EXPECT_THAT(Devices()["devices"][1]["problem"].get<std::string>(), HasSubstr(reason));
+      EXPECT_THAT(automatic.err,
+                  AllOf(IsOneLine(), HasSubstr("warning: networks run on cpu, since vulkan:0 ("),
+                        HasSubstr(reason)));
+    }
+  }
+}
+
+TEST_F(DeviceTest, ARunTellsWhichGpuItCouldNotUse) {
+  if (!HasVulkan()) GTEST_SKIP() << kNoDevice;
+  WriteRoom();
+  const Environment environment(DriverWhoseDeviceIs("gpu old"));
+  const ProgramResult result = RunOn("auto");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("warning: networks run on cpu, since")));
+  EXPECT_EQ(Summary()["device"], "cpu");
+  EXPECT_EQ(Summary()["warnings"].size(), 1u);
+}
+
+TEST_F(DeviceTest, ATypeOfTheCpuIsRefusedForANamedDeviceOnly) {
+  if (!HasVulkan()) GTEST_SKIP() << kNoDevice;
+  WriteBlanks();
+  EXPECT_THAT(
+      Refusal({"--weights", folder_ / "net.h5", "--device", "vulkan", "--precision", "int8"}),
+      HasSubstr("are for the CPU"));
+  WriteRoom();
+  const Environment environment(DriverWhoseDeviceIs("gpu"));
+  const ProgramResult result = Run({"--weights", folder_ / "net.h5", "--cloud-quality", "draft",
+                                    "--device", "auto", "--precision", "int8"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(Summary()["device"].get<std::string>(), StartsWith("vulkan:0"));
+}
+
+TEST_F(DeviceTest, AnImageTooLargeForTheDeviceIsCompletedOnTheCpu) {
+  if (!HasVulkan()) GTEST_SKIP() << kNoDevice;
+  ASSERT_EQ(Complete("cpu", "cpu.png").status, 0);
+  const Environment environment(DriverWhoseDeviceIs("small"));
+  const ProgramResult result = Complete("vulkan", "vulkan.png");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.err, AllOf(IsOneLine(), HasSubstr("MiB in one buffer"), HasSubstr("CPU")));
+  EXPECT_EQ(nlohmann::json::parse(result.out)[0]["device"], "cpu");
+  EXPECT_EQ(ReadText(folder_ / "vulkan.png"), ReadText(folder_ / "cpu.png"));
+}
+
 TEST_F(DeviceTest, ALoaderThatCannotBeOpenedIsNotCalledMissing) {
   if (!HasVulkan()) GTEST_SKIP() << kNoDevice;
   std::ofstream(folder_ / "libvulkan.so.1") << std::string(1000, 'x');  // no library
@@ -184,6 +254,34 @@ TEST_F(DeviceTest, ARunStatesItsDevice) {
   EXPECT_THAT(result.err, IsEmpty());
   EXPECT_THAT(Summary()["device"].get<std::string>(), StartsWith("vulkan:"));
   EXPECT_GT(Summary()["cloud"]["points"], 0);
+}
+
+// The bounds of docs/concepts/vulkan.md.
+TEST_F(DeviceTest, TheDeviceChangesThePathOnlyWhereDepthGuidesMapping) {
+  if (!HasVulkan()) GTEST_SKIP() << kNoDevice;
+  WriteRoom();
+  const auto run = [&](const std::string& device, const std::string& config) {
+    WriteText(folder_ / "run.yaml", config);
+    const ProgramResult result = Run({"--weights", folder_ / "net.h5", "--cloud-quality", "draft",
+                                      "--config", folder_ / "run.yaml", "--device", device});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return ReadText(OutFile("trajectory.txt"));
+  };
+  EXPECT_EQ(run("cpu", ""), run("vulkan", ""));
+
+  const std::string guided = "depth:\n  guides_mapping: true\n";
+  run("cpu", guided);
+  const std::vector<StampedPose> expected = ReadTrajectory(OutFile("trajectory.txt"));
+  run("vulkan", guided);
+  const std::vector<StampedPose> actual = ReadTrajectory(OutFile("trajectory.txt"));
+  ASSERT_EQ(actual.size(), expected.size());
+  const double length = expected.back().world_from_camera.translation.norm();
+  ASSERT_GT(length, 0);
+  for (size_t i = 0; i < actual.size(); ++i) {
+    const Rigid3 difference = expected[i].world_from_camera.Inverse() * actual[i].world_from_camera;
+    EXPECT_LT(difference.translation.norm(), 1e-3 * length) << i;
+    EXPECT_LT(difference.rotation.vec().norm(), 1e-4) << i;
+  }
 }
 
 TEST_F(DeviceTest, ARunWhoseDeviceIsLostGoesOnWithTheCpuAndWarnsOnce) {

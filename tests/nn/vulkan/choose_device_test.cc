@@ -52,6 +52,8 @@ TEST(ChooseDevice, SaysWhatWasFound) {
   EXPECT_THAT(ErrorOf("vulkan:7", Machine({kDiscrete})),
               testing::AllOf(testing::HasSubstr("vulkan:7"),
                              testing::HasSubstr("found vulkan:0 (discrete GPU)")));
+  EXPECT_THAT(ErrorOf("vulkan:99999", Machine({kDiscrete})),
+              testing::HasSubstr("there is no such device; found vulkan:0"));
   EXPECT_THAT(ErrorOf("vulkan", {{}, "there is no driver"}), testing::HasSubstr("no driver"));
   VulkanDevices old = Machine({kDiscrete});
   old.devices[0].problem = "it has Vulkan 1.0, and 1.2 is needed";
@@ -90,6 +92,24 @@ TEST(OpenChosen, AutoGoesOnToTheNextGpuAndThenToTheCpu) {
   EXPECT_EQ(OpenChosen("vulkan", found, false, OpenAllBut(3)).name, "device 3");
 }
 
+TEST(OpenChosen, TellsWhichGpusWerePassedOverAndWhy) {
+  VulkanDevices found = Machine({kDiscrete, kCpu, kIntegrated});
+  EXPECT_EQ(OpenChosen("auto", found, false, OpenAllBut(0)).passed_over, "");
+  EXPECT_EQ(OpenChosen("auto", found, false, OpenAllBut(1)).passed_over,
+            "vulkan:0 (discrete GPU; it has no shaders)");
+  found.devices[2].problem = "it is too old";
+  for (const char* name : {"auto", "vulkan"}) {
+    EXPECT_EQ(
+        OpenChosen(name, found, false, OpenAllBut(1)).passed_over,
+        "vulkan:0 (discrete GPU; it has no shaders), vulkan:2 (integrated GPU; it is too old)")
+        << name;
+  }
+  // Nobody asked for another one.
+  EXPECT_EQ(OpenChosen("vulkan:1", found, false, OpenAllBut(1)).passed_over, "");
+  EXPECT_EQ(OpenChosen("cpu", found, false, OpenAllBut(1)).passed_over, "");
+  EXPECT_EQ(OpenChosen("auto", Machine({kCpu}), false, OpenAllBut(1)).passed_over, "");
+}
+
 TEST(OpenChosen, ANamedDeviceThatCannotBeOpenedIsAUserError) {
   const VulkanDevices found = Machine({kDiscrete, kIntegrated});
   const auto error_of = [&](const std::string& name) -> std::string {
@@ -118,7 +138,8 @@ TEST(OpenChosen, TheHalvesOfAnotherGpuAreItsOwn) {
 }
 
 TEST(ChooseDevice, RefusesOtherNames) {
-  for (const char* name : {"", "gpu", "vulkan:", "vulkan:-1", "vulkan:1x", "vulkan:99999", "CPU"}) {
+  for (const char* name :
+       {"", "gpu", "vulkan:", "vulkan:-1", "vulkan:1x", "vulkan:9999999999", "CPU"}) {
     EXPECT_THAT(ErrorOf(name, Machine({kDiscrete})),
                 testing::HasSubstr("should be cpu, auto, vulkan or vulkan:N"))
         << name;

@@ -1,5 +1,6 @@
 // Whole networks on a Vulkan device.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -283,6 +284,37 @@ TEST_P(VulkanReleasedNetworkSlow, CompletesAPanoramaAsTheCpuAndTheSameEveryTime)
 INSTANTIATE_TEST_SUITE_P(Every, VulkanReleasedNetworkSlow,
                          ::testing::Values("depth_completion", "encoder_decoder"),
                          [](const auto& suite) { return std::string(suite.param); });
+
+using VulkanProgramSlow = VulkanTest;
+
+// Of 8K, one plane of floats is nearly what a buffer of lavapipe holds.
+TEST_F(VulkanProgramSlow, LargeImagesAreComputedAsOnTheCpuOrRefusedBySize) {
+  NetworkBuilder net(2);
+  net.Input("x", 1);
+  net.Convolution("half", "x", 1, 2, 3, 2);
+  net.Convolution("y", "half", 2, 1, 3);
+  net.Output("y", "y");
+  const Graph graph = net.Build();
+  for (const int height : {2048, 3840}) {
+    SCOPED_TRACE(height);
+    const std::vector<PlainImage> inputs = {RandomImage({1, height, 2 * height}, -1, 1, 7)};
+    std::optional<Executor> executor;
+    try {
+      executor.emplace(graph, height, 2 * height, options());
+    } catch (const DeviceError& error) {
+      EXPECT_EQ(height, 3840);
+      EXPECT_THAT(error.what(), testing::HasSubstr("MiB in one buffer, and the device has up to"));
+      continue;
+    }
+    const auto actual = RunOnce(*executor, inputs);
+    const auto expected = RunOnce(Executor(graph, height, 2 * height, {}), inputs);
+    float largest = 0;
+    for (std::size_t i = 0; i < expected[0].size(); ++i) {
+      largest = std::max(largest, std::abs(actual[0][i] - expected[0][i]));
+    }
+    EXPECT_LT(largest, 1e-5f);
+  }
+}
 
 }  // namespace
 }  // namespace orb360::nn

@@ -28,6 +28,9 @@ struct Device {
   /// In which type convolutions multiply where the CPU runs the network, also in the place of a
   /// device that has failed.
   Precision precision = Precision::kFloat;
+  /// Where the name left the choice open: the graphics processors that were passed over, and why.
+  /// Empty where there are none.
+  std::string passed_over = {};
 };
 
 }  // namespace orb360::nn
