@@ -94,17 +94,12 @@ std::optional<GroundSweepOptions> RangeOfSweep(const Map& map, const Keyframe& e
   return options;
 }
 
-// What a sweep starts from, frame of the earlier camera.
-struct Assumption {
-  Eigen::Vector3d direction;  // of the motion
-  Eigen::Vector3d up;         // normal of the ground
-};
-
 // A carrier stands on the ground and drives ahead, so that both directions change little in the
 // frame of the camera. They are tried where tracking may be wrong about the motion, as it is beside
 // another car, and about the ground.
-std::vector<Assumption> Assume(const Map& map, const Keyframe& earlier, const Rigid3& motion,
-                               const std::optional<KnownGround>& ground) {
+std::vector<GroundStepGuess> GuessesOf(const Map& map, const Keyframe& earlier,
+                                       const Rigid3& motion,
+                                       const std::optional<KnownGround>& ground) {
   const Eigen::Vector3d known_up = ground
                                        ? earlier.world_from_camera.rotation.conjugate() * ground->up
                                        : Eigen::Vector3d::UnitZ();
@@ -131,12 +126,9 @@ void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
     const Rigid3 motion = pose.Inverse() * keyframe.world_from_camera;
     const std::optional<GroundSweepOptions> options = RangeOfSweep(*map, earlier, keyframe, ground);
     if (!options) continue;
-    std::optional<GroundStep> step;
-    for (const Assumption& assumed : Assume(*map, earlier, motion, ground)) {
-      step = MeasureGroundStep(*earlier.image, *keyframe.image,
-                               {motion.rotation, assumed.direction}, assumed.up, mask, *options);
-      if (step) break;
-    }
+    const std::optional<GroundStep> step =
+        MeasureGroundStep(*earlier.image, *keyframe.image, motion.rotation,
+                          GuessesOf(*map, earlier, motion, ground), mask, *options);
     if (!step) continue;
     const Eigen::Vector3d half = 0.5 * step->ratio * step->direction;
     const Eigen::Vector3d up =

@@ -113,10 +113,12 @@ void SeeThroughLenses(const Eigen::Vector3d& axis1, const Eigen::Vector3d& axis2
   add(1, &tiles->across);
 }
 
-/// A step, if it was measured, and whether it is that of the ground straight below alone.
+/// A step, if it was measured, whether it is that of the ground straight below alone, and whether
+/// several steps look alike.
 struct SweptStep {
   std::optional<GroundStep> step = {};
   bool is_below = false;
+  bool is_ambiguous = false;
 };
 
 /// `axes`: of the ground, in the frame of camera 1.
@@ -139,10 +141,9 @@ SweptStep Sweep(const SpherePyramid& image1, const SpherePyramid& image2,
   NormalizeLocally(kTile / 2 / kCoarse, &coarse2);
   const SweptShift swept = SweepShift(view1, view2, coarse1, coarse2, options);
   const bool is_below = swept.is_below;
-  if (!swept.is_peak || swept.correlation < options.min_correlation ||
-      swept.rival > options.max_rival * swept.correlation) {
-    return {.is_below = is_below};
-  }
+  if (swept.correlation < options.min_correlation) return {.is_below = is_below};
+  const bool is_ambiguous = swept.rival > options.max_rival * swept.correlation;
+  if (!swept.is_peak || is_ambiguous) return {.is_below = is_below, .is_ambiguous = is_ambiguous};
   const Shift& common = swept.shift;
   TileShifts tiles = ShiftsOfTiles(view1, view2, common);
   const Eigen::Vector3d ahead = Eigen::Vector3d::UnitX();
@@ -172,6 +173,26 @@ SweptStep Sweep(const SpherePyramid& image1, const SpherePyramid& image2,
   return {step, is_below};
 }
 
+/// MeasureGroundStep from one guess. `camera2_from_camera1`: rotation.
+SweptStep MeasureFrom(const GroundStepGuess& guess, const SpherePyramid& image1,
+                      const SpherePyramid& image2, const Eigen::Quaterniond& camera2_from_camera1,
+                      const cv::Mat& mask, const GroundSweepOptions& options) {
+  for (const bool is_parallel : {true, false}) {
+    const std::optional<Eigen::Matrix3d> axes = GroundAxes(guess.direction, guess.up, is_parallel);
+    if (!axes) return {};
+    const SweptStep swept = Sweep(image1, image2, camera2_from_camera1, *axes, mask, options);
+    const std::optional<GroundStep>& step = swept.step;
+    if (swept.is_ambiguous) return swept;
+    if (!step && swept.is_below) return {};  // The rest is not the ground.
+    if (!step) continue;
+    const std::optional<Eigen::Matrix3d> seen = GroundAxes(step->direction, step->up, true);
+    if (!seen) return {};
+    if (seen->col(2).dot(axes->col(2)) > std::cos(kMaxTilt)) return swept;
+    return Sweep(image1, image2, camera2_from_camera1, *seen, mask, options);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::optional<GroundStep> MeasureGroundStep(const SpherePyramid& image1,
@@ -179,22 +200,24 @@ std::optional<GroundStep> MeasureGroundStep(const SpherePyramid& image1,
                                             const Rigid3& camera1_from_camera2,
                                             const Eigen::Vector3d& up, const cv::Mat& mask,
                                             const GroundSweepOptions& options) {
+  const GroundStepGuess guess{camera1_from_camera2.translation, up};
+  return MeasureGroundStep(image1, image2, camera1_from_camera2.rotation, std::span(&guess, 1),
+                           mask, options);
+}
+
+std::optional<GroundStep> MeasureGroundStep(const SpherePyramid& image1,
+                                            const SpherePyramid& image2,
+                                            const Eigen::Quaterniond& camera1_from_camera2,
+                                            std::span<const GroundStepGuess> guesses,
+                                            const cv::Mat& mask,
+                                            const GroundSweepOptions& options) {
   ORB360_CHECK(0 < options.min_ratio && options.min_ratio < options.max_ratio &&
                    options.max_ratio >= kCoarse * kCell,
                options.min_ratio, options.max_ratio);
-  const Eigen::Quaterniond camera2_from_camera1 = camera1_from_camera2.rotation.conjugate();
-  for (const bool is_parallel : {true, false}) {
-    const std::optional<Eigen::Matrix3d> axes =
-        GroundAxes(camera1_from_camera2.translation, up, is_parallel);
-    if (!axes) return std::nullopt;
-    const SweptStep swept = Sweep(image1, image2, camera2_from_camera1, *axes, mask, options);
-    const std::optional<GroundStep>& step = swept.step;
-    if (!step && swept.is_below) return std::nullopt;  // The rest is not the ground.
-    if (!step) continue;
-    const std::optional<Eigen::Matrix3d> seen = GroundAxes(step->direction, step->up, true);
-    if (!seen) return std::nullopt;
-    if (seen->col(2).dot(axes->col(2)) > std::cos(kMaxTilt)) return step;
-    return Sweep(image1, image2, camera2_from_camera1, *seen, mask, options).step;
+  for (const GroundStepGuess& guess : guesses) {
+    const SweptStep swept =
+        MeasureFrom(guess, image1, image2, camera1_from_camera2.conjugate(), mask, options);
+    if (swept.step || swept.is_ambiguous) return swept.step;
   }
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
@@ -93,5 +94,20 @@ std::optional<GroundStep> MeasureGroundStep(const SpherePyramid& image1,
                                             const Rigid3& camera1_from_camera2,
                                             const Eigen::Vector3d& up, const cv::Mat& mask,
                                             const GroundSweepOptions& options);
+
+/// What a measurement may start from, frame of camera 1.
+struct GroundStepGuess {
+  Eigen::Vector3d direction;  ///< Of the motion; its length is not used.
+  Eigen::Vector3d up;         ///< Normal of the ground, unit.
+};
+
+/// The same from the first of several guesses that gives a step, in their order. Where one finds
+/// several ratios that correlate well, the ground repeats itself, and there is none: sooner or
+/// later one of the others would leave the true ratio out and show another one alone.
+std::optional<GroundStep> MeasureGroundStep(const SpherePyramid& image1,
+                                            const SpherePyramid& image2,
+                                            const Eigen::Quaterniond& camera1_from_camera2,
+                                            std::span<const GroundStepGuess> guesses,
+                                            const cv::Mat& mask, const GroundSweepOptions& options);
 
 }  // namespace orb360

@@ -89,6 +89,51 @@ TEST(MeasureGroundStep, StandingStillOnBoardsIsNoStepOfTheirLength) {
   EXPECT_FALSE(Measure(Boards(2.3, 5.0), 0.004));  // one period is in reach
 }
 
+// Square plates, all alike, whose edges lie along the motion and across it.
+Ground Plates(double period) {
+  return [=, plate = Asphalt(15)](const Eigen::Vector2d& place) {
+    const Eigen::Vector2d turned(0.8 * place.x() - 0.6 * place.y(),
+                                 0.6 * place.x() + 0.8 * place.y());
+    const Eigen::Vector2d within = turned - period * (turned / period).array().floor().matrix();
+    return plate(2.5 * within);
+  };
+}
+
+TEST(MeasureGroundStep, WhereTheGroundRepeatsNoOtherGuessGivesAStep) {
+  const double step = 0.8;
+  const Rigid3 second = After(step);
+  const Rigid3 motion = kFirst.Inverse() * second;
+  const Eigen::Vector3d up = kFirst.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  const SpherePyramid image1 = LookAtGround(kFirst, Plates(0.48));
+  const SpherePyramid image2 = LookAtGround(second, Plates(0.48));
+  const GroundSweepOptions options{.max_ratio = 0.9};
+  // Steps of 0.32 and 0.8 look alike. About 70 degrees aside only that of 0.32 ahead and 0.48 aside
+  // is in reach.
+  const GroundStepGuess right{motion.translation, up};
+  const GroundStepGuess aside{ExpSo3(1.22 * up) * motion.translation, up};
+  const auto measure = [&](const std::vector<GroundStepGuess>& guesses) {
+    return MeasureGroundStep(image1, image2, motion.rotation, guesses, {}, options);
+  };
+  const auto wrong = measure({aside});
+  ASSERT_TRUE(wrong);
+  EXPECT_NEAR(wrong->ratio, std::hypot(0.48, 0.32), 0.02);
+  EXPECT_FALSE(measure({right}));
+  EXPECT_FALSE(measure({right, aside}));
+}
+
+TEST(MeasureGroundStep, ALaterGuessCountsWhereTheFirstShowsNothing) {
+  const Asphalt asphalt(16);
+  const Rigid3 second = After(0.9);
+  const Rigid3 motion = kFirst.Inverse() * second;
+  const Eigen::Vector3d up = kFirst.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  const std::vector<GroundStepGuess> guesses = {{ExpSo3(2.0 * up) * motion.translation, up},
+                                                {motion.translation, up}};
+  const auto found = MeasureGroundStep(LookAtGround(kFirst, asphalt), LookAtGround(second, asphalt),
+                                       motion.rotation, guesses, {}, {});
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(std::log(found->ratio / 0.9), 0.0, 0.006);
+}
+
 TEST(MeasureGroundStep, AnErrorOfTheNormalCancels) {
   const Asphalt asphalt(2);
   for (const Eigen::Vector3d& error : {Eigen::Vector3d(0.05, 0, 0), Eigen::Vector3d(0, -0.05, 0),
