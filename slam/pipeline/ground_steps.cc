@@ -110,6 +110,23 @@ std::vector<GroundStepGuess> GuessesOf(const Map& map, const Keyframe& earlier,
       {motion.translation, step.up}, {step.direction2, step.up}, {motion.translation, known_up}};
 }
 
+// Standard deviation of ln(step) on ground that slopes by an angle: its height over a point
+// straight below is that of somebody who carries the camera, and its distance from the plane that
+// of a vehicle. Nobody knows which of both is given; they differ by the factor cos(angle). `up`:
+// normal of the ground, camera frame. Of all the ground of this run, that along which the camera is
+// most upright is taken to be level: cameras are held upright, or always tilted alike. Up to 8
+// degrees it is the measured normal that is uncertain rather than the ground that slopes.
+double SlopeSigma(const Map& map, const Eigen::Vector3d& up) {
+  double level = up.z();
+  for (const KeyframeId id : map.KeyframeIds()) {
+    const Keyframe& keyframe = map.keyframe(id);
+    if (!keyframe.IsOfThisRun()) continue;
+    for (const GroundStepFrom& step : keyframe.ground_steps) level = std::max(level, step.up.z());
+  }
+  constexpr double kUncertain = 0.01;  // of the cosine
+  return std::max(0.0, level - up.z() - kUncertain);
+}
+
 }  // namespace
 
 void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
@@ -134,17 +151,18 @@ void MeasureGroundSteps(KeyframeId id, const std::optional<KnownGround>& ground,
     const Eigen::Vector3d up =
         (step->up - step->up.dot(step->direction) * step->direction).normalized();
     const Eigen::Quaterniond later_from_earlier = motion.rotation.conjugate();
+    const Eigen::Vector3d seen_up = later_from_earlier * step->up;
     const double turn = step->turn_sigma < kMaxTurnSigma ? step->turn : 0.0;
     const Eigen::Quaterniond turned = later_from_earlier * ExpSo3(-turn * up);
     keyframe.ground_steps.push_back({.keyframe = other,
                                      .ratio = step->ratio,
-                                     .sigma = step->sigma,
+                                     .sigma = std::hypot(step->sigma, SlopeSigma(*map, seen_up)),
                                      .point1 = half - up,
                                      .point2 = later_from_earlier * (-half - up),
                                      .direction1 = step->direction,
                                      .direction2 = turned * step->direction,
                                      .turn_sigma = step->turn_sigma,
-                                     .up = later_from_earlier * step->up,
+                                     .up = seen_up,
                                      .assumed_lens_distance = options->lens_distance,
                                      .per_lens_distance = step->per_lens_distance,
                                      .lens_distance = step->lens_distance});

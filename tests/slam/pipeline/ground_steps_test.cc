@@ -87,6 +87,41 @@ TEST(MeasureGroundSteps, SeeksTheStepAroundTheLastSpeedAsFarAsACarAccelerates) {
   }
 }
 
+// A drive whose camera is tilted against the ground, rad.
+Map TiltedDrive(double tilt) {
+  Map map;
+  for (int i = 0; i < 3; ++i) {
+    Rigid3 pose = TruePose(i);
+    pose.rotation = pose.rotation * ExpSo3({0, tilt, 0});
+    const auto image =
+        std::make_shared<const SpherePyramid>(LookAtGround(pose, Scaled(Asphalt(17))));
+    map.AddKeyframe(i, 0.1 * i, pose, std::make_shared<Features>());
+    map.keyframe(i).image = image;
+  }
+  return map;
+}
+
+TEST(MeasureGroundSteps, OnASlopeTheHeightIsUncertainByTheCosineOfItsAngle) {
+  constexpr double kTilt = 0.35;
+  const KnownGround ground{Eigen::Vector3d::UnitZ(), kHeight};
+  Map alike = TiltedDrive(kTilt);
+  Map slope = alike;
+  for (Map* map : {&alike, &slope}) {
+    MeasureGroundSteps(1, ground, {}, map);
+    ASSERT_EQ(map->keyframe(1).ground_steps.size(), 1u);
+  }
+  // A camera that is always tilted alike is on level ground; one that was upright before is not.
+  slope.keyframe(1).ground_steps.front().up = Eigen::Vector3d::UnitZ();
+  for (Map* map : {&alike, &slope}) {
+    MeasureGroundSteps(2, ground, {}, map);
+    ASSERT_FALSE(map->keyframe(2).ground_steps.empty());
+  }
+  const double sigma = alike.keyframe(2).ground_steps.front().sigma;
+  EXPECT_LT(sigma, 0.015);
+  EXPECT_NEAR(slope.keyframe(2).ground_steps.front().sigma,
+              std::hypot(sigma, 0.99 - std::cos(kTilt)), 0.015);
+}
+
 TEST(MeasureGroundSteps, MeasuresNothingWithoutAnImage) {
   Map map = Drive(2, 1.0, Scaled(Asphalt(2)));
   map.keyframe(0).image = nullptr;
