@@ -68,6 +68,7 @@ void SaveDepth(const std::filesystem::path& folder, const DepthMapStore& store,
 }
 
 void RemoveSavedDepth(const std::filesystem::path& folder) {
+  if (!std::filesystem::exists(folder / "summary.json")) return;
   const auto is_of_a_frame = [](const std::filesystem::path& path) {
     const std::string index = path.stem().string();
     return path.extension() == ".png" && index.find_first_not_of("0123456789") == std::string::npos;

@@ -36,7 +36,8 @@ DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMap
 void SaveDepth(const std::filesystem::path& folder, const DepthMapStore& store,
                std::span<const DenseView> views);
 
-/// Removes what SaveDepth has written into `folder`, and nothing else.
+/// Removes the images that SaveDepth wrote there in an earlier run, of which `folder` has the
+/// summary. Without one they are somebody else's, and stay.
 void RemoveSavedDepth(const std::filesystem::path& folder);
 
 }  // namespace orb360

@@ -126,7 +126,11 @@ TEST_F(RunTest, DepthOfAnEarlierRunInTheFolderDoesNotStay) {
     std::filesystem::create_directories(OutFile("depth"));
     WriteText(old, "of an earlier run");
   };
+  // Without the summary of a run it is not known whose they are.
   write_old();
+  ASSERT_EQ(Run().status, 0);
+  EXPECT_TRUE(std::filesystem::exists(old));
+
   WriteText(others, "not of a run");
   ASSERT_EQ(Run({"--weights", folder_ / "net.h5", "--save-depth"}).status, 0);
   EXPECT_FALSE(std::filesystem::exists(old));
