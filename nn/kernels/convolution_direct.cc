@@ -15,6 +15,7 @@
 #include <hwy/highway.h>
 
 #include "nn/kernels/convolution_tile-inl.h"
+#include "nn/kernels/store_planes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace orb360::nn {
@@ -27,7 +28,6 @@ struct Row {
   int out_channels;  // that exist in this group
   ptrdiff_t out_plane;
   ptrdiff_t residual_plane;
-  Layout out_layout;
   DataType out_type;
   int first_lane;  // of the first channel in its block of the output
 };
@@ -63,60 +63,9 @@ HWY_NOINLINE void StoreRoundedTile(const Row& row, const float* sums, int vector
   }
 }
 
-// Writes the sums of some pixels, [vector][pixel][lane], to planes.
-HWY_NOINLINE void StorePlanarTile(const Row& row, const float* sums, int vectors, int pixels,
-                                  const float* residual, float* out) {
-  const auto finish = [&](int channel, int pixel) {
-    float value = sums[(channel / kLanes * pixels + pixel) * kLanes + channel % kLanes];
-    if (residual != nullptr) value += residual[channel * row.residual_plane + pixel];
-    out[channel * row.out_plane + pixel] = value > 0 ? value : row.slope * value;
-  };
-  const int channels = std::min(row.out_channels, vectors * kLanes);
-  int whole_channels = 0;
-  int whole_pixels = 0;
-#if HWY_TARGET != HWY_SCALAR
-  // Squares of 4 channels x 4 pixels are transposed in registers. The last ones may overlap, but
-  // for a residual, which may be in the place of the output.
-  const hn::Full128<float> d;
-  const hn::Full128<double> d_pair;
-  const auto slope = hn::Set(d, row.slope);
-  whole_channels = channels / 4 * 4;
-  const bool may_overlap = residual == nullptr && pixels >= 4;
-  whole_pixels = may_overlap ? pixels : pixels / 4 * 4;
-  for (int c = 0; c < whole_channels; c += 4) {
-    for (int first = 0; first < whole_pixels; first += 4) {
-      const int p = std::min(first, pixels - 4);
-      const float* from = sums + (c / kLanes * pixels + p) * kLanes + c % kLanes;
-      const auto p0 = hn::LoadU(d, from);
-      const auto p1 = hn::LoadU(d, from + kLanes);
-      const auto p2 = hn::LoadU(d, from + 2 * kLanes);
-      const auto p3 = hn::LoadU(d, from + 3 * kLanes);
-      const auto low01 = hn::BitCast(d_pair, hn::InterleaveLower(d, p0, p1));
-      const auto low23 = hn::BitCast(d_pair, hn::InterleaveLower(d, p2, p3));
-      const auto high01 = hn::BitCast(d_pair, hn::InterleaveUpper(d, p0, p1));
-      const auto high23 = hn::BitCast(d_pair, hn::InterleaveUpper(d, p2, p3));
-      const auto store = [&](int channel, auto pair) HWY_ATTR {
-        auto value = hn::BitCast(d, pair);
-        if (residual != nullptr) {
-          value = hn::Add(value, hn::LoadU(d, residual + channel * row.residual_plane + p));
-        }
-        value = hn::IfThenElse(hn::Gt(value, hn::Zero(d)), value, hn::Mul(value, slope));
-        hn::StoreU(value, d, out + channel * row.out_plane + p);
-      };
-      store(c, hn::InterleaveLower(d_pair, low01, low23));
-      store(c + 1, hn::InterleaveUpper(d_pair, low01, low23));
-      store(c + 2, hn::InterleaveLower(d_pair, high01, high23));
-      store(c + 3, hn::InterleaveUpper(d_pair, high01, high23));
-    }
-  }
-#endif
-  for (int c = 0; c < channels; ++c) {
-    for (int p = c < whole_channels ? whole_pixels : 0; p < pixels; ++p) finish(c, p);
-  }
-}
-
 // Writes a tile to blocks of floats after bias, residual and activation. `residual` is null if
-// there is none.
+// there is none. The last block is filled up with zeros, as a whole one where the tile is half of
+// it.
 template <int kVectors, int kPixels>
 HWY_INLINE void StoreTile(const Row& row, const V (&sum)[kVectors][kPixels], const float* residual,
                           float* out) {
@@ -140,14 +89,20 @@ HWY_INLINE void StoreTile(const Row& row, const V (&sum)[kVectors][kPixels], con
                  out + channel / kBlock * row.out_plane + p * kBlock + lane);
     }
   }
+  if constexpr (kVectors < kVectorsPerBlock) {
+    for (int p = 0; p < kPixels; ++p) {
+      for (int v = kVectors; v < kVectorsPerBlock; ++v) {
+        hn::StoreU(hn::Zero(d), d, out + p * kBlock + v * kLanes);
+      }
+    }
+  }
 }
 
-template <int kBlocks, int kPixels, int kInStep>
+template <int kVectors, int kPixels, int kInStep>
 void ComputeTile(const Row& row, const float* in, const float* residual, void* out) {
-  constexpr int kVectors = kBlocks * kVectorsPerBlock;
   V sum[kVectors][kPixels];
   SumTile<kVectors, kPixels, kInStep>(row.source, in, sum);
-  if (row.out_layout == Layout::kBlocked && row.out_type == DataType::kFloat) {
+  if (row.out_type == DataType::kFloat) {
     StoreTile<kVectors, kPixels>(row, sum, residual, static_cast<float*>(out));
     return;
   }
@@ -157,43 +112,59 @@ void ComputeTile(const Row& row, const float* in, const float* residual, void* o
     HWY_UNROLL(14)
     for (int p = 0; p < kPixels; ++p) hn::Store(sum[v][p], D(), sums + (v * kPixels + p) * kLanes);
   }
-  if (row.out_type == DataType::kBFloat16) {
-    StoreRoundedTile(row, sums, kVectors, kPixels, static_cast<std::uint16_t*>(out));
-  } else {
-    StorePlanarTile(row, sums, kVectors, kPixels, residual, static_cast<float*>(out));
-  }
+  StoreRoundedTile(row, sums, kVectors, kPixels, static_cast<std::uint16_t*>(out));
 }
 
 using TileFunction = void (*)(const Row&, const float*, const float*, void*);
 
 // A table of the functions for tiles of 1, 2, ... pixels.
-template <int kBlocks, int kInStep, int... kIndex>
-const TileFunction* TileFunctions(std::integer_sequence<int, kIndex...>) {
-  static constexpr TileFunction kFunctions[] = {&ComputeTile<kBlocks, kIndex + 1, kInStep>...};
+template <int kVectors, int kInStep, int... kIndex>
+const TileFunction* TableOf(std::integer_sequence<int, kIndex...>) {
+  static constexpr TileFunction kFunctions[] = {&ComputeTile<kVectors, kIndex + 1, kInStep>...};
   return kFunctions;
 }
 
-template <int kBlocks>
-const TileFunction* TileFunctions(int in_step) {
-  constexpr auto kSizes = std::make_integer_sequence<int, MaxPixels(kBlocks)>();
+template <int kVectors, int kMaxPixels>
+const TileFunction* TableOf(int in_step) {
+  constexpr auto kSizes = std::make_integer_sequence<int, kMaxPixels>();
   switch (in_step) {
     case 1:
-      return TileFunctions<kBlocks, 1>(kSizes);
+      return TableOf<kVectors, 1>(kSizes);
     case 2:
-      return TileFunctions<kBlocks, 2>(kSizes);
+      return TableOf<kVectors, 2>(kSizes);
     case kBlock:
-      return TileFunctions<kBlocks, kBlock>(kSizes);
+      return TableOf<kVectors, kBlock>(kSizes);
     default:
-      return TileFunctions<kBlocks, 2 * kBlock>(kSizes);
+      return TableOf<kVectors, 2 * kBlock>(kSizes);
   }
 }
 
-const TileFunction* TileFunctions(int blocks, int in_step) {
+// The tiles of a group of output channels.
+struct GroupTiles {
+  const TileFunction* functions;  // by their pixels, from 1 on
+  int max_pixels;
+};
+
+template <int kBlocks>
+GroupTiles TilesOf(int in_step) {
+  constexpr int kPixels = MaxPixels(kBlocks);
+  return {TableOf<kBlocks * kVectorsPerBlock, kPixels>(in_step), kPixels};
+}
+
+// `channels`: that exist in the group. Half a block is enough for few, but blocks of bfloat16 have
+// twice the channels.
+GroupTiles ChooseTiles(int blocks, int channels, DataType out_type, int in_step) {
 #if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
-  if (blocks == 2) return TileFunctions<2>(in_step);
-  if (blocks == 3) return TileFunctions<3>(in_step);
+  if (blocks == 2) return TilesOf<2>(in_step);
+  if (blocks == 3) return TilesOf<3>(in_step);
 #endif
-  return blocks == 1 ? TileFunctions<1>(in_step) : nullptr;
+  if constexpr (kVectorsPerHalf > 0) {
+    if (blocks == 1 && channels <= kVectorsPerHalf * kLanes && out_type == DataType::kFloat) {
+      constexpr int kPixels = 2 * MaxPixels(1);
+      return {TableOf<kVectorsPerHalf, kPixels>(in_step), kPixels};
+    }
+  }
+  return TilesOf<1>(in_step);
 }
 
 int PreferredBlocks() { return kMaxBlocks; }
@@ -213,7 +184,9 @@ void PrefetchPlanes(const DirectConvolution& run, const float* in, int pixels) {
   }
 }
 
-void RunDirectPart(const DirectConvolution& run, const Rectangle& part) {
+// Computes the output channels of one group in some rows. `first_block`: that of the group.
+void RunGroup(const DirectConvolution& run, const Rectangle& part, int blocks, int first_block,
+              const float* weight, const float* bias) {
   const TensorView& output = run.output;
   const int in_block = run.input.layout == Layout::kBlocked ? kBlock : 1;
   const int out_block = output.layout == Layout::kBlocked ? BlockOf(output.type) : 1;
@@ -221,48 +194,68 @@ void RunDirectPart(const DirectConvolution& run, const Rectangle& part) {
   const int reach = run.kernel / 2;
   constexpr ptrdiff_t kNear = (ptrdiff_t{1} << 20) / ptrdiff_t{sizeof(float)};  // 1 MiB
   const bool is_far = run.input.planes() * run.input.plane_stride > kNear;
-  const float* weight = run.weight;
-  const float* bias = run.bias;
+  const int first_channel = first_block * kBlock;
+  const int channels = std::min(blocks * kBlock, output.shape.channels - first_channel);
+  const auto [functions, max_pixels] =
+      ChooseTiles(blocks, channels, output.type, run.stride * in_block);
+  const int plane = first_channel / out_block;
+  const Row row{{run.kernel, run.input.shape.channels, run.input.row_stride, run.input.plane_stride,
+                 weight, bias, is_far},
+                run.slope,
+                channels,
+                output.plane_stride,
+                run.residual.plane_stride,
+                output.type,
+                first_channel % out_block};
+  // Planes are written from strips, which are tensors of blocks without activation.
+  const bool is_planar = output.layout == Layout::kPlanar;
+  HWY_ALIGN float strip[kMaxBlocks * kStripPixels * kBlock];
+  Row strip_row = row;
+  strip_row.slope = 1;
+  strip_row.out_plane = ptrdiff_t{kStripPixels} * kBlock;
+  // Tiles have equal width up to one pixel. A remainder of few pixels would have too few sums in
+  // flight.
+  const int width = part.right - part.left;
+  const int tiles = (width + max_pixels - 1) / max_pixels;
+  for (int y = part.top; y < part.bottom; ++y) {
+    const float* in = run.input.row<float>(0, y * run.stride - reach);
+    std::byte* out = static_cast<std::byte*>(output.data) +
+                     (plane * output.plane_stride + y * output.row_stride) *
+                         static_cast<ptrdiff_t>(SizeOf(output.type));
+    const auto residual_at = [&](int x) {
+      return run.residual.data == nullptr ? nullptr
+                                          : run.residual.row<float>(plane, y) + x * out_block;
+    };
+    int strip_left = part.left;
+    for (int t = 0; t < tiles; ++t) {
+      const int x = part.left + t * width / tiles;
+      const int end = part.left + (t + 1) * width / tiles;
+      if (is_far && in_block == 1 && t + 1 < tiles) {
+        const int next_end = part.left + (t + 2) * width / tiles;
+        PrefetchPlanes(run, in + (end * run.stride - reach), next_end - end);
+      }
+      const TileFunction function = functions[end - x - 1];
+      const float* window = in + (x * run.stride - reach) * in_block;
+      if (!is_planar) {
+        function(row, window, residual_at(x), out + x * out_pixel_bytes);
+        continue;
+      }
+      function(strip_row, window, nullptr, strip + (x - strip_left) * kBlock);
+      if (t + 1 < tiles && end - strip_left + max_pixels <= kStripPixels) continue;
+      StorePlanes(strip, end - strip_left,
+                  {channels, reinterpret_cast<float*>(out) + strip_left, row.out_plane,
+                   residual_at(strip_left), row.residual_plane, run.slope});
+      strip_left = end;
+    }
+  }
+}
+
+void RunDirectPart(const DirectConvolution& run, const Rectangle& part) {
+  const ptrdiff_t weights = ptrdiff_t{run.kernel} * run.kernel * run.input.shape.channels * kBlock;
   int first_block = 0;
   for (const int blocks : *run.groups) {
-    const TileFunction* functions = TileFunctions(blocks, run.stride * in_block);
-    const int first_channel = first_block * kBlock;
-    const int plane = first_channel / out_block;
-    const Row row{{run.kernel, run.input.shape.channels, run.input.row_stride,
-                   run.input.plane_stride, weight, bias, is_far},
-                  run.slope,
-                  std::min(blocks * kBlock, output.shape.channels - first_channel),
-                  output.plane_stride,
-                  run.residual.plane_stride,
-                  output.layout,
-                  output.type,
-                  first_channel % out_block};
-    // Tiles have equal width up to one pixel. A remainder of few pixels would have too few sums in
-    // flight.
-    const int width = part.right - part.left;
-    const int max_pixels = MaxPixels(blocks);
-    const int tiles = (width + max_pixels - 1) / max_pixels;
-    for (int y = part.top; y < part.bottom; ++y) {
-      const float* in = run.input.row<float>(0, y * run.stride - reach);
-      std::byte* out = static_cast<std::byte*>(output.data) +
-                       (plane * output.plane_stride + y * output.row_stride) *
-                           static_cast<ptrdiff_t>(SizeOf(output.type));
-      for (int t = 0; t < tiles; ++t) {
-        const int x = part.left + t * width / tiles;
-        const int end = part.left + (t + 1) * width / tiles;
-        if (is_far && in_block == 1 && t + 1 < tiles) {
-          const int next_end = part.left + (t + 2) * width / tiles;
-          PrefetchPlanes(run, in + (end * run.stride - reach), next_end - end);
-        }
-        functions[end - x - 1](row, in + (x * run.stride - reach) * in_block,
-                               run.residual.data == nullptr
-                                   ? nullptr
-                                   : run.residual.row<float>(plane, y) + x * out_block,
-                               out + x * out_pixel_bytes);
-      }
-    }
-    weight += ptrdiff_t{run.kernel} * run.kernel * run.input.shape.channels * blocks * kBlock;
-    bias += blocks * kBlock;
+    RunGroup(run, part, blocks, first_block, run.weight + first_block * weights,
+             run.bias + first_block * kBlock);
     first_block += blocks;
   }
 }

@@ -29,6 +29,8 @@ using D = hn::CappedTag<float, kBlock>;
 using V = hn::Vec<D>;
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
 constexpr int kVectorsPerBlock = kBlock / kLanes;
+// Vectors of half a block, for a last one with few channels; 0 where a block is one vector.
+constexpr int kVectorsPerHalf = kVectorsPerBlock / 2;
 
 // The tile that stays in registers covers all output channels of a group at a few pixels of a row.
 // A step handles one input channel of one tap: it loads the tile's weights, broadcasts each pixel's
@@ -45,6 +47,7 @@ constexpr int kVectorsPerBlock = kBlock / kLanes;
 // odd number of blocks. A single block loads as often as it multiplies, with 14 pixels or with 28.
 // AVX2 has 16 registers: 2 x 6 takes 15. SSE4, without FMA, needs one more for the product: 4 x 2
 // takes 8 + 4 + 2. NEON has 32 registers: 4 x 6 takes 29.
+// Half a block has twice the pixels.
 #if HWY_TARGET <= HWY_AVX3 && HWY_ARCH_X86
 constexpr int kMaxBlocks = 3;
 constexpr int MaxPixels(int blocks) { return blocks == 3 ? 9 : 14; }
@@ -83,7 +86,8 @@ HWY_INLINE void MultiplyAdd(const float* HWY_RESTRICT x, const float* HWY_RESTRI
   }
 }
 
-// Computes the sums of kPixels pixels; `in` is the first tap of the first one. `kInStep` is the
+// Computes the sums of kPixels pixels; `in` is the first tap of the first one. Weights are those of
+// whole blocks, also where kVectors is half a one. `kInStep` is the
 // distance between the inputs of two pixels: the stride, in blocks if the input is blocked.
 template <int kVectors, int kPixels, int kInStep>
 HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVectors][kPixels]) {
@@ -91,6 +95,7 @@ HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVec
   // Input channels per iteration; counting and branching use the FMAs' ports too. Planar inputs
   // have few channels.
   constexpr int kTurn = kIsPlanar ? 1 : 4;
+  constexpr int kWeights = (kVectors * kLanes + kBlock - 1) / kBlock * kBlock;
   const D d;
   HWY_UNROLL(16)
   for (int v = 0; v < kVectors; ++v) {
@@ -114,18 +119,18 @@ HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVec
         for (; c + kTurn <= count; c += kTurn) {
           HWY_UNROLL(4)
           for (int i = 0; i < kTurn; ++i) {
-            MultiplyAdd<kInStep>(x + i * channel_step, weight + i * kVectors * kLanes, sum);
+            MultiplyAdd<kInStep>(x + i * channel_step, weight + i * kWeights, sum);
             // This keeps the compiler from loading ahead, because no register is free.
             std::atomic_signal_fence(std::memory_order_acq_rel);
           }
           x += kTurn * channel_step;
-          weight += kTurn * kVectors * kLanes;
+          weight += kTurn * kWeights;
         }
         HWY_UNROLL(1)
         for (; kTurn > 1 && c < count; ++c) {
           MultiplyAdd<kInStep>(x, weight, sum);
           x += channel_step;
-          weight += kVectors * kLanes;
+          weight += kWeights;
         }
       }
     }

@@ -82,7 +82,7 @@ TEST(Convolution, TurnsWithTheImageByAnyColumnOrByTiles) {
 
 TEST(Convolution, IsThePlainSumForEveryNumberOfChannels) {
   for (const int in : {1, 2, 15, 16, 33, 80}) {
-    for (const int out : {1, 16, 31, 38, 48, 64, 80, 97}) {
+    for (const int out : {1, 8, 9, 16, 24, 31, 38, 48, 64, 80, 97}) {
       Case c{{in, out, 3, 1, Padding::kZero, 0.2f}, 3, 15};
       ExpectRight(c);
       c.spec.may_tile = false;
@@ -107,10 +107,15 @@ TEST(Convolution, IsThePlainSumFromAndToPlanes) {
       }
     }
   }
-  for (const int out : {1, 16, 38}) {
-    Case c{{32, out, 1}, 3, 50};
-    c.output_layout = Layout::kPlanar;
-    ExpectRight(c);
+  // Planes are written in squares of channels and pixels, and a part of a row at a time.
+  for (const int out : {1, 3, 4, 8, 9, 16, 24, 38, 40}) {
+    for (const int width : {1, 3, 4, 7, 8, 9, 50, 55, 56, 57, 64, 121}) {
+      Case c{{32, out, 1, 1, Padding::kZero, 0.1f}, 3, width};
+      c.output_layout = Layout::kPlanar;
+      ExpectRight(c);
+      c.with_residual = true;
+      ExpectRight(c);
+    }
   }
 }
 
