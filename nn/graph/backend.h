@@ -48,12 +48,12 @@ class Backend {
   virtual std::vector<FusedNode> Fuse(const Graph& graph) const { return FuseNodes(graph); }
   virtual NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const = 0;
   /// Returns the program of `lowered`, made of `nodes` for images of that size: weights packed,
-  /// memory planned. With `keeps_values` the result of every instruction remains
-  /// (Program::Find). Throws DeviceError where a device has too little memory or fails.
+  /// memory planned. Throws DeviceError where a device has too little memory, fails or cannot do
+  /// what `options` asks for.
   virtual std::unique_ptr<const Program> MakeProgram(const Graph& graph,
                                                      std::span<const FusedNode> nodes,
                                                      Lowered lowered, int height, int width,
-                                                     bool keeps_values) const = 0;
+                                                     const ProgramOptions& options) const = 0;
 };
 
 }  // namespace orb360::nn

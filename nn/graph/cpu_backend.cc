@@ -232,9 +232,9 @@ NodeNeeds CpuBackend::NeedsOf(const Graph& graph, const FusedNode& node) const {
 std::unique_ptr<const Program> CpuBackend::MakeProgram(const Graph& graph,
                                                        std::span<const FusedNode> nodes,
                                                        Lowered lowered, int height, int width,
-                                                       bool keeps_values) const {
+                                                       const ProgramOptions& options) const {
   std::vector<Step> steps = MakeSteps(graph, nodes, lowered, height, width);
-  return std::make_unique<CpuProgram>(std::move(lowered), std::move(steps), keeps_values, threads_);
+  return std::make_unique<CpuProgram>(std::move(lowered), std::move(steps), options, threads_);
 }
 
 std::vector<Step> CpuBackend::MakeSteps(const Graph& graph, std::span<const FusedNode> nodes,

@@ -36,7 +36,7 @@ class CpuBackend : public Backend {
   NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const override;
   std::unique_ptr<const Program> MakeProgram(const Graph& graph, std::span<const FusedNode> nodes,
                                              Lowered lowered, int height, int width,
-                                             bool keeps_values) const override;
+                                             const ProgramOptions& options) const override;
   /// Returns one step for each instruction.
   std::vector<Step> MakeSteps(const Graph& graph, std::span<const FusedNode> nodes,
                               const Lowered& lowered, int height, int width) const;

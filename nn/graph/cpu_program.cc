@@ -1,5 +1,6 @@
 #include "nn/graph/cpu_program.h"
 
+#include <chrono>
 #include <new>
 #include <string>
 #include <utility>
@@ -36,14 +37,32 @@ struct CpuMemory : ProgramMemory {
   AlignedVector<std::byte> block;
   std::vector<TensorView> views;  // by value
   std::vector<Bound> bound;       // by instruction
+  std::vector<double> times;      // milliseconds of the last run; empty unless they are measured
+};
+
+/// Measures the time between calls.
+class Lap {
+ public:
+  /// Milliseconds since the last call, or since this was made.
+  double operator()() {
+    const Clock::time_point now = Clock::now();
+    const std::chrono::duration<double, std::milli> passed = now - std::exchange(last_, now);
+    return passed.count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
 };
 
 }  // namespace
 
-CpuProgram::CpuProgram(Lowered lowered, std::vector<Step> steps, bool keeps_values, int threads)
+CpuProgram::CpuProgram(Lowered lowered, std::vector<Step> steps, const ProgramOptions& options,
+                       int threads)
     : lowered_(std::move(lowered)),
       steps_(std::move(steps)),
-      assignment_(AssignBuffers(lowered_, ScratchBytes(steps_), keeps_values)),
+      assignment_(AssignBuffers(lowered_, ScratchBytes(steps_), options.keeps_values)),
+      measures_times_(options.measures_times),
       threads_(threads) {}
 
 std::unique_ptr<ProgramMemory> CpuProgram::Allocate() const {
@@ -71,25 +90,40 @@ std::unique_ptr<ProgramMemory> CpuProgram::Allocate() const {
     memory->bound.push_back({views(instruction.inputs), views(instruction.outputs),
                              block.subspan(assignment_.scratch[i], steps_[i].scratch_bytes)});
   }
+  if (measures_times_) memory->times.reserve(steps_.size() + 2);
   return memory;
 }
 
 void CpuProgram::Run(std::span<const std::span<const float>> inputs,
                      std::span<const std::span<float>> outputs, ProgramMemory* memory) const {
   ORB360_CHECK(memory->IsOf(this), "a workspace of another executor");
-  const auto& cpu = static_cast<const CpuMemory&>(*memory);
+  auto& cpu = static_cast<CpuMemory&>(*memory);
+  cpu.times.clear();
+  Lap lap;
+  const auto measure = [&] {
+    if (measures_times_) cpu.times.push_back(lap());
+  };
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const TensorView& to = cpu.views[Index(lowered_.inputs[i])];
     CopyChannels(DenseView(inputs[i].data(), to.shape), 0, to, 0, to.shape.channels, threads_);
   }
+  measure();
   for (std::size_t i = 0; i < steps_.size(); ++i) {
     steps_[i].run(cpu.bound[i].inputs, cpu.bound[i].outputs, cpu.bound[i].scratch);
+    measure();
   }
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const TensorView& from = cpu.views[Index(lowered_.outputs[i])];
     CopyChannels(from, 0, DenseView(outputs[i].data(), from.shape), 0, from.shape.channels,
                  threads_);
   }
+  measure();
+}
+
+std::vector<double> CpuProgram::Times(const ProgramMemory& memory) const {
+  ORB360_CHECK(measures_times_);
+  ORB360_CHECK(memory.IsOf(this), "a workspace of another executor");
+  return static_cast<const CpuMemory&>(memory).times;
 }
 
 TensorView CpuProgram::Find(const ProgramMemory& memory, int value) const {

@@ -16,12 +16,13 @@ namespace orb360::nn {
 class CpuProgram : public Program {
  public:
   /// `steps` by instruction.
-  CpuProgram(Lowered lowered, std::vector<Step> steps, bool keeps_values, int threads);
+  CpuProgram(Lowered lowered, std::vector<Step> steps, const ProgramOptions& options, int threads);
 
   std::unique_ptr<ProgramMemory> Allocate() const override;
   void Run(std::span<const std::span<const float>> inputs,
            std::span<const std::span<float>> outputs, ProgramMemory* memory) const override;
   TensorView Find(const ProgramMemory& memory, int value) const override;
+  std::vector<double> Times(const ProgramMemory& memory) const override;
   std::size_t planned_bytes() const override { return assignment_.bytes; }
   std::size_t naive_bytes() const override { return assignment_.separate_bytes; }
 
@@ -29,6 +30,7 @@ class CpuProgram : public Program {
   Lowered lowered_;
   std::vector<Step> steps_;
   BufferAssignment assignment_;
+  bool measures_times_;
   int threads_;
 };
 

@@ -48,8 +48,14 @@ Executor::Executor(const Graph& graph, int height, int width, const ExecutorOpti
       options.keeps_tensors ? KeepNodes(graph) : backend->Fuse(graph);
   Lowered lowered = Lower(graph, nodes, *backend, height, width);
   if (options.keeps_tensors) value_of_tensor_ = lowered.value_of_tensor;
-  program_ =
-      backend->MakeProgram(graph, nodes, std::move(lowered), height, width, options.keeps_tensors);
+  if (options.measures_times) {
+    parts_.emplace_back("inputs");
+    for (const Instruction& instruction : lowered.instructions) parts_.push_back(instruction.name);
+    parts_.emplace_back("outputs");
+  }
+  program_ = backend->MakeProgram(
+      graph, nodes, std::move(lowered), height, width,
+      {.keeps_values = options.keeps_tensors, .measures_times = options.measures_times});
   const auto shape = [&](int tensor) {
     return ShapeFor(graph.tensors[Index(tensor)], height, width);
   };
@@ -82,6 +88,16 @@ TensorView Executor::Find(const Workspace& workspace, std::string_view tensor) c
   ORB360_CHECK(found != tensors_.end(), tensor);
   const auto index = static_cast<std::size_t>(found - tensors_.begin());
   return program_->Find(*workspace.memory_, value_of_tensor_[index]);
+}
+
+std::vector<Executor::Time> Executor::Times(const Workspace& workspace) const {
+  ORB360_CHECK(!parts_.empty(), "times are not measured");
+  const std::vector<double> milliseconds = program_->Times(*workspace.memory_);
+  std::vector<Time> times;
+  for (std::size_t i = 0; i < milliseconds.size(); ++i) {
+    times.push_back({parts_[i], milliseconds[i]});
+  }
+  return times;
 }
 
 std::size_t Executor::planned_bytes() const { return program_->planned_bytes(); }

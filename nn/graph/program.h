@@ -3,10 +3,17 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include <orb360/nn/tensor.h>
 
 namespace orb360::nn {
+
+/// What a Program does beside computing outputs.
+struct ProgramOptions {
+  bool keeps_values = false;    ///< The result of every instruction remains (Program::Find).
+  bool measures_times = false;  ///< Program::Times.
+};
 
 class Program;
 
@@ -45,6 +52,11 @@ class Program {
   /// Returns a value of Lowered::values after a run. Throws ContractError for memory of another
   /// program. Contract: made with `keeps_values`.
   virtual TensorView Find(const ProgramMemory& memory, int value) const = 0;
+
+  /// Returns the milliseconds of the last run's copies of inputs, instructions and copies of
+  /// outputs, in this order. Throws ContractError for memory of another program, and DeviceError
+  /// where a device fails. Contract: made with `measures_times`.
+  virtual std::vector<double> Times(const ProgramMemory& memory) const = 0;
 
   /// Bytes of the tensors and scratch of one run.
   virtual std::size_t planned_bytes() const = 0;

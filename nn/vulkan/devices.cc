@@ -5,6 +5,7 @@
 #include "nn/vulkan/choose_device.h"
 #include "nn/vulkan/instance.h"
 #include "nn/vulkan/logical_device.h"
+#include "nn/vulkan/peaks.h"
 #include "nn/vulkan/physical_device.h"
 #include "nn/vulkan/vulkan_backend.h"
 #include <orb360/nn/base/check.h>
@@ -58,6 +59,12 @@ Device OpenDevice(const std::string& name, bool uses_halves) {
   return OpenChosen(name, std::move(found), uses_halves, [&](int index, bool stores_halves) {
     return Open(instance, index, stores_halves);
   });
+}
+
+DevicePeaks MeasurePeaks(const Device& device) {
+  const auto* const backend = dynamic_cast<const vulkan::VulkanBackend*>(device.backend.get());
+  ORB360_CHECK(backend != nullptr, device.name);
+  return vulkan::MeasurePeaks(backend->device());
 }
 
 }  // namespace orb360::nn

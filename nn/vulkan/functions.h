@@ -31,6 +31,8 @@ namespace orb360::nn::vulkan {
   F(CmdDispatch)                          \
   F(CmdPipelineBarrier)                   \
   F(CmdPushConstants)                     \
+  F(CmdResetQueryPool)                    \
+  F(CmdWriteTimestamp)                    \
   F(CreateBuffer)                         \
   F(CreateCommandPool)                    \
   F(CreateComputePipelines)               \
@@ -38,6 +40,7 @@ namespace orb360::nn::vulkan {
   F(CreateDescriptorSetLayout)            \
   F(CreateFence)                          \
   F(CreatePipelineLayout)                 \
+  F(CreateQueryPool)                      \
   F(CreateShaderModule)                   \
   F(DestroyBuffer)                        \
   F(DestroyCommandPool)                   \
@@ -47,12 +50,14 @@ namespace orb360::nn::vulkan {
   F(DestroyFence)                         \
   F(DestroyPipeline)                      \
   F(DestroyPipelineLayout)                \
+  F(DestroyQueryPool)                     \
   F(DestroyShaderModule)                  \
   F(DeviceWaitIdle)                       \
   F(EndCommandBuffer)                     \
   F(FreeMemory)                           \
   F(GetBufferMemoryRequirements)          \
   F(GetDeviceQueue)                       \
+  F(GetQueryPoolResults)                  \
   F(InvalidateMappedMemoryRanges)         \
   F(MapMemory)                            \
   F(QueueSubmit)                          \

@@ -4,7 +4,6 @@
 #include <limits>
 #include <utility>
 
-#include "nn/vulkan/physical_device.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360::nn::vulkan {
@@ -36,6 +35,7 @@ LogicalDevice::LogicalDevice(std::shared_ptr<const Instance> instance, int index
   }
   VkPhysicalDevice physical = instance_->devices()[static_cast<std::size_t>(index)];
   queue_family_ = ComputeQueueFamily(*instance_, physical).value();
+  clock_ = ClockOf(*instance_, physical, queue_family_);
   instance_->functions().GetPhysicalDeviceMemoryProperties(physical, &memory_);
   const float priority = 1;
   VkDeviceQueueCreateInfo queue{};

@@ -9,6 +9,7 @@
 
 #include "nn/vulkan/instance.h"
 #include "nn/vulkan/owned.h"
+#include "nn/vulkan/physical_device.h"
 #include <orb360/nn/vulkan/devices.h>
 
 namespace orb360::nn::vulkan {
@@ -30,6 +31,7 @@ class LogicalDevice {
   const DeviceFunctions& functions() const { return functions_; }
   VkDevice handle() const { return device_.get(); }
   std::uint32_t queue_family() const { return queue_family_; }
+  const DeviceClock& clock() const { return clock_; }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
 
   /// Throws DeviceError unless `result` is success. `action` completes "could not ...".
@@ -48,6 +50,7 @@ class LogicalDevice {
   VulkanDevice description_;
   std::string name_;
   std::uint32_t queue_family_ = 0;
+  DeviceClock clock_;
   VkPhysicalDeviceMemoryProperties memory_{};
   Owned<VkDevice> device_;
   DeviceFunctions functions_;

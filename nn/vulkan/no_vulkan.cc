@@ -1,6 +1,7 @@
 // What a build without Vulkan has in the place of devices.cc.
 
 #include "nn/vulkan/choose_device.h"
+#include <orb360/nn/base/check.h>
 #include <orb360/nn/vulkan/devices.h>
 
 namespace orb360::nn {
@@ -15,6 +16,11 @@ VulkanDevices ListVulkanDevices() {
 Device OpenDevice(const std::string& name, bool uses_halves) {
   ChooseDevice(name, ListVulkanDevices());
   ChooseHalves(name, nullptr, uses_halves);
+  return {};
+}
+
+DevicePeaks MeasurePeaks(const Device& device) {
+  ORB360_CHECK(false, device.name);
   return {};
 }
 

@@ -84,6 +84,15 @@ std::string ProblemOf(const Instance& instance, VkPhysicalDevice device,
   return "";
 }
 
+std::vector<VkQueueFamilyProperties> QueueFamilies(const Instance& instance,
+                                                   VkPhysicalDevice device) {
+  std::uint32_t count = 0;
+  instance.functions().GetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  instance.functions().GetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  return families;
+}
+
 }  // namespace
 
 VulkanDevice Describe(const Instance& instance, int index) {
@@ -108,18 +117,23 @@ VulkanDevice Describe(const Instance& instance, int index) {
 }
 
 std::optional<std::uint32_t> ComputeQueueFamily(const Instance& instance, VkPhysicalDevice device) {
-  std::uint32_t count = 0;
-  instance.functions().GetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  instance.functions().GetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  const std::vector<VkQueueFamilyProperties> families = QueueFamilies(instance, device);
   std::optional<std::uint32_t> found;
-  for (std::uint32_t i = 0; i < count; ++i) {
+  for (std::uint32_t i = 0; i < families.size(); ++i) {
     const VkQueueFlags flags = families[i].queueFlags;
     if ((flags & VK_QUEUE_COMPUTE_BIT) == 0 || families[i].queueCount == 0) continue;
     if ((flags & VK_QUEUE_GRAPHICS_BIT) == 0) return i;
     if (!found) found = i;
   }
   return found;
+}
+
+DeviceClock ClockOf(const Instance& instance, VkPhysicalDevice device, std::uint32_t queue_family) {
+  VkPhysicalDeviceProperties2 properties{};
+  properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+  instance.functions().GetPhysicalDeviceProperties2(device, &properties);
+  return {static_cast<double>(properties.properties.limits.timestampPeriod),
+          QueueFamilies(instance, device).at(queue_family).timestampValidBits};
 }
 
 }  // namespace orb360::nn::vulkan

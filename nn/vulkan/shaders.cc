@@ -39,6 +39,9 @@ constexpr std::uint32_t elementwise_pair[] = {
 constexpr std::uint32_t elementwise_pair_halves[] = {
 #include "elementwise_pair_halves.inc"
 };
+constexpr std::uint32_t fma_peak[] = {
+#include "fma_peak.inc"
+};
 constexpr std::uint32_t global_average_pool[] = {
 #include "global_average_pool.inc"
 };

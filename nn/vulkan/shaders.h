@@ -19,6 +19,7 @@ namespace orb360::nn::vulkan {
   F(kElementwiseHalves, elementwise_halves)            \
   F(kElementwisePair, elementwise_pair)                \
   F(kElementwisePairHalves, elementwise_pair_halves)   \
+  F(kFmaPeak, fma_peak)                                \
   F(kGlobalAveragePool, global_average_pool)           \
   F(kLatitudeSine, latitude_sine)                      \
   F(kMedianChoose, median_choose)                      \

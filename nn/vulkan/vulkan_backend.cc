@@ -44,10 +44,11 @@ NodeNeeds VulkanBackend::NeedsOf(const Graph&, const FusedNode& node) const {
 std::unique_ptr<const Program> VulkanBackend::MakeProgram(const Graph& graph,
                                                           std::span<const FusedNode> nodes,
                                                           Lowered lowered, int /*height*/,
-                                                          int /*width*/, bool keeps_values) const {
+                                                          int /*width*/,
+                                                          const ProgramOptions& options) const {
   // Whoever looks at tensors looks at 32-bit floats.
-  if (options_.uses_halves && !keeps_values) UseHalves(nodes, &lowered);
-  return std::make_unique<VulkanProgram>(graph, nodes, std::move(lowered), keeps_values, device_,
+  if (options_.uses_halves && !options.keeps_values) UseHalves(nodes, &lowered);
+  return std::make_unique<VulkanProgram>(graph, nodes, std::move(lowered), options, device_,
                                          pipelines_,
                                          options_.tiles_for.value_or(device_->description().type));
 }

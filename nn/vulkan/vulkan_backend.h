@@ -33,7 +33,8 @@ class VulkanBackend : public Backend {
   NodeNeeds NeedsOf(const Graph& graph, const FusedNode& node) const override;
   std::unique_ptr<const Program> MakeProgram(const Graph& graph, std::span<const FusedNode> nodes,
                                              Lowered lowered, int height, int width,
-                                             bool keeps_values) const override;
+                                             const ProgramOptions& options) const override;
+  const std::shared_ptr<const LogicalDevice>& device() const { return device_; }
 
  private:
   std::shared_ptr<const LogicalDevice> device_;

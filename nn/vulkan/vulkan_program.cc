@@ -1,12 +1,13 @@
 #include "nn/vulkan/vulkan_program.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "nn/vulkan/commands.h"
+#include "nn/vulkan/descriptors.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360::nn::vulkan {
@@ -52,48 +53,10 @@ struct VulkanMemory : ProgramMemory {
   Buffer arena;
   Buffer download;
   Owned<VkDescriptorPool> descriptors;
+  std::optional<Timestamps> times;
+  bool has_run = false;
   Commands commands;  // declared last: destroyed before what they use
 };
-
-struct Descriptors {
-  Owned<VkDescriptorPool> pool;
-  VkDescriptorSet set = VK_NULL_HANDLE;  // of the pool
-};
-
-/// Returns a set that binds two buffers to the shaders.
-Descriptors Bind(const LogicalDevice& device, VkDescriptorSetLayout layout,
-                 const std::array<VkBuffer, 2>& buffers) {
-  const char* const action = "bind buffers";
-  const DeviceFunctions& functions = device.functions();
-  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                  static_cast<std::uint32_t>(buffers.size())};
-  VkDescriptorPoolCreateInfo info{};
-  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-  info.maxSets = 1;
-  info.poolSizeCount = 1;
-  info.pPoolSizes = &size;
-  VkDescriptorPool pool = VK_NULL_HANDLE;
-  device.Check(functions.CreateDescriptorPool(device.handle(), &info, nullptr, &pool), action);
-  Descriptors bound{device.Own(pool, functions.DestroyDescriptorPool)};
-  VkDescriptorSetAllocateInfo allocation{};
-  allocation.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-  allocation.descriptorPool = pool;
-  allocation.descriptorSetCount = 1;
-  allocation.pSetLayouts = &layout;
-  device.Check(functions.AllocateDescriptorSets(device.handle(), &allocation, &bound.set), action);
-  for (std::uint32_t i = 0; i < buffers.size(); ++i) {
-    const VkDescriptorBufferInfo buffer{buffers[i], 0, VK_WHOLE_SIZE};
-    VkWriteDescriptorSet write{};
-    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    write.dstSet = bound.set;
-    write.dstBinding = i;
-    write.descriptorCount = 1;
-    write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    write.pBufferInfo = &buffer;
-    functions.UpdateDescriptorSets(device.handle(), 1, &write, 0, nullptr);
-  }
-  return bound;
-}
 
 /// Throws DeviceError for more than shaders can address on the device.
 void RequireBufferOf(const LogicalDevice& device, std::size_t bytes) {
@@ -116,13 +79,14 @@ std::vector<std::size_t> ScratchOf(const Lowered& lowered, std::span<const Fused
 }  // namespace
 
 VulkanProgram::VulkanProgram(const Graph& graph, std::span<const FusedNode> nodes, Lowered lowered,
-                             bool keeps_values, std::shared_ptr<const LogicalDevice> device,
+                             const ProgramOptions& options,
+                             std::shared_ptr<const LogicalDevice> device,
                              std::shared_ptr<Pipelines> pipelines, VulkanDevice::Type tiles_for)
     : device_(std::move(device)),
       pipelines_(std::move(pipelines)),
       lowered_(std::move(lowered)),
-      assignment_(AssignBuffers(lowered_, ScratchOf(lowered_, nodes), keeps_values)),
-      keeps_values_(keeps_values) {
+      assignment_(AssignBuffers(lowered_, ScratchOf(lowered_, nodes), options.keeps_values)),
+      options_(options) {
   RequireBufferOf(*device_, assignment_.bytes);
   Constants constants;
   for (std::size_t i = 0; i < lowered_.instructions.size(); ++i) {
@@ -135,12 +99,11 @@ VulkanProgram::VulkanProgram(const Graph& graph, std::span<const FusedNode> node
       from.offset += static_cast<std::uint32_t>(copy->from_first) * from.plane;
       to.offset += static_cast<std::uint32_t>(copy->to_first) * to.plane;
       from.shape.channels = to.shape.channels = copy->count;
-      dispatches_.push_back(CopyOf(from, to));
+      dispatches_.push_back({CopyOf(from, to)});
       continue;
     }
-    std::ranges::move(DispatchesOf(graph, nodes[std::get<std::size_t>(instruction.work)], operands,
-                                   tiles_for, &constants),
-                      std::back_inserter(dispatches_));
+    dispatches_.push_back(DispatchesOf(graph, nodes[std::get<std::size_t>(instruction.work)],
+                                       operands, tiles_for, &constants));
   }
   Upload(constants.values());
 }
@@ -179,7 +142,7 @@ std::unique_ptr<ProgramMemory> VulkanProgram::Allocate() const {
   std::size_t download = 0;
   for (const int input : lowered_.inputs) upload += BytesOf(PlaceOf(input));
   for (const int output : lowered_.outputs) download += BytesOf(PlaceOf(output));
-  if (keeps_values_) download = assignment_.bytes;
+  if (options_.keeps_values) download = assignment_.bytes;
   memory->upload = Buffer(*device_, upload, BufferUse::kUpload);
   memory->arena = Buffer(*device_, assignment_.bytes, BufferUse::kDevice);
   memory->download = Buffer(*device_, download, BufferUse::kDownload);
@@ -188,6 +151,13 @@ std::unique_ptr<ProgramMemory> VulkanProgram::Allocate() const {
   memory->descriptors = std::move(bound.pool);
 
   Commands& commands = memory->commands;
+  Timestamps* times = nullptr;
+  if (options_.measures_times) {
+    // Before the inputs, behind them, behind each instruction and behind the outputs.
+    times = &memory->times.emplace(*device_, static_cast<std::uint32_t>(dispatches_.size()) + 3);
+    times->Reset(commands.get());
+    times->Write(commands.get());
+  }
   std::size_t at = 0;
   for (const int input : lowered_.inputs) {
     const Place place = PlaceOf(input);
@@ -195,44 +165,48 @@ std::unique_ptr<ProgramMemory> VulkanProgram::Allocate() const {
                         BytesOf(place));
     at += BytesOf(place);
   }
-  Record(bound.set, &commands);
+  Record(bound.set, &commands, times);
   at = 0;
   for (const int output : lowered_.outputs) {
-    if (keeps_values_) break;
+    if (options_.keeps_values) break;
     const Place place = PlaceOf(output);
     commands.CopyBuffer(memory->arena.get(), place.offset * sizeof(float), memory->download.get(),
                         at, BytesOf(place));
     at += BytesOf(place);
   }
-  if (keeps_values_) {
+  if (options_.keeps_values) {
     commands.CopyBuffer(memory->arena.get(), 0, memory->download.get(), 0, assignment_.bytes);
   }
+  if (times != nullptr) times->Write(commands.get());
   commands.Finish();
   return memory;
 }
 
-void VulkanProgram::Record(VkDescriptorSet set, Commands* commands) const {
+void VulkanProgram::Record(VkDescriptorSet set, Commands* commands, Timestamps* times) const {
   const DeviceFunctions& functions = device_->functions();
   functions.CmdBindDescriptorSets(commands->get(), VK_PIPELINE_BIND_POINT_COMPUTE,
                                   pipelines_->layout(), 0, 1, &set, 0, nullptr);
   commands->Barrier();
-  for (const Dispatch& dispatch : dispatches_) {
-    const auto& [pipeline, parameters, groups] = dispatch;
-    functions.CmdBindPipeline(commands->get(), VK_PIPELINE_BIND_POINT_COMPUTE,
-                              pipelines_->Get(pipeline));
-    functions.CmdPushConstants(
-        commands->get(), pipelines_->layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
-        static_cast<std::uint32_t>(parameters.size() * sizeof(std::uint32_t)), parameters.data());
-    functions.CmdDispatch(commands->get(), groups[0], groups[1], groups[2]);
-    // Also before what does not read the result: memory is used again by later tensors.
-    commands->Barrier();
+  if (times != nullptr) times->Write(commands->get());
+  for (const std::vector<Dispatch>& of_instruction : dispatches_) {
+    for (const auto& [pipeline, parameters, groups] : of_instruction) {
+      functions.CmdBindPipeline(commands->get(), VK_PIPELINE_BIND_POINT_COMPUTE,
+                                pipelines_->Get(pipeline));
+      functions.CmdPushConstants(
+          commands->get(), pipelines_->layout(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
+          static_cast<std::uint32_t>(parameters.size() * sizeof(std::uint32_t)), parameters.data());
+      functions.CmdDispatch(commands->get(), groups[0], groups[1], groups[2]);
+      // Also before what does not read the result: memory is used again by later tensors.
+      commands->Barrier();
+    }
+    if (times != nullptr) times->Write(commands->get());
   }
 }
 
 void VulkanProgram::Run(std::span<const std::span<const float>> inputs,
                         std::span<const std::span<float>> outputs, ProgramMemory* memory) const {
   ORB360_CHECK(memory->IsOf(this), "a workspace of another executor");
-  const auto& vulkan = static_cast<const VulkanMemory&>(*memory);
+  auto& vulkan = static_cast<VulkanMemory&>(*memory);
   std::byte* to = vulkan.upload.data();
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const Place place = PlaceOf(lowered_.inputs[i]);
@@ -241,11 +215,12 @@ void VulkanProgram::Run(std::span<const std::span<const float>> inputs,
     to += BytesOf(place);
   }
   vulkan.commands.RunAndWait();
+  vulkan.has_run = true;
   vulkan.download.Invalidate(*device_);
   const std::byte* from = vulkan.download.data();
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const Place place = PlaceOf(lowered_.outputs[i]);
-    if (keeps_values_) from = vulkan.download.data() + place.offset * sizeof(float);
+    if (options_.keeps_values) from = vulkan.download.data() + place.offset * sizeof(float);
     CopyRows(reinterpret_cast<const float*>(from), StridesOf(place), outputs[i].data(),
              DenseStrides(place.shape), place.shape);
     from += BytesOf(place);
@@ -253,11 +228,18 @@ void VulkanProgram::Run(std::span<const std::span<const float>> inputs,
 }
 
 TensorView VulkanProgram::Find(const ProgramMemory& memory, int value) const {
-  ORB360_CHECK(keeps_values_);
+  ORB360_CHECK(options_.keeps_values);
   ORB360_CHECK(memory.IsOf(this), "a workspace of another executor");
   const auto& vulkan = static_cast<const VulkanMemory&>(memory);
   return ViewOf(assignment_.buffers[Index(value)],
                 lowered_.values[Index(value)].format.shape.channels, vulkan.download.data());
+}
+
+std::vector<double> VulkanProgram::Times(const ProgramMemory& memory) const {
+  ORB360_CHECK(options_.measures_times);
+  ORB360_CHECK(memory.IsOf(this), "a workspace of another executor");
+  const auto& vulkan = static_cast<const VulkanMemory&>(memory);
+  return vulkan.has_run ? vulkan.times->Intervals() : std::vector<double>();
 }
 
 }  // namespace orb360::nn::vulkan

@@ -15,6 +15,7 @@
 #include "nn/vulkan/dispatches.h"
 #include "nn/vulkan/logical_device.h"
 #include "nn/vulkan/pipelines.h"
+#include "nn/vulkan/timestamps.h"
 
 namespace orb360::nn::vulkan {
 
@@ -24,13 +25,14 @@ class VulkanProgram : public Program {
   /// Tiles are chosen as for a device of the kind `tiles_for`. Throws DeviceError where the device
   /// has too little memory or its driver fails.
   VulkanProgram(const Graph& graph, std::span<const FusedNode> nodes, Lowered lowered,
-                bool keeps_values, std::shared_ptr<const LogicalDevice> device,
+                const ProgramOptions& options, std::shared_ptr<const LogicalDevice> device,
                 std::shared_ptr<Pipelines> pipelines, VulkanDevice::Type tiles_for);
 
   std::unique_ptr<ProgramMemory> Allocate() const override;
   void Run(std::span<const std::span<const float>> inputs,
            std::span<const std::span<float>> outputs, ProgramMemory* memory) const override;
   TensorView Find(const ProgramMemory& memory, int value) const override;
+  std::vector<double> Times(const ProgramMemory& memory) const override;
   std::size_t planned_bytes() const override { return assignment_.bytes; }
   std::size_t naive_bytes() const override { return assignment_.separate_bytes; }
 
@@ -39,15 +41,15 @@ class VulkanProgram : public Program {
   std::vector<Place> PlacesOf(std::span<const int> values) const;
   /// Copies the weights to the device.
   void Upload(std::span<const float> constants);
-  /// Records the launches of one run.
-  void Record(VkDescriptorSet set, Commands* commands) const;
+  /// Records the launches of one run, and the times between instructions if they are measured.
+  void Record(VkDescriptorSet set, Commands* commands, Timestamps* times) const;
 
   std::shared_ptr<const LogicalDevice> device_;
   std::shared_ptr<Pipelines> pipelines_;
   Lowered lowered_;
   BufferAssignment assignment_;
-  bool keeps_values_;
-  std::vector<Dispatch> dispatches_;
+  ProgramOptions options_;
+  std::vector<std::vector<Dispatch>> dispatches_;  // by instruction
   Buffer constants_;
 };
 

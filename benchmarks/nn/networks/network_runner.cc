@@ -1,6 +1,6 @@
 // Runs a network file whenever it is told to, so that another process can let it and another
 // library take turns: first prints a line of JSON about the network, then reads lines, runs once
-// for each and answers with the milliseconds that took.
+// for each and answers with the milliseconds that took. Or prints the times of its nodes (--nodes).
 #include <cstdio>
 #include <iostream>
 #include <map>
@@ -10,6 +10,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "benchmarks/nn/device_peaks.h"
+#include "benchmarks/nn/networks/node_times.h"
 #include "benchmarks/nn/networks/random_inputs.h"
 #include "benchmarks/nn/stopwatch.h"
 #include "nn/graph/cpu_backend.h"
@@ -31,6 +33,7 @@ struct Options {
   std::string precision = "float";
   std::string device = "cpu";
   float known = kKnownFraction;
+  int nodes = 0;  // runs of which times of nodes are printed
 };
 
 std::vector<std::vector<float>> MakeInputs(const Executor& executor, float known) {
@@ -75,6 +78,12 @@ DataType TypeOf(const std::string& precision) {
   return precision == "int8" ? DataType::kInt8 : DataType::kFloat;
 }
 
+Peaks PeaksOf(const Device& device, int threads) {
+  if (device.backend == nullptr) return MeasurePeaks(threads);
+  const DevicePeaks peaks = MeasurePeaks(device);
+  return {.fma = peaks.operations, .bandwidth = peaks.bandwidth};
+}
+
 int Main(int argc, char** argv) {
   Options options;
   CLI::App app("Runs a network once for every line it reads");
@@ -85,14 +94,19 @@ int Main(int argc, char** argv) {
       ->check(CLI::IsMember({"float", "bf16", "int8", "float16"}));
   app.add_option("--device", options.device, "as of orb360; float16 is for GPUs");
   app.add_option("--known", options.known, "fraction of the pixels that have a depth");
+  app.add_option("--nodes", options.nodes,
+                 "instead of that, print the least time of each node in that many runs")
+      ->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);
 
   std::vector<double> load, pack;
   Graph graph;
   Time([&] { graph = ReadNetwork(options.file); }, &load);
   const Device device = OpenDevice(options.device, options.precision == "float16");
-  const ExecutorOptions how{
-      .threads = options.threads, .precision = TypeOf(options.precision), .device = device};
+  const ExecutorOptions how{.threads = options.threads,
+                            .precision = TypeOf(options.precision),
+                            .device = device,
+                            .measures_times = options.nodes > 0};
   std::unique_ptr<Executor> executor;
   Time(
       [&] {
@@ -109,6 +123,13 @@ int Main(int argc, char** argv) {
   const std::vector<std::span<const float>> input_spans(inputs.begin(), inputs.end());
   const std::vector<std::span<float>> output_spans(outputs.begin(), outputs.end());
 
+  const auto run = [&] { executor->Run(input_spans, output_spans, &workspace); };
+  if (options.nodes > 0) {
+    PrintNodeTimes(graph, *executor, device, options.height, workspace, options.nodes,
+                   PeaksOf(device, options.threads), run);
+    return 0;
+  }
+
   const nlohmann::json about = {
       {"device", device.name},
       {"work", Work(graph, options.height, how.precision)},
@@ -119,7 +140,7 @@ int Main(int argc, char** argv) {
   std::cout << about.dump() << std::endl;
   for (std::string line; std::getline(std::cin, line);) {
     std::vector<double> milliseconds;
-    Time([&] { executor->Run(input_spans, output_spans, &workspace); }, &milliseconds);
+    Time(run, &milliseconds);
     std::cout << milliseconds.front() << std::endl;
   }
   return 0;

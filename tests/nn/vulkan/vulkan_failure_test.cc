@@ -23,6 +23,16 @@ VKAPI_ATTR VkResult VKAPI_CALL HaveNoMemory(VkDevice, const VkMemoryAllocateInfo
   return VK_ERROR_OUT_OF_DEVICE_MEMORY;
 }
 
+VKAPI_ATTR VkResult VKAPI_CALL HaveNoQueries(VkDevice, const VkQueryPoolCreateInfo*,
+                                             const VkAllocationCallbacks*, VkQueryPool*) {
+  return VK_ERROR_OUT_OF_HOST_MEMORY;
+}
+
+VKAPI_ATTR VkResult VKAPI_CALL LoseTheTimes(VkDevice, VkQueryPool, std::uint32_t, std::uint32_t,
+                                            std::size_t, void*, VkDeviceSize, VkQueryResultFlags) {
+  return VK_ERROR_DEVICE_LOST;
+}
+
 PFN_vkQueueSubmit submit = nullptr;
 int submissions_left = 0;
 
@@ -80,6 +90,28 @@ TEST_F(VulkanFailure, ADeviceMayBeLostInTheMidstOfRuns) {
   run(executor, &workspace);
   run(executor, &workspace);
   EXPECT_THROW(run(executor, &workspace), DeviceError);
+}
+
+TEST_F(VulkanFailure, ADeviceThatCannotMeasureTimesStillRunsNetworks) {
+  const Graph graph = RandomNetwork(10, 1).Build();
+  const std::vector<PlainImage> inputs = RandomInputs(8, 16, 1);
+  const Device device =
+      OpenWith([](vulkan::DeviceFunctions* f) { f->CreateQueryPool = HaveNoQueries; });
+  EXPECT_EQ(RunOnce(Executor(graph, 8, 16, {.device = device}), inputs),
+            RunOnce(Executor(graph, 8, 16, options()), inputs));
+  const Executor executor(graph, 8, 16, {.device = device, .measures_times = true});
+  EXPECT_THROW(Executor::Workspace{executor}, DeviceError);
+}
+
+TEST_F(VulkanFailure, ADeviceMayBeLostBeforeItsTimesAreRead) {
+  const Device device =
+      OpenWith([](vulkan::DeviceFunctions* f) { f->GetQueryPoolResults = LoseTheTimes; });
+  const Executor executor(RandomNetwork(10, 1).Build(), 8, 16,
+                          {.device = device, .measures_times = true});
+  Executor::Workspace workspace(executor);
+  NetworkRun run(executor, RandomInputs(8, 16, 1));
+  run(executor, &workspace);
+  EXPECT_THROW(executor.Times(workspace), DeviceError);
 }
 
 TEST_F(VulkanFailure, ImagesTooLargeForOneBufferAreRefused) {

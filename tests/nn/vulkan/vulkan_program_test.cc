@@ -1,6 +1,7 @@
 // Whole networks on a Vulkan device.
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -63,6 +64,40 @@ TEST_F(VulkanProgramTest, AgreesWithTheCpuOnRandomNetworks) {
     const auto actual = RunOnce(Executor(graph, 16, 32, options()), inputs);
     ASSERT_LE(WorstDifferenceOf(actual, expected), 1e-4) << seed;
   }
+}
+
+TEST_F(VulkanProgramTest, MeasuresTheTimesOfAllPartsOfARun) {
+  const Graph graph = RandomNetwork(60, 3).Build();
+  const std::vector<PlainImage> inputs = RandomInputs(16, 32, 1);
+  ExecutorOptions how = options();
+  how.measures_times = true;
+  const Executor executor(graph, 16, 32, how);
+  Executor::Workspace workspace(executor);
+  EXPECT_TRUE(executor.Times(workspace).empty());  // before a run
+  NetworkRun run(executor, inputs);
+  for (int i = 0; i < 3; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    run(executor, &workspace);
+    const std::chrono::duration<double, std::milli> passed =
+        std::chrono::steady_clock::now() - start;
+    const std::vector<Executor::Time> times = executor.Times(workspace);
+    ASSERT_GT(times.size(), 2U);
+    EXPECT_EQ(times.front().name, "inputs");
+    EXPECT_EQ(times.back().name, "outputs");
+    double sum = 0;
+    for (const Executor::Time& time : times) sum += time.milliseconds;
+    // Both clocks run at the same speed up to some parts in ten thousand.
+    EXPECT_GT(sum, 0);
+    EXPECT_LE(sum, 1.01 * passed.count());
+  }
+  EXPECT_EQ(run.outputs, RunOnce(Executor(graph, 16, 32, options()), inputs));
+}
+
+TEST_F(VulkanProgramTest, PeaksOfTheDeviceCanBeMeasured) {
+  const DevicePeaks peaks = MeasurePeaks(device_);
+  EXPECT_GT(peaks.operations, 0);
+  EXPECT_GT(peaks.bandwidth, 0);
+  EXPECT_THROW(MeasurePeaks(Device()), ContractError);
 }
 
 TEST_F(VulkanProgramTest, GivesTheSameBytesInEveryRun) {

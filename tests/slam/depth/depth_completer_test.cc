@@ -67,6 +67,9 @@ class FailingProgram : public nn::Program {
   nn::TensorView Find(const nn::ProgramMemory& memory, int value) const override {
     return program_->Find(memory, value);
   }
+  std::vector<double> Times(const nn::ProgramMemory& memory) const override {
+    return program_->Times(memory);
+  }
   std::size_t planned_bytes() const override { return program_->planned_bytes(); }
   std::size_t naive_bytes() const override { return program_->naive_bytes(); }
 
@@ -83,10 +86,10 @@ class FailingBackend : public nn::CpuBackend {
   std::unique_ptr<const nn::Program> MakeProgram(const nn::Graph& graph,
                                                  std::span<const nn::FusedNode> nodes,
                                                  nn::Lowered lowered, int height, int width,
-                                                 bool keeps_values) const override {
+                                                 const nn::ProgramOptions& options) const override {
     if (failure_.at_preparation) throw nn::DeviceError("it has no shaders");
     return std::make_unique<FailingProgram>(
-        CpuBackend::MakeProgram(graph, nodes, std::move(lowered), height, width, keeps_values),
+        CpuBackend::MakeProgram(graph, nodes, std::move(lowered), height, width, options),
         failure_);
   }
 

@@ -30,6 +30,8 @@ struct ExecutorOptions {
   /// Runs every node by itself and keeps its result (Executor::Find). This is for inspection and is
   /// slow.
   bool keeps_tensors = false;
+  /// Measures how long each node takes (Executor::Times). DeviceError where a device cannot.
+  bool measures_times = false;
 };
 
 /// A network prepared for images of one size: formats chosen, nodes fused, weights packed, memory
@@ -80,6 +82,17 @@ class Executor {
   /// Contract: keeps_tensors was set and the graph has such a tensor.
   TensorView Find(const Workspace& workspace, std::string_view tensor) const;
 
+  /// How long a part of a run took.
+  struct Time {
+    std::string name;     ///< Of the node, of the tensor that was copied, or "inputs" or "outputs".
+    double milliseconds;  ///< Of the processor that computed it.
+  };
+  /// Returns the times of the last run in `workspace`, in order: of the copies of inputs, of nodes
+  /// and copies between them, and of the copies of outputs. A node stands for those that were
+  /// merged with it. On a graphics processor they are the device's own.
+  /// Contract: measures_times was set.
+  std::vector<Time> Times(const Workspace& workspace) const;
+
   /// Returns the bytes of a workspace, in which tensors share memory.
   std::size_t planned_bytes() const;
   /// Returns the bytes that a workspace would have if every tensor had memory of its own.
@@ -91,6 +104,7 @@ class Executor {
   std::vector<Port> outputs_;
   std::vector<std::string> tensors_;  // names of the graph's; only with keeps_tensors
   std::vector<int> value_of_tensor_;  // of the program; likewise
+  std::vector<std::string> parts_;    // of a run; only with measures_times
 };
 
 }  // namespace orb360::nn

@@ -58,4 +58,15 @@ VulkanDevices ListVulkanDevices();
 /// where a named device, or the CPU, cannot; "auto" uses them where it finds a GPU that can.
 Device OpenDevice(const std::string& name, bool uses_halves = false);
 
+/// What a device can do at most, measured now.
+struct DevicePeaks {
+  double operations = 0;  ///< 10^9 a second, of multiplications and additions of 32-bit floats.
+  double bandwidth = 0;   ///< 10^9 bytes a second, read and written by copies in its memory.
+};
+
+/// Measures each several times, for some milliseconds, and returns the best. Throws DeviceError
+/// where the device cannot measure times, has too little memory or fails.
+/// Contract: not of the CPU.
+DevicePeaks MeasurePeaks(const Device& device);
+
 }  // namespace orb360::nn
