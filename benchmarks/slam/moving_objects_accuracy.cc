@@ -22,11 +22,11 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "benchmarks/slam/run_views.h"
 #include "benchmarks/slam/sequence_folder.h"
 #include "slam/pipeline/view_depth.h"
 #include "slam/pipeline/view_selection.h"
 #include <orb360/slam/io/depth_image.h>
-#include <orb360/slam/io/trajectory.h>
 
 namespace {
 
@@ -36,38 +36,22 @@ constexpr float kConfidence = 0.97F;
 constexpr double kMinError = 0.01;  // of ln(range)
 constexpr float kMaxRange = 80.0F;  // metres
 
-struct View {
-  int index;
-  orb360::DenseDepth depth;
-  orb360::DepthView view;
-};
-
-std::vector<View> ReadViews(const fs::path& sequence, const fs::path& run) {
-  const auto truth = orb360::ReadTrajectory(sequence / "groundtruth.txt");
-  const auto poses = orb360::ReadTrajectory(run / "trajectory.txt");
-  std::vector<View> views;
-  for (size_t i = 0; i < truth.size(); ++i) {
-    const auto index = static_cast<int>(i);
-    const fs::path file = run / "depth" / orb360::NameOfFrame(index, "png");
-    if (!fs::exists(file)) continue;
-    const auto pose = std::ranges::find_if(poses, [&](const orb360::StampedPose& p) {
-      return std::abs(p.timestamp - truth[i].timestamp) < 1e-3;
-    });
-    if (pose == poses.end()) continue;
-    const cv::Mat range = orb360::ReadDepthImage(file);
-    const orb360::DenseDepth depth{
-        range, cv::Mat(range.size(), CV_32F, cv::Scalar(kConfidence)), {}};
-    views.push_back({index, depth, {depth, pose->world_from_camera, kMinError}});
+/// As before the second pass knew of confidences: each range counts.
+std::vector<orb360::RunView> ReadViews(const fs::path& sequence, const fs::path& run) {
+  std::vector<orb360::RunView> views = orb360::ReadRunViews(sequence, run, kMinError);
+  for (orb360::RunView& view : views) {
+    view.depth.confidence.setTo(kConfidence);
+    view.view = orb360::DepthView(view.depth, view.view.world_from_camera(), kMinError);
   }
   return views;
 }
 
 void Measure(const fs::path& sequence, const fs::path& run, const std::optional<fs::path>& images) {
-  const std::vector<View> read = ReadViews(sequence, run);
+  const std::vector<orb360::RunView> read = ReadViews(sequence, run);
   if (images) fs::create_directories(*images);
   std::vector<orb360::DenseView> views;
   std::vector<size_t> all;
-  for (const View& view : read) {
+  for (const orb360::RunView& view : read) {
     all.push_back(views.size());
     views.push_back({.frame_index = view.index,
                      .world_from_camera = view.view.world_from_camera(),

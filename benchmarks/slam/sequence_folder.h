@@ -18,15 +18,20 @@ inline std::string NameOfFrame(int index, const char* ending) {
   return name;
 }
 
-/// Reads rgb/NNNNNN.jpg, or .png, of a sequence folder as CV_8U. Throws std::runtime_error where it
-/// cannot be read.
-inline cv::Mat ReadGray(const std::filesystem::path& sequence, int index) {
+/// Reads rgb/NNNNNN.jpg, or .png, of a sequence folder as CV_8UC3 (BGR). Throws std::runtime_error
+/// where it cannot be read.
+inline cv::Mat ReadColor(const std::filesystem::path& sequence, int index) {
   std::filesystem::path path = sequence / "rgb" / NameOfFrame(index, "jpg");
   if (!std::filesystem::exists(path)) path.replace_extension("png");
   const LoadedImage loaded = LoadImage(path);
   if (!loaded.problem.empty()) throw std::runtime_error(path.string() + ": " + loaded.problem);
+  return loaded.image;
+}
+
+/// The same as CV_8U.
+inline cv::Mat ReadGray(const std::filesystem::path& sequence, int index) {
   cv::Mat gray;
-  cv::cvtColor(loaded.image, gray, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(ReadColor(sequence, index), gray, cv::COLOR_BGR2GRAY);
   return gray;
 }
 

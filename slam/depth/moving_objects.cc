@@ -42,20 +42,21 @@ float RangeAlong(const DepthView& view, const Eigen::Vector3f& direction) {
 /// What views see in the direction of places on the ground.
 struct Sightings {
   int ground = 0;   ///< How often the ground.
-  int through = 0;  ///< How often something behind and below it.
+  int through = 0;  ///< How often something behind it.
 
+  /// Compares ranges, not depths below the plane: a view that is hardly above the plane, or below
+  /// it, sees through it with rays that hardly fall.
   void Look(const DepthView& view, const Rigid3& view_from_reference, const Eigen::Vector3f& place,
-            const Plane& plane, double tolerance) {
+            const MovingObjectOptions& options) {
     const Eigen::Vector3d seen = view_from_reference * Eigen::Vector3d(place.cast<double>());
     const double distance = seen.norm();
     if (!(distance > 0)) return;
     const double range = RangeAlong(view, (seen / distance).cast<float>());
     if (!(range > 0)) return;
-    const Eigen::Vector3d normal = view_from_reference.rotation * plane.normal.cast<double>();
-    const double below = (range / distance - 1) * -normal.dot(seen) / plane.height;
-    if (below > tolerance) {
+    const double farther = range / distance - 1;
+    if (farther > options.max_farther) {
       ++through;
-    } else if (below > -tolerance) {
+    } else if (farther > -options.max_nearer) {
       ++ground;
     }
   }
@@ -167,7 +168,7 @@ std::vector<MovingObject> FindMovingObjects(const cv::Mat& below_ground, const D
         ratios.push_back(ranges.back() / ground_range);
         const Eigen::Vector3f place = ground_range * bearing;
         for (size_t i = 0; i < others.size(); ++i) {
-          sightings.Look(*others[i], other_from_view[i], place, plane, options.tolerance);
+          sightings.Look(*others[i], other_from_view[i], place, options);
         }
       }
       const double fall = plane.Fall(view.BearingOf(rows.back(), column));

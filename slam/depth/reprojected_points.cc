@@ -10,6 +10,7 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "nn/base/statistics.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/slam/geometry/camera.h>
 
@@ -23,11 +24,22 @@ struct Candidate {
   cv::Point pixel;
   float range;
   float relative_error;
+  cv::Vec3f difference;  ///< Of the logarithms of the colours, other minus this.
 };
 
-std::vector<Candidate> Project(const DepthView& other, int index, const Rigid3& world_from_camera,
-                               const EquirectangularCamera& camera, int squares_across,
-                               const ReprojectionOptions& options) {
+/// ln of a value of SurfaceColors; dark ones are mostly noise.
+float LogOf(std::uint8_t value) { return std::log(static_cast<float>(value) + 4.0F); }
+
+cv::Vec3f Difference(const cv::Vec3b& other, const cv::Vec3b& own) {
+  cv::Vec3f difference;
+  for (int i = 0; i < 3; ++i) difference[i] = LogOf(other[i]) - LogOf(own[i]);
+  return difference;
+}
+
+std::vector<Candidate> Project(const SeenView& seen, int index, const Rigid3& world_from_camera,
+                               const cv::Mat& colors, const EquirectangularCamera& camera,
+                               int squares_across, const ReprojectionOptions& options) {
+  const DepthView& other = *seen.depth;
   const Rigid3 camera_from_other = world_from_camera.Inverse() * other.world_from_camera();
   std::vector<Candidate> candidates;
   for (int row = options.step / 2; row < other.height(); row += options.step) {
@@ -44,11 +56,26 @@ std::vector<Candidate> Project(const DepthView& other, int index, const Rigid3& 
       const Eigen::Vector2d at = camera.Project(point);
       const cv::Point pixel(std::clamp(static_cast<int>(at.x()), 0, camera.width() - 1),
                             std::clamp(static_cast<int>(at.y()), 0, camera.height() - 1));
-      candidates.push_back({pixel.y / options.spacing * squares_across + pixel.x / options.spacing,
-                            index, pixel, static_cast<float>(distance),
-                            static_cast<float>(range * other.error(row, column) / distance)});
+      candidates.push_back(
+          {pixel.y / options.spacing * squares_across + pixel.x / options.spacing, index, pixel,
+           static_cast<float>(distance),
+           static_cast<float>(range * other.error(row, column) / distance),
+           Difference(seen.colors->at<cv::Vec3b>(row, column), colors.at<cv::Vec3b>(pixel))});
     }
   }
+  // What most surfaces differ by is a difference of exposure.
+  for (int channel = 0; channel < 3; ++channel) {
+    std::vector<float> all;
+    all.reserve(candidates.size());
+    for (const Candidate& candidate : candidates) all.push_back(candidate.difference[channel]);
+    if (all.empty()) break;
+    const float exposure = Median(all);
+    for (Candidate& candidate : candidates) candidate.difference[channel] -= exposure;
+  }
+  const auto looks_different = [&](const Candidate& candidate) {
+    return cv::norm(candidate.difference, cv::NORM_INF) > options.max_color_difference;
+  };
+  std::erase_if(candidates, looks_different);
   return candidates;
 }
 
@@ -79,9 +106,16 @@ cv::Mat NearestOfSquares(const cv::Mat& range, int spacing) {
 
 }  // namespace
 
-void AddReprojectedPoints(const Rigid3& world_from_camera, std::span<const DepthView* const> others,
-                          const ReprojectionOptions& options, SparseDepth* sparse,
-                          int num_threads) {
+cv::Mat SurfaceColors(const cv::Mat& image, cv::Size size) {
+  cv::Mat colors;
+  cv::resize(image, colors, size, 0, 0, cv::INTER_AREA);
+  cv::GaussianBlur(colors, colors, {5, 5}, 0);
+  return colors;
+}
+
+void AddReprojectedPoints(const Rigid3& world_from_camera, const cv::Mat& colors,
+                          std::span<const SeenView> others, const ReprojectionOptions& options,
+                          SparseDepth* sparse, int num_threads) {
   ORB360_CHECK(options.spacing > 0 && options.step > 0, options.spacing, options.step);
   const EquirectangularCamera camera(sparse->range.cols, sparse->range.rows);
   const cv::Mat own = NearestOfSquares(sparse->range, options.spacing);
@@ -91,8 +125,8 @@ void AddReprojectedPoints(const Rigid3& world_from_camera, std::span<const Depth
   std::vector<std::vector<Candidate>> projected(others.size());
 #pragma omp parallel for num_threads(num_threads) schedule(dynamic)
   for (int i = 0; i < count; ++i) {
-    projected[static_cast<size_t>(i)] =
-        Project(*others[static_cast<size_t>(i)], i, world_from_camera, camera, own.cols, options);
+    projected[static_cast<size_t>(i)] = Project(
+        others[static_cast<size_t>(i)], i, world_from_camera, colors, camera, own.cols, options);
   }
   std::vector<Candidate> candidates;
   for (const std::vector<Candidate>& of_view : projected) {

@@ -22,14 +22,28 @@ struct ReprojectionOptions {
   /// A point farther away than the nearest one that is known within two squares, by more than this
   /// ratio, is taken to be hidden.
   double max_hidden_ratio = 1.5;
+  /// Largest difference of the logarithms of a surface's colour in two views, of any channel, after
+  /// that of their exposures. A larger one: this view sees something else there, which hides it.
+  double max_color_difference = 0.5;
   /// The confidence of a point follows from its error as that of a landmark.
   SparseDepthOptions sparse = {};
 };
 
+/// The colours of surfaces around each pixel: those of an image, resampled to `size` and blurred,
+/// so that they are compared between views at different distances. CV_8UC3.
+cv::Mat SurfaceColors(const cv::Mat& image, cv::Size size);
+
+/// What another view sees.
+struct SeenView {
+  const DepthView* depth;
+  const cv::Mat* colors;  ///< SurfaceColors, of the size of the depth.
+};
+
 /// Adds points that other views measured to the sparse depth of a view at `world_from_camera`: in
-/// each square without a point the nearest range on which two of them agree.
-void AddReprojectedPoints(const Rigid3& world_from_camera, std::span<const DepthView* const> others,
-                          const ReprojectionOptions& options, SparseDepth* sparse,
-                          int num_threads = 1);
+/// each square without a point the nearest range on which two of them agree, where this view shows
+/// the same colours (`colors`: its SurfaceColors).
+void AddReprojectedPoints(const Rigid3& world_from_camera, const cv::Mat& colors,
+                          std::span<const SeenView> others, const ReprojectionOptions& options,
+                          SparseDepth* sparse, int num_threads = 1);
 
 }  // namespace orb360

@@ -26,41 +26,60 @@ constexpr double kBoundaryError = 1.0;
 // state 1. It gives that the range of the roofs around it.
 constexpr double kSkyError = 0.5;
 
+/// A view of the first pass, and the colours that it sees.
+struct SeenDepth {
+  DepthView depth;
+  cv::Mat colors;
+};
+
 /// The views of the first pass that were used last.
 class RecentViews {
  public:
-  RecentViews(std::span<const DenseView> views, const DepthMapStore& store)
-      : views_(views), store_(store) {}
+  RecentViews(std::span<const DenseView> views, const DepthMapStore& store,
+              const ImageStore& images)
+      : views_(views), store_(store), images_(images) {}
 
-  std::shared_ptr<const DepthView> Get(size_t index) {
+  std::shared_ptr<const SeenDepth> Get(size_t index) {
     const auto found = std::ranges::find(recent_, index, &Entry::index);
     if (found != recent_.end()) return found->view;
     if (recent_.size() >= kCapacity) recent_.pop_front();
     const DenseView& view = views_[index];
+    const DenseDepth depth = store_.Get(view.frame_index);
     recent_.push_back(
-        {index, std::make_shared<const DepthView>(store_.Get(view.frame_index),
-                                                  view.world_from_camera, kMinError)});
+        {index, std::make_shared<const SeenDepth>(
+                    DepthView(depth, view.world_from_camera, kMinError),
+                    SurfaceColors(images_.Get(view.frame_index), depth.range.size()))});
     return recent_.back().view;
   }
 
  private:
-  static constexpr size_t kCapacity = 48;  // 2.5 MB each for 1024 x 512 pixels
+  static constexpr size_t kCapacity = 48;  // 4 MB each for 1024 x 512 pixels
 
   struct Entry {
     size_t index;
-    std::shared_ptr<const DepthView> view;
+    std::shared_ptr<const SeenDepth> view;
   };
 
   std::span<const DenseView> views_;
   const DepthMapStore& store_;
+  const ImageStore& images_;
   std::deque<Entry> recent_;
 };
 
 /// Views that a function looks at, which live as long as this.
-struct LoadedViews {
-  std::vector<std::shared_ptr<const DepthView>> kept;
-  std::vector<const DepthView*> views;
-};
+using LoadedViews = std::vector<std::shared_ptr<const SeenDepth>>;
+
+std::vector<const DepthView*> DepthsOf(const LoadedViews& loaded) {
+  std::vector<const DepthView*> depths;
+  for (const auto& view : loaded) depths.push_back(&view->depth);
+  return depths;
+}
+
+std::vector<SeenView> SeenBy(const LoadedViews& loaded) {
+  std::vector<SeenView> seen;
+  for (const auto& view : loaded) seen.push_back({&view->depth, &view->colors});
+  return seen;
+}
 
 LoadedViews LoadByDistance(std::span<const DenseView> views, size_t reference,
                            std::span<const size_t> neighbours, std::vector<double> distances,
@@ -68,8 +87,7 @@ LoadedViews LoadByDistance(std::span<const DenseView> views, size_t reference,
   for (double& distance : distances) distance *= unit;
   LoadedViews loaded;
   for (const size_t i : ChooseViewsByDistance(views, reference, neighbours, distances, max_ratio)) {
-    loaded.kept.push_back(recent->Get(i));
-    loaded.views.push_back(loaded.kept.back().get());
+    loaded.push_back(recent->Get(i));
   }
   return loaded;
 }
@@ -94,7 +112,7 @@ ObjectsOnGround FindObjects(const DenseDepth& depth, const DepthView& view,
   const cv::Mat below = FindBelowGround(view, *ground, options.objects);
   if (cv::countNonZero(below) == 0) return {};
   const LoadedViews others = others_at(std::exp(ground->log_height));
-  return {FindMovingObjects(below, view, *ground, others.views, options.objects), ground};
+  return {FindMovingObjects(below, view, *ground, DepthsOf(others), options.objects), ground};
 }
 
 /// One view before the network completes it.
@@ -124,7 +142,7 @@ class ViewPreparation {
         camera_(camera),
         num_threads_(num_threads),
         first_(first),
-        recent_(views, first) {}
+        recent_(views, first, images) {}
 
   PreparedView Prepare(size_t i, bool is_interrupted) {
     const DenseView& view = views_[i];
@@ -140,7 +158,7 @@ class ViewPreparation {
     };
     ObjectsOnGround found;
     if (up_ && !is_interrupted) {
-      found = FindObjects(depth, *recent_.Get(i), *up_, second,
+      found = FindObjects(depth, recent_.Get(i)->depth, *up_, second,
                           [&](double height) { return load(second.ground_distances, height); });
     }
     const cv::Mat moving = MaskOf(found.objects, depth.range.size());
@@ -150,7 +168,8 @@ class ViewPreparation {
     const bool is_completed = has_stereo && !is_interrupted;
     if (is_completed) {
       const double range = TrustedRange(depth, options_.min_trusted_confidence);
-      AddReprojectedPoints(view.world_from_camera, load(second.distances, range).views,
+      const LoadedViews others = load(second.distances, range);
+      AddReprojectedPoints(view.world_from_camera, recent_.Get(i)->colors, SeenBy(others),
                            {.spacing = options_.sparse_spacing,
                             .max_error = kLargestMeasuredError,
                             .sparse = options_.sparse},

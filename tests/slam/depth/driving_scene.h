@@ -20,7 +20,8 @@ struct MovingBox {
   double speed;
 };
 
-/// Flat ground below a camera of height 1.4 that moves along the x axis, in double precision.
+/// Flat ground below a camera that moves along the x axis, in double precision. At the origin its
+/// height is 1.4.
 struct DrivingScene {
   static constexpr double kHeight = 1.4;
   static constexpr double kSky = 60;
@@ -29,15 +30,22 @@ struct DrivingScene {
   /// Beyond this y the ground is lower, by `fall`.
   double edge = 1e9;
   double fall = 0;
+  /// A wall beyond the lower ground, which rises above all cameras.
+  double wall = 1e9;
+  /// Height of the camera elsewhere: it has come up to the origin on a ramp that it does not see.
+  double height_elsewhere = kHeight;
+
+  double HeightAt(double x) const { return x == 0 ? kHeight : height_elsewhere; }
 
   Rigid3 CameraAt(double x) const {
-    return {Eigen::Quaterniond(Eigen::AngleAxisd(0.1 * x, Eigen::Vector3d::UnitZ())), {x, 0, 0}};
+    return {Eigen::Quaterniond(Eigen::AngleAxisd(0.1 * x, Eigen::Vector3d::UnitZ())),
+            {x, 0, HeightAt(x) - kHeight}};
   }
 
   /// The true range along a ray; of the sky kSky.
   double Range(double camera_x, const Eigen::Vector3d& ray) const {
     const double on_box = RangeOfBox(camera_x, ray);
-    return on_box > 0 ? on_box : RangeAtRest(ray);
+    return on_box > 0 ? on_box : RangeAtRest(HeightAt(camera_x), ray);
   }
 
   /// 0 where a ray does not meet the box.
@@ -61,7 +69,8 @@ struct DrivingScene {
         const Eigen::Vector3d ray =
             CameraAt(camera_x).rotation * camera.Bearing({column + 0.5, row + 0.5});
         const double on_box = RangeOfBox(camera_x, ray);
-        const double range = on_box > 0 ? on_box / (1 - box->speed) : RangeAtRest(ray);
+        const double range =
+            on_box > 0 ? on_box / (1 - box->speed) : RangeAtRest(HeightAt(camera_x), ray);
         depth.range.at<float>(row, column) = static_cast<float>(range);
         if (range == kSky) depth.confidence.at<float>(row, column) = 0.1F;
       }
@@ -70,11 +79,12 @@ struct DrivingScene {
   }
 
  private:
-  double RangeAtRest(const Eigen::Vector3d& ray) const {
-    if (!(ray.z() < 0)) return kSky;
-    const double near = kHeight / -ray.z();
+  double RangeAtRest(double height, const Eigen::Vector3d& ray) const {
+    const double to_wall = ray.y() > 0 ? std::min(wall / ray.y(), kSky) : kSky;
+    if (!(ray.z() < 0)) return to_wall;
+    const double near = height / -ray.z();
     if (near * ray.y() <= edge) return std::min(near, kSky);
-    return std::min((kHeight + fall) / -ray.z(), kSky);
+    return std::min((height + fall) / -ray.z(), to_wall);
   }
 };
 

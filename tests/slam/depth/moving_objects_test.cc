@@ -100,6 +100,14 @@ TEST(FindMovingObjects, LeavesTheLandBesideARoadThatFallsAway) {
   }
 }
 
+TEST(FindMovingObjects, LeavesAPitThatOtherViewsSeeFromLowerPlaces) {
+  // Their rays hardly fall, so that what they see through the plane is hardly below it.
+  const Result result =
+      PlaceFrom({.edge = 4.0, .fall = 3.0, .wall = 20.0, .height_elsewhere = 0.2});
+  EXPECT_EQ(result.num_objects, 0);
+  EXPECT_TRUE(IsUnchanged(result));
+}
+
 TEST(FindMovingObjects, LeavesWhatNoOtherViewTellsToBeGround) {
   const DrivingScene scene = CarAt(-2, 4, 0.75);
   EXPECT_TRUE(IsUnchanged(PlaceFrom(scene, {})));

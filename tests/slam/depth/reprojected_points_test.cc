@@ -28,10 +28,15 @@ SparseDepth NoPoints() {
   return {cv::Mat::zeros(size, CV_32F), cv::Mat::zeros(size, CV_32F)};
 }
 
-void Add(const std::vector<DepthView>& views, SparseDepth* sparse, int num_threads = 1) {
-  std::vector<const DepthView*> others;
-  for (const DepthView& view : views) others.push_back(&view);
-  AddReprojectedPoints(kPose, others, {}, sparse, num_threads);
+cv::Mat Gray(int value) {
+  return {kCamera.height(), kCamera.width(), CV_8UC3, cv::Scalar::all(value)};
+}
+
+void Add(const std::vector<DepthView>& views, SparseDepth* sparse, int num_threads = 1,
+         const cv::Mat& colors = Gray(100), const cv::Mat& others_colors = Gray(100)) {
+  std::vector<SeenView> others;
+  for (const DepthView& view : views) others.push_back({&view, &others_colors});
+  AddReprojectedPoints(kPose, colors, others, {}, sparse, num_threads);
 }
 
 int CountPoints(const SparseDepth& sparse) { return cv::countNonZero(sparse.range > 0); }
@@ -79,6 +84,44 @@ TEST(AddReprojectedPoints, LeavesOutWhatANearerPointHides) {
   sparse.confidence.at<float>(62, 100) = 0.7F;
   Add(OtherViews(), &sparse);
   EXPECT_EQ(cv::countNonZero(sparse.range(cv::Rect(84, 48, 30, 30))), 1);
+}
+
+TEST(AddReprojectedPoints, LeavesOutWhatLooksDifferentHere) {
+  SparseDepth everywhere = NoPoints();
+  Add(OtherViews(), &everywhere);
+  // Something dark that nobody measured stands before a part of the walls.
+  const cv::Rect dark(96, 42, 48, 30);  // Of whole squares.
+  cv::Mat colors = Gray(100);
+  colors(dark).setTo(cv::Scalar(100, 100, 40));
+  SparseDepth sparse = NoPoints();
+  Add(OtherViews(), &sparse, 1, colors);
+  EXPECT_GT(cv::countNonZero(everywhere.range(dark)), 30);
+  EXPECT_EQ(cv::countNonZero(sparse.range(dark)), 0);
+  everywhere.range(dark).setTo(0);
+  EXPECT_EQ(cv::norm(sparse.range, everywhere.range, cv::NORM_INF), 0);
+}
+
+TEST(AddReprojectedPoints, ExposureAndWhiteBalanceOfEachViewDoNotMatter) {
+  SparseDepth same = NoPoints();
+  Add(OtherViews(), &same);
+  SparseDepth sparse = NoPoints();
+  cv::Mat colors = Gray(0);
+  colors.setTo(cv::Scalar(40, 80, 160));
+  Add(OtherViews(), &sparse, 1, colors, Gray(120));
+  EXPECT_EQ(cv::norm(sparse.range, same.range, cv::NORM_INF), 0);
+}
+
+TEST(SurfaceColors, IsTheImageOfTheSizeOfTheDepthBlurred) {
+  cv::Mat image(64, 128, CV_8UC3, cv::Scalar(10, 20, 30));
+  image.colRange(64, 128).setTo(cv::Scalar(50, 60, 70));
+  const cv::Mat colors = SurfaceColors(image, {64, 32});
+  EXPECT_EQ(colors.size(), cv::Size(64, 32));
+  EXPECT_EQ(colors.type(), CV_8UC3);
+  EXPECT_EQ(colors.at<cv::Vec3b>(16, 10), cv::Vec3b(10, 20, 30));
+  EXPECT_EQ(colors.at<cv::Vec3b>(16, 50), cv::Vec3b(50, 60, 70));
+  const auto edge = colors.at<cv::Vec3b>(16, 31);
+  EXPECT_GT(edge[0], 10);
+  EXPECT_LT(edge[0], 50);
 }
 
 TEST(AddReprojectedPoints, OneViewAloneIsNotBelieved) {
