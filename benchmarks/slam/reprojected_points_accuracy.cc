@@ -35,8 +35,8 @@ constexpr double kDifferences[] = {
 
 struct Count {
   int right = 0;
-  int nearer = 0;
-  int farther = 0;  ///< Than the truth, or before the sky.
+  int nearer = 0;  ///< Than the truth, or before the sky.
+  int farther = 0;
 };
 
 void Add(const cv::Mat& range, const cv::Mat& truth, Count* count) {

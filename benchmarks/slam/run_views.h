@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <stdexcept>
 #include <utility>
 #include <vector>
-
-#include <opencv2/imgcodecs.hpp>
 
 #include "benchmarks/slam/sequence_folder.h"
 #include "slam/depth/depth_view.h"
@@ -25,7 +22,7 @@ struct RunView {
 };
 
 /// Reads the views of `orb360 run SEQUENCE --save-depth`: depth and confidence, ordered by frame.
-/// `min_error` as of DepthView. Throws std::runtime_error where the confidence cannot be read.
+/// `min_error` as of DepthView. Throws UserError where an image cannot be read.
 inline std::vector<RunView> ReadRunViews(const std::filesystem::path& sequence,
                                          const std::filesystem::path& run, double min_error) {
   const auto truth = ReadTrajectory(sequence / "groundtruth.txt");
@@ -39,13 +36,8 @@ inline std::vector<RunView> ReadRunViews(const std::filesystem::path& sequence,
       return std::abs(p.timestamp - truth[i].timestamp) < 1e-3;
     });
     if (pose == poses.end()) continue;
-    const cv::Mat levels = cv::imread((run / "confidence" / name).string(),
-                                      cv::IMREAD_ANYDEPTH | cv::IMREAD_GRAYSCALE);
-    if (levels.type() != CV_16U) {
-      throw std::runtime_error((run / "confidence" / name).string() + ": cannot be read");
-    }
-    DenseDepth depth{ReadDepthImage(run / "depth" / name), {}, {}};
-    levels.convertTo(depth.confidence, CV_32F, 1.0 / 65535);
+    DenseDepth depth{
+        ReadDepthImage(run / "depth" / name), ReadFractionImage(run / "confidence" / name), {}};
     DepthView view(depth, pose->world_from_camera, min_error);
     views.push_back({index, std::move(depth), std::move(view)});
   }

@@ -54,8 +54,8 @@ class Program {
   virtual TensorView Find(const ProgramMemory& memory, int value) const = 0;
 
   /// Returns the milliseconds of the last run's copies of inputs, instructions and copies of
-  /// outputs, in this order. Throws ContractError for memory of another program, and DeviceError
-  /// where a device fails. Contract: made with `measures_times`.
+  /// outputs, in this order; nothing before the first run. Throws ContractError for memory of
+  /// another program, and DeviceError where a device fails. Contract: made with `measures_times`.
   virtual std::vector<double> Times(const ProgramMemory& memory) const = 0;
 
   /// Bytes of the tensors and scratch of one run.

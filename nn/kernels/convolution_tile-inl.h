@@ -87,8 +87,8 @@ HWY_INLINE void MultiplyAdd(const float* HWY_RESTRICT x, const float* HWY_RESTRI
 }
 
 // Computes the sums of kPixels pixels; `in` is the first tap of the first one. Weights are those of
-// whole blocks, also where kVectors is half a one. `kInStep` is the
-// distance between the inputs of two pixels: the stride, in blocks if the input is blocked.
+// whole blocks, also where kVectors are half of one. `kInStep` is the distance between the inputs
+// of two pixels: the stride, in blocks if the input is blocked.
 template <int kVectors, int kPixels, int kInStep>
 HWY_INLINE void SumTile(const TileSource& source, const float* in, V (&sum)[kVectors][kPixels]) {
   constexpr bool kIsPlanar = kInStep < kBlock;

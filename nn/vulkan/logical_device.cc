@@ -70,6 +70,11 @@ void LogicalDevice::Check(VkResult result, const char* action) const {
   throw DeviceError(name_ + " could not " + action + ": " + Reason(result));
 }
 
+void LogicalDevice::RequireClock() const {
+  if (clock_.bits > 0) return;
+  throw DeviceError(name_ + " could not measure times: it has no clock");
+}
+
 void LogicalDevice::RunAndWait(VkCommandBuffer commands, VkFence fence) const {
   VkSubmitInfo submit{};
   submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;

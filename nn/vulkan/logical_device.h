@@ -32,6 +32,8 @@ class LogicalDevice {
   VkDevice handle() const { return device_.get(); }
   std::uint32_t queue_family() const { return queue_family_; }
   const DeviceClock& clock() const { return clock_; }
+  /// Throws DeviceError where there is no clock.
+  void RequireClock() const;
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
 
   /// Throws DeviceError unless `result` is success. `action` completes "could not ...".

@@ -73,18 +73,21 @@ double MeasureOperations(const std::shared_ptr<const LogicalDevice>& device) {
 }
 
 double MeasureBandwidth(const LogicalDevice& device) {
-  constexpr std::size_t kBytes = std::size_t{64} << 20;
-  const Buffer from(device, kBytes, BufferUse::kDevice);
-  const Buffer to(device, kBytes, BufferUse::kDevice);
-  const double time = LeastTime(device, [&](Commands* commands) {
-    commands->CopyBuffer(from.get(), 0, to.get(), 0, kBytes);
-  });
-  return 2.0 * kBytes / (1e6 * time);
+  // More than any cache holds, and little of the memory.
+  constexpr std::uint64_t kEnough = std::uint64_t{256} << 20;
+  const auto bytes = static_cast<std::size_t>(
+      std::min(kEnough, device.description().memory_bytes / 8) / sizeof(float) * sizeof(float));
+  const Buffer from(device, bytes, BufferUse::kDevice);
+  const Buffer to(device, bytes, BufferUse::kDevice);
+  const double time = LeastTime(
+      device, [&](Commands* commands) { commands->CopyBuffer(from.get(), 0, to.get(), 0, bytes); });
+  return 2.0 * static_cast<double>(bytes) / (1e6 * time);
 }
 
 }  // namespace
 
 DevicePeaks MeasurePeaks(const std::shared_ptr<const LogicalDevice>& device) {
+  device->RequireClock();
   return {MeasureOperations(device), MeasureBandwidth(*device)};
 }
 

@@ -13,9 +13,7 @@ constexpr const char* kAction = "measure times";
 
 Timestamps::Timestamps(const LogicalDevice& device, std::uint32_t count)
     : device_(device), count_(count) {
-  if (device.clock().bits == 0) {
-    throw DeviceError(device.name() + " could not " + kAction + ": it has no clock");
-  }
+  ORB360_CHECK(device.clock().bits > 0);
   VkQueryPoolCreateInfo info{};
   info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
   info.queryType = VK_QUERY_TYPE_TIMESTAMP;

@@ -11,8 +11,8 @@ namespace orb360::nn::vulkan {
 /// Times that a list of commands writes on the device.
 class Timestamps {
  public:
-  /// `count`: of the times that the list will write. Throws DeviceError where the device has no
-  /// clock for its commands.
+  /// `count`: of the times that the list will write. Throws DeviceError where the driver fails.
+  /// Contract: the device has a clock.
   Timestamps(const LogicalDevice& device, std::uint32_t count);
 
   /// Begins the list: forgets the times of the run before.

@@ -87,6 +87,7 @@ VulkanProgram::VulkanProgram(const Graph& graph, std::span<const FusedNode> node
       lowered_(std::move(lowered)),
       assignment_(AssignBuffers(lowered_, ScratchOf(lowered_, nodes), options.keeps_values)),
       options_(options) {
+  if (options.measures_times) device_->RequireClock();
   RequireBufferOf(*device_, assignment_.bytes);
   Constants constants;
   for (std::size_t i = 0; i < lowered_.instructions.size(); ++i) {

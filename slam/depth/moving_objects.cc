@@ -54,9 +54,9 @@ struct Sightings {
     const double range = RangeAlong(view, (seen / distance).cast<float>());
     if (!(range > 0)) return;
     const double farther = range / distance - 1;
-    if (farther > options.max_farther) {
+    if (farther > options.max_relative_farther) {
       ++through;
-    } else if (farther > -options.max_nearer) {
+    } else if (farther > -options.max_relative_nearer) {
       ++ground;
     }
   }

@@ -24,10 +24,11 @@ struct MovingObjectOptions {
   double min_range_ratio = 1.85;
   /// Least solid angle of the part of an object that is below the ground, sr.
   double min_solid_angle = 5e-4;
-  /// Another view sees the ground where its range is that of the plane up to these ratios. What is
-  /// a little nearer is higher ground; what is a little farther is often the wall of a pit.
-  double max_nearer = 0.25;
-  double max_farther = 0.1;
+  /// Another view sees the ground where its range is that of the plane up to these relative
+  /// differences. What is a little nearer is higher ground; what is a little farther is often the
+  /// wall of a pit.
+  double max_relative_nearer = 0.25;
+  double max_relative_farther = 0.1;
   /// How often other views must see the ground where the object hides it, for each time that they
   /// look through it at something farther away. Where the land falls away they always look through;
   /// where an object moves along, only those that have it in the same direction.

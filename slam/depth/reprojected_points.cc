@@ -109,14 +109,24 @@ cv::Mat NearestOfSquares(const cv::Mat& range, int spacing) {
 cv::Mat SurfaceColors(const cv::Mat& image, cv::Size size) {
   cv::Mat colors;
   cv::resize(image, colors, size, 0, 0, cv::INTER_AREA);
-  cv::GaussianBlur(colors, colors, {5, 5}, 0);
-  return colors;
+  constexpr int kReach = 2;
+  cv::Mat wide;
+  cv::copyMakeBorder(colors, wide, 0, 0, kReach, kReach, cv::BORDER_WRAP);
+  cv::GaussianBlur(wide, wide, {2 * kReach + 1, 2 * kReach + 1}, 0);
+  return wide.colRange(kReach, kReach + size.width).clone();
 }
 
 void AddReprojectedPoints(const Rigid3& world_from_camera, const cv::Mat& colors,
                           std::span<const SeenView> others, const ReprojectionOptions& options,
                           SparseDepth* sparse, int num_threads) {
   ORB360_CHECK(options.spacing > 0 && options.step > 0, options.spacing, options.step);
+  ORB360_CHECK(colors.type() == CV_8UC3 && colors.size() == sparse->range.size(), colors.type(),
+               colors.size());
+  for (const SeenView& other : others) {
+    ORB360_CHECK(other.colors->type() == CV_8UC3 &&
+                     other.colors->size() == cv::Size(other.depth->width(), other.depth->height()),
+                 other.colors->type(), other.colors->size());
+  }
   const EquirectangularCamera camera(sparse->range.cols, sparse->range.rows);
   const cv::Mat own = NearestOfSquares(sparse->range, options.spacing);
   cv::Mat around;  // The nearest within two squares.

@@ -29,8 +29,8 @@ struct ReprojectionOptions {
   SparseDepthOptions sparse = {};
 };
 
-/// The colours of surfaces around each pixel: those of an image, resampled to `size` and blurred,
-/// so that they are compared between views at different distances. CV_8UC3.
+/// Returns the colours of surfaces around each pixel, CV_8UC3: those of a panorama (CV_8UC3),
+/// resampled to `size` and blurred, so that views at different distances can be compared.
 cv::Mat SurfaceColors(const cv::Mat& image, cv::Size size);
 
 /// What another view sees.
@@ -41,7 +41,8 @@ struct SeenView {
 
 /// Adds points that other views measured to the sparse depth of a view at `world_from_camera`: in
 /// each square without a point the nearest range on which two of them agree, where this view shows
-/// the same colours (`colors`: its SurfaceColors).
+/// the same colours. `colors`: its SurfaceColors, of the size of `sparse`.
+/// Contract: the types and sizes of colours.
 void AddReprojectedPoints(const Rigid3& world_from_camera, const cv::Mat& colors,
                           std::span<const SeenView> others, const ReprojectionOptions& options,
                           SparseDepth* sparse, int num_threads = 1);

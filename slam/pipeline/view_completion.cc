@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <functional>
 #include <future>
 #include <limits>
@@ -12,6 +11,7 @@
 #include "slam/depth/dense_ground.h"
 #include "slam/depth/ground_points.h"
 #include "slam/depth/occluding_boundary.h"
+#include "slam/pipeline/fifo_cache.h"
 #include "slam/pipeline/view_ranges.h"
 #include "slam/pipeline/view_selection.h"
 
@@ -26,71 +26,18 @@ constexpr double kBoundaryError = 1.0;
 // state 1. It gives that the range of the roofs around it.
 constexpr double kSkyError = 0.5;
 
-/// A view of the first pass, and the colours that it sees.
-struct SeenDepth {
-  DepthView depth;
-  cv::Mat colors;
-};
+constexpr size_t kRecentViews = 48;  // 4 MB each for 1024 x 512 pixels
 
-/// The views of the first pass that were used last.
-class RecentViews {
- public:
-  RecentViews(std::span<const DenseView> views, const DepthMapStore& store,
-              const ImageStore& images)
-      : views_(views), store_(store), images_(images) {}
+/// Views of the first pass, which live as long as this.
+using LoadedViews = std::vector<std::shared_ptr<const DepthView>>;
 
-  std::shared_ptr<const SeenDepth> Get(size_t index) {
-    const auto found = std::ranges::find(recent_, index, &Entry::index);
-    if (found != recent_.end()) return found->view;
-    if (recent_.size() >= kCapacity) recent_.pop_front();
-    const DenseView& view = views_[index];
-    const DenseDepth depth = store_.Get(view.frame_index);
-    recent_.push_back(
-        {index, std::make_shared<const SeenDepth>(
-                    DepthView(depth, view.world_from_camera, kMinError),
-                    SurfaceColors(images_.Get(view.frame_index), depth.range.size()))});
-    return recent_.back().view;
-  }
-
- private:
-  static constexpr size_t kCapacity = 48;  // 4 MB each for 1024 x 512 pixels
-
-  struct Entry {
-    size_t index;
-    std::shared_ptr<const SeenDepth> view;
-  };
-
-  std::span<const DenseView> views_;
-  const DepthMapStore& store_;
-  const ImageStore& images_;
-  std::deque<Entry> recent_;
-};
-
-/// Views that a function looks at, which live as long as this.
-using LoadedViews = std::vector<std::shared_ptr<const SeenDepth>>;
-
-std::vector<const DepthView*> DepthsOf(const LoadedViews& loaded) {
-  std::vector<const DepthView*> depths;
-  for (const auto& view : loaded) depths.push_back(&view->depth);
-  return depths;
+std::vector<const DepthView*> PointersTo(const LoadedViews& loaded) {
+  std::vector<const DepthView*> views;
+  for (const auto& view : loaded) views.push_back(view.get());
+  return views;
 }
 
-std::vector<SeenView> SeenBy(const LoadedViews& loaded) {
-  std::vector<SeenView> seen;
-  for (const auto& view : loaded) seen.push_back({&view->depth, &view->colors});
-  return seen;
-}
-
-LoadedViews LoadByDistance(std::span<const DenseView> views, size_t reference,
-                           std::span<const size_t> neighbours, std::vector<double> distances,
-                           double unit, double max_ratio, RecentViews* recent) {
-  for (double& distance : distances) distance *= unit;
-  LoadedViews loaded;
-  for (const size_t i : ChooseViewsByDistance(views, reference, neighbours, distances, max_ratio)) {
-    loaded.push_back(recent->Get(i));
-  }
-  return loaded;
-}
+cv::Size SizeOf(const EquirectangularCamera& camera) { return {camera.width(), camera.height()}; }
 
 InverseRanges NothingMeasured(cv::Size size) {
   return {cv::Mat::zeros(size, CV_32F), cv::Mat::zeros(size, CV_32F)};
@@ -112,7 +59,7 @@ ObjectsOnGround FindObjects(const DenseDepth& depth, const DepthView& view,
   const cv::Mat below = FindBelowGround(view, *ground, options.objects);
   if (cv::countNonZero(below) == 0) return {};
   const LoadedViews others = others_at(std::exp(ground->log_height));
-  return {FindMovingObjects(below, view, *ground, DepthsOf(others), options.objects), ground};
+  return {FindMovingObjects(below, view, *ground, PointersTo(others), options.objects), ground};
 }
 
 /// One view before the network completes it.
@@ -142,7 +89,16 @@ class ViewPreparation {
         camera_(camera),
         num_threads_(num_threads),
         first_(first),
-        recent_(views, first, images) {}
+        depths_(kRecentViews,
+                [this](size_t i) {
+                  return std::make_shared<const DepthView>(first_.Get(views_[i].frame_index),
+                                                           views_[i].world_from_camera, kMinError);
+                }),
+        colors_(kRecentViews, [this](size_t i) {
+          return SurfaceColors(images_.Get(views_[i].frame_index), SizeOf(camera_));
+        }) {}
+  ViewPreparation(const ViewPreparation&) = delete;
+  ViewPreparation& operator=(const ViewPreparation&) = delete;
 
   PreparedView Prepare(size_t i, bool is_interrupted) {
     const DenseView& view = views_[i];
@@ -152,28 +108,29 @@ class ViewPreparation {
     InverseRanges measured = has_stereo ? MeasuredOf(depth) : NothingMeasured(depth.range.size());
     std::vector<size_t> neighbours = neighbours_of_(i);
     std::erase_if(neighbours, [&](size_t n) { return !first_.Contains(views_[n].frame_index); });
-    const auto load = [&](const std::vector<double>& distances, double unit) {
-      return LoadByDistance(views_, i, neighbours, distances, unit, second.max_distance_ratio,
-                            &recent_);
+    const auto choose = [&](std::vector<double> distances, double unit) {
+      for (double& distance : distances) distance *= unit;
+      return ChooseViewsByDistance(views_, i, neighbours, distances, second.max_distance_ratio);
     };
     ObjectsOnGround found;
     if (up_ && !is_interrupted) {
-      found = FindObjects(depth, recent_.Get(i)->depth, *up_, second,
-                          [&](double height) { return load(second.ground_distances, height); });
+      found = FindObjects(depth, *depths_.Get(i), *up_, second, [&](double height) {
+        LoadedViews loaded;
+        for (const size_t other : choose(second.ground_distances, height)) {
+          loaded.push_back(depths_.Get(other));
+        }
+        return loaded;
+      });
     }
     const cv::Mat moving = MaskOf(found.objects, depth.range.size());
     measured.value.setTo(0, moving);
     SparseDepth sparse = RenderSparseDepth(landmarks_of_(view), camera_);
     SampleSquares(measured, options_.sparse_spacing, 0, options_.sparse, &sparse);
     const bool is_completed = has_stereo && !is_interrupted;
+    const cv::Mat color = images_.Get(view.frame_index);
     if (is_completed) {
       const double range = TrustedRange(depth, options_.min_trusted_confidence);
-      const LoadedViews others = load(second.distances, range);
-      AddReprojectedPoints(view.world_from_camera, recent_.Get(i)->colors, SeenBy(others),
-                           {.spacing = options_.sparse_spacing,
-                            .max_error = kLargestMeasuredError,
-                            .sparse = options_.sparse},
-                           &sparse, num_threads_);
+      AddPointsOf(choose(second.distances, range), view, color, &sparse);
       if (up_ && options_.camera_height > 0) {
         AddGroundPoints(view.world_from_camera.rotation.inverse() * *up_, options_.camera_height,
                         {.sparse = options_.sparse}, &sparse);
@@ -185,11 +142,28 @@ class ViewPreparation {
             .measured = std::move(measured),
             .found = std::move(found),
             .sparse = std::move(sparse),
-            .color = images_.Get(view.frame_index),
+            .color = color,
             .is_completed = is_completed};
   }
 
  private:
+  void AddPointsOf(std::span<const size_t> others, const DenseView& view, const cv::Mat& color,
+                   SparseDepth* sparse) {
+    LoadedViews depths;
+    std::vector<cv::Mat> colors;
+    for (const size_t other : others) {
+      depths.push_back(depths_.Get(other));
+      colors.push_back(colors_.Get(other));
+    }
+    std::vector<SeenView> seen;
+    for (size_t k = 0; k < depths.size(); ++k) seen.push_back({depths[k].get(), &colors[k]});
+    AddReprojectedPoints(view.world_from_camera, SurfaceColors(color, SizeOf(camera_)), seen,
+                         {.spacing = options_.sparse_spacing,
+                          .max_error = kLargestMeasuredError,
+                          .sparse = options_.sparse},
+                         sparse, num_threads_);
+  }
+
   std::span<const DenseView> views_;
   const NeighbourFinder& neighbours_of_;
   const LandmarkProjector& landmarks_of_;
@@ -199,7 +173,8 @@ class ViewPreparation {
   const EquirectangularCamera& camera_;
   int num_threads_;
   const DepthMapStore& first_;
-  RecentViews recent_;
+  FifoCache<std::shared_ptr<const DepthView>> depths_;
+  FifoCache<cv::Mat> colors_;  // SurfaceColors
 };
 
 /// Completes a view by the network, and keeps what was measured.

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <map>
 #include <optional>
 
+#include "slam/pipeline/fifo_cache.h"
 #include "slam/pipeline/view_completion.h"
 #include "slam/pipeline/view_ranges.h"
 #include "slam/pipeline/view_selection.h"
@@ -16,31 +16,7 @@ namespace {
 /// Where one side of the path has no source view, the other side gives those at this multiple of
 /// the baselines, about the root of their ratio: views beside each other have the same errors.
 constexpr double kBetweenBaselines = 1.8;
-
-/// The images of frames that were used last.
-class GrayImages {
- public:
-  explicit GrayImages(const ImageStore& store) : store_(store) {}
-
-  cv::Mat Get(int frame_index) {
-    const auto found = std::ranges::find(images_, frame_index, &Entry::frame_index);
-    if (found != images_.end()) return found->gray;
-    if (images_.size() >= kCapacity) images_.pop_front();
-    images_.push_back({frame_index, store_.GetGray(frame_index)});
-    return images_.back().gray;
-  }
-
- private:
-  static constexpr size_t kCapacity = 32;
-
-  struct Entry {
-    int frame_index;
-    cv::Mat gray;
-  };
-
-  const ImageStore& store_;
-  std::deque<Entry> images_;
-};
+constexpr size_t kRecentImages = 32;
 
 // Length of the path in each map.
 std::map<int, double> PathLengths(std::span<const DenseView> views) {
@@ -63,9 +39,10 @@ ViewDepthReport MeasureViews(std::span<const DenseView> views, const NeighbourFi
                              const ViewProgress& progress) {
   std::optional<PlaneHypothesis> ground;
   if (up && options.camera_height > 0) ground = {*up, options.camera_height};
-  GrayImages gray(images);
-  const auto stereo_view = [&](const DenseView& view) {
-    return StereoView{gray.Get(view.frame_index), view.world_from_camera};
+  FifoCache<cv::Mat> gray(kRecentImages,
+                          [&](size_t i) { return images.GetGray(views[i].frame_index); });
+  const auto stereo_view = [&](size_t i) {
+    return StereoView{gray.Get(i), views[i].world_from_camera};
   };
   const auto count = static_cast<int>(views.size());
   ViewDepthReport report;
@@ -95,12 +72,13 @@ ViewDepthReport MeasureViews(std::span<const DenseView> views, const NeighbourFi
     if (uses_stereo) {
       std::vector<StereoView> sources;
       for (const size_t source : ChooseStereoSources(views, i, neighbours_of(i), range, options)) {
-        sources.push_back(stereo_view(views[source]));
+        sources.push_back(stereo_view(source));
       }
       if (static_cast<int>(sources.size()) < options.stereo.fusion.min_support) {
         ++report.without_sources;
       } else {
-        seen = MatchSpheres(stereo_view(view), sources, options.stereo, num_threads, ground);
+        seen = MatchSpheres(stereo_view(static_cast<size_t>(i)), sources, options.stereo,
+                            num_threads, ground);
         is_measured = SampleSquares(seen, options.sparse_spacing, options.min_fraction,
                                     options.sparse, &sparse);
         ++(is_measured ? report.measured : report.unseen);

@@ -27,7 +27,7 @@ class NoKernels : public Backend {
     return CpuNeedsOf(graph, node, precision_);
   }
   std::unique_ptr<const Program> MakeProgram(const Graph&, std::span<const FusedNode>, Lowered, int,
-                                             int, bool) const override {
+                                             int, const ProgramOptions&) const override {
     return nullptr;
   }
 

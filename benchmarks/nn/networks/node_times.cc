@@ -1,6 +1,7 @@
 #include "benchmarks/nn/networks/node_times.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <string>
@@ -31,8 +32,11 @@ std::map<std::string, Work> WorkOf(const Graph& graph, const Device& device, int
 }
 
 void PrintRow(const std::string& name, const Work& work, double milliseconds, const Peaks& peaks) {
-  const double speed = 1e-6 * static_cast<double>(work.cost.operations) / milliseconds;
-  const double bandwidth = 1e-6 * static_cast<double>(work.cost.bytes) / milliseconds;
+  const auto per_second = [&](std::int64_t count) {
+    return milliseconds > 0 ? 1e-6 * static_cast<double>(count) / milliseconds : 0.0;
+  };
+  const double speed = per_second(work.cost.operations);
+  const double bandwidth = per_second(work.cost.bytes);
   std::printf("| %-28s | %-24s | %8.3f | %8.1f | %3.0f %% | %6.1f | %3.0f %% |\n", name.c_str(),
               work.operation.c_str(), milliseconds, speed, 100 * speed / peaks.fma, bandwidth,
               100 * bandwidth / peaks.bandwidth);
@@ -43,7 +47,7 @@ void PrintRow(const std::string& name, const Work& work, double milliseconds, co
 void PrintNodeTimes(const Graph& graph, const Executor& executor, const Device& device, int height,
                     const Executor::Workspace& workspace, int runs, const Peaks& peaks,
                     const std::function<void()>& run) {
-  run();  // The first one also compiles shaders and touches memory.
+  run();  // The first one also touches memory.
   std::vector<Executor::Time> least;
   for (int i = 0; i < runs; ++i) {
     run();

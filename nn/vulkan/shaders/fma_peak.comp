@@ -13,7 +13,9 @@ layout(push_constant) uniform Parameters {
 
 void main() {
   vec4 sums[16];
-  [[unroll]] for (int i = 0; i < 16; ++i) sums[i] = vec4(gl_GlobalInvocationID.x) + vec4(i);
+  [[unroll]] for (int i = 0; i < 16; ++i) {
+    sums[i] = vec4(gl_GlobalInvocationID.x + i) + vec4(0.0, 0.25, 0.5, 0.75);
+  }
   for (int repetition = 0; repetition < repetitions; ++repetition) {
     [[unroll]] for (int i = 0; i < 16; ++i) sums[i] = fma(sums[i], vec4(factor), vec4(addend));
   }

@@ -30,7 +30,8 @@ struct ExecutorOptions {
   /// Runs every node by itself and keeps its result (Executor::Find). This is for inspection and is
   /// slow.
   bool keeps_tensors = false;
-  /// Measures how long each node takes (Executor::Times). DeviceError where a device cannot.
+  /// Measures how long each node takes (Executor::Times). The constructor throws DeviceError where
+  /// a device cannot.
   bool measures_times = false;
 };
 
@@ -89,8 +90,9 @@ class Executor {
   };
   /// Returns the times of the last run in `workspace`, in order: of the copies of inputs, of nodes
   /// and copies between them, and of the copies of outputs. A node stands for those that were
-  /// merged with it. On a graphics processor they are the device's own.
-  /// Contract: measures_times was set.
+  /// merged with it. On a graphics processor they are the device's own. Empty before the first run.
+  /// Throws ContractError for a workspace of another executor, and DeviceError where a device
+  /// fails. Contract: measures_times was set.
   std::vector<Time> Times(const Workspace& workspace) const;
 
   /// Returns the bytes of a workspace, in which tensors share memory.
