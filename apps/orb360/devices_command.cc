@@ -111,7 +111,8 @@ nlohmann::json Describe(const nn::VulkanDevice& device) {
           {"float16", device.has_float16},
           {"problem", device.problem},
           {"milliseconds", nullptr},
-          {"milliseconds_float16", nullptr}};
+          {"milliseconds_float16", nullptr},
+          {"problem_float16", ""}};
 }
 
 std::string TimeText(const nlohmann::json& device) {
@@ -119,7 +120,11 @@ std::string TimeText(const nlohmann::json& device) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1f ms", device["milliseconds"].get<double>());
   const auto halves = device.find("milliseconds_float16");
-  if (halves == device.end() || halves->is_null()) return text;
+  if (halves == device.end()) return text;
+  if (halves->is_null()) {
+    const auto problem = device["problem_float16"].get<std::string>();
+    return problem.empty() ? text : text + (", with --float16: " + problem);
+  }
   char more[48];
   std::snprintf(more, sizeof more, ", %.1f ms with --float16", halves->get<double>());
   return std::string(text) + more;
@@ -156,7 +161,9 @@ int ListDevices(const DevicesOptions& options) {
       const auto name = described["device"].get<std::string>();
       described.update(Measure(graph, options, name));
       if (device.has_float16) {
-        described["milliseconds_float16"] = Measure(graph, options, name, true)["milliseconds"];
+        const nlohmann::json halves = Measure(graph, options, name, true);
+        described["milliseconds_float16"] = halves["milliseconds"];
+        described["problem_float16"] = halves.value("problem", "");
       }
     }
     devices.push_back(std::move(described));

@@ -171,6 +171,22 @@ TEST_F(DeviceTest, ADeviceThatCannotBeOpenedIsToldInOneLine) {
   }
 }
 
+TEST_F(DeviceTest, WhatFailsWithHalvesOnlyIsListedBesideTheTime) {
+  if (!HasVulkan()) GTEST_SKIP() << kNoDevice;
+  // Floats take 23 submissions, those of the weights, of a first run and of 21 measured ones.
+  const Environment environment(FailingDriver(30));
+  const nlohmann::json found = Devices()["devices"][1];
+  if (!found["float16"].get<bool>()) GTEST_SKIP() << "the device has no 16-bit floats";
+  EXPECT_GT(found["milliseconds"], 0.0);
+  EXPECT_EQ(found["problem"], "");
+  EXPECT_TRUE(found["milliseconds_float16"].is_null());
+  EXPECT_THAT(found["problem_float16"].get<std::string>(), HasSubstr("the device was lost"));
+  const ProgramResult text =
+      RunOrb360({"devices", "--weights", folder_ / "net.h5", "--size", "64", "32"});
+  EXPECT_THAT(text.out, testing::ContainsRegex("vulkan:0 .* ms, with --float16: vulkan:0 .*"
+                                               "the device was lost"));
+}
+
 TEST_F(DeviceTest, WhatADeviceLacksIsToldInOneLine) {
   if (!HasVulkan()) GTEST_SKIP() << kNoDevice;
   const std::map<std::string, std::string> reasons = {
