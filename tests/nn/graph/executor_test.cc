@@ -1,4 +1,3 @@
-#include <chrono>
 #include <cmath>
 #include <thread>
 
@@ -9,6 +8,7 @@
 #include "tests/nn/graph/network_run.h"
 #include "tests/nn/graph/node_check.h"
 #include "tests/nn/graph/random_network.h"
+#include "tests/nn/graph/run_times.h"
 #include "tests/nn/reference_interpreter.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/nn/graph/executor.h>
@@ -210,31 +210,9 @@ TEST(Executor, ChecksTheSizesOfWhatItIsGiven) {
 
 TEST(Executor, MeasuresTheTimesOfAllPartsOfARun) {
   const Graph graph = RandomNetwork(40, 2).Build();
-  const std::vector<PlainImage> inputs = RandomInputs(64, 128, 1);
-  const Executor executor(graph, 64, 128, {.measures_times = true});
-  Executor::Workspace workspace(executor);
-  EXPECT_TRUE(executor.Times(workspace).empty());  // before a run
-  NetworkRun run(executor, inputs);
-  for (int i = 0; i < 2; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    run(executor, &workspace);
-    const std::chrono::duration<double, std::milli> passed =
-        std::chrono::steady_clock::now() - start;
-    const std::vector<Executor::Time> times = executor.Times(workspace);
-    ASSERT_GT(times.size(), 2U);
-    EXPECT_EQ(times.front().name, "inputs");
-    EXPECT_EQ(times.back().name, "outputs");
-    double sum = 0;
-    for (const Executor::Time& time : times) {
-      EXPECT_GE(time.milliseconds, 0) << time.name;
-      sum += time.milliseconds;
-    }
-    EXPECT_GT(sum, 0);
-    EXPECT_LE(sum, passed.count());
-  }
-  EXPECT_EQ(run.outputs, RunOnce(Executor(graph, 64, 128), inputs));
-  const Executor other(graph, 64, 128);
-  EXPECT_THROW(other.Times(Executor::Workspace(other)), ContractError);
+  ExpectTimesOfAllParts(graph, 64, 128, {});
+  const Executor executor(graph, 64, 128);
+  EXPECT_THROW(executor.Times(Executor::Workspace(executor)), ContractError);
 }
 
 TEST(Executor, RefusesAWorkspaceOfAnotherExecutor) {

@@ -1,7 +1,6 @@
 // Whole networks on a Vulkan device.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include "tests/nn/graph/network_run.h"
 #include "tests/nn/graph/random_network.h"
 #include "tests/nn/graph/reference_check.h"
+#include "tests/nn/graph/run_times.h"
 #include "tests/nn/vulkan/vulkan_fixture.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/nn/graph/network_file.h>
@@ -67,30 +67,7 @@ TEST_F(VulkanProgramTest, AgreesWithTheCpuOnRandomNetworks) {
 }
 
 TEST_F(VulkanProgramTest, MeasuresTheTimesOfAllPartsOfARun) {
-  const Graph graph = RandomNetwork(60, 3).Build();
-  const std::vector<PlainImage> inputs = RandomInputs(16, 32, 1);
-  ExecutorOptions how = options();
-  how.measures_times = true;
-  const Executor executor(graph, 16, 32, how);
-  Executor::Workspace workspace(executor);
-  EXPECT_TRUE(executor.Times(workspace).empty());  // before a run
-  NetworkRun run(executor, inputs);
-  for (int i = 0; i < 3; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    run(executor, &workspace);
-    const std::chrono::duration<double, std::milli> passed =
-        std::chrono::steady_clock::now() - start;
-    const std::vector<Executor::Time> times = executor.Times(workspace);
-    ASSERT_GT(times.size(), 2U);
-    EXPECT_EQ(times.front().name, "inputs");
-    EXPECT_EQ(times.back().name, "outputs");
-    double sum = 0;
-    for (const Executor::Time& time : times) sum += time.milliseconds;
-    // Both clocks run at the same speed up to some parts in ten thousand.
-    EXPECT_GT(sum, 0);
-    EXPECT_LE(sum, 1.01 * passed.count());
-  }
-  EXPECT_EQ(run.outputs, RunOnce(Executor(graph, 16, 32, options()), inputs));
+  ExpectTimesOfAllParts(RandomNetwork(60, 3).Build(), 16, 32, options());
 }
 
 TEST_F(VulkanProgramTest, PeaksOfTheDeviceCanBeMeasured) {
