@@ -32,7 +32,7 @@ VARIANTS = {
     "complete": "",
     "without the image": "image",
     "without the latitude": "latitude level",
-    "without the points beside their first estimate": "points.off points.c",
+    "without the points beside their first estimate": "points.off",
     "without the first estimate (the points instead)": "propagated certainty trust",
     "first estimate as an input only": "trust",
     "without residual blocks": " ".join(
