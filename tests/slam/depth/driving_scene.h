@@ -35,7 +35,11 @@ struct DrivingScene {
   /// Height of the camera elsewhere: it has come up to the origin on a ramp that it does not see.
   double height_elsewhere = kHeight;
 
+  /// What views elsewhere see of the ground is higher by this, as on a bumpy road.
+  double bump = 0;
+
   double HeightAt(double x) const { return x == 0 ? kHeight : height_elsewhere; }
+  double HeightOverGroundAt(double x) const { return HeightAt(x) - (x == 0 ? 0 : bump); }
 
   Rigid3 CameraAt(double x) const {
     return {Eigen::Quaterniond(Eigen::AngleAxisd(0.1 * x, Eigen::Vector3d::UnitZ())),
@@ -45,7 +49,7 @@ struct DrivingScene {
   /// The true range along a ray; of the sky kSky.
   double Range(double camera_x, const Eigen::Vector3d& ray) const {
     const double on_box = RangeOfBox(camera_x, ray);
-    return on_box > 0 ? on_box : RangeAtRest(HeightAt(camera_x), ray);
+    return on_box > 0 ? on_box : RangeAtRest(HeightOverGroundAt(camera_x), ray);
   }
 
   /// 0 where a ray does not meet the box.
@@ -70,7 +74,7 @@ struct DrivingScene {
             CameraAt(camera_x).rotation * camera.Bearing({column + 0.5, row + 0.5});
         const double on_box = RangeOfBox(camera_x, ray);
         const double range =
-            on_box > 0 ? on_box / (1 - box->speed) : RangeAtRest(HeightAt(camera_x), ray);
+            on_box > 0 ? on_box / (1 - box->speed) : RangeAtRest(HeightOverGroundAt(camera_x), ray);
         depth.range.at<float>(row, column) = static_cast<float>(range);
         if (range == kSky) depth.confidence.at<float>(row, column) = 0.1F;
       }

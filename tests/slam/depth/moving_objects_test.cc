@@ -108,6 +108,15 @@ TEST(FindMovingObjects, LeavesAPitThatOtherViewsSeeFromLowerPlaces) {
   EXPECT_TRUE(IsUnchanged(result));
 }
 
+TEST(FindMovingObjects, GroundThatIsALittleHigherIsGroundAndALittleLowerIsNone) {
+  // By a seventh of the range.
+  DrivingScene scene = CarAt(-2, 4, 0.75);
+  scene.bump = 0.2;
+  EXPECT_EQ(PlaceFrom(scene).num_objects, 1);
+  scene.bump = -0.2;
+  EXPECT_TRUE(IsUnchanged(PlaceFrom(scene)));
+}
+
 TEST(FindMovingObjects, LeavesWhatNoOtherViewTellsToBeGround) {
   const DrivingScene scene = CarAt(-2, 4, 0.75);
   EXPECT_TRUE(IsUnchanged(PlaceFrom(scene, {})));
