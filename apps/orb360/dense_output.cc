@@ -53,7 +53,8 @@ void SaveDepth(const std::filesystem::path& folder, const DepthMapStore& store,
   RemoveSavedDepth(folder);
   const std::filesystem::path ranges = folder / Dataset::kDepthName;
   const std::filesystem::path confidences = folder / Dataset::kConfidenceName;
-  for (const std::filesystem::path& images : {ranges, confidences}) {
+  const std::filesystem::path sources = folder / Dataset::kSourceName;
+  for (const std::filesystem::path& images : {ranges, confidences, sources}) {
     std::error_code error;
     std::filesystem::create_directories(images, error);
     if (error) ThrowWriteError(images, error.value());
@@ -64,6 +65,7 @@ void SaveDepth(const std::filesystem::path& folder, const DepthMapStore& store,
     const DenseDepth depth = store.Get(view.frame_index);
     WriteDepthImage(ranges / name, depth.range);
     WriteFractionImage(confidences / name, depth.confidence);
+    WriteSourceImage(sources / name, depth.source);
   }
 }
 
@@ -73,7 +75,7 @@ void RemoveSavedDepth(const std::filesystem::path& folder) {
     const std::string index = path.stem().string();
     return path.extension() == ".png" && index.find_first_not_of("0123456789") == std::string::npos;
   };
-  for (const char* name : {Dataset::kDepthName, Dataset::kConfidenceName}) {
+  for (const char* name : {Dataset::kDepthName, Dataset::kConfidenceName, Dataset::kSourceName}) {
     std::error_code error;
     std::vector<std::filesystem::path> images;
     for (const auto& entry : std::filesystem::directory_iterator(folder / name, error)) {

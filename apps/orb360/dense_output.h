@@ -30,9 +30,10 @@ DenseOutput WriteDenseOutput(const std::filesystem::path& folder, const DepthMap
                              std::span<const DenseView> views, const DenseCloudOptions& options,
                              bool has_mesh);
 
-/// Writes the ranges of every view, in the final unit of the world, into `folder`/depth, and their
-/// confidence into `folder`/confidence, each as a 16-bit PNG (WriteDepthImage, WriteFractionImage),
-/// which is named by the index of the frame. Images of an earlier run are removed.
+/// Writes the ranges of every view, in the final unit of the world, into `folder`/depth, their
+/// confidence into `folder`/confidence and their source into `folder`/source, each as a PNG
+/// (slam/io/depth_image.h) that is named by the index of the frame. Images of an earlier run are
+/// removed.
 void SaveDepth(const std::filesystem::path& folder, const DepthMapStore& store,
                std::span<const DenseView> views);
 

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/orb360/commands.h"
+#include "apps/orb360/depth_report.h"
 #include "apps/orb360/evaluation_report.h"
 #include "slam/evaluation/cloud_folder.h"
 #include "slam/evaluation/depth_folder.h"
@@ -135,8 +136,8 @@ void AddDepthErrors(const std::filesystem::path& truth, const std::filesystem::p
   const std::filesystem::path true_images = truth / Dataset::kDepthName;
   const std::filesystem::path images = estimate / Dataset::kDepthName;
   if (!std::filesystem::is_directory(true_images) || !std::filesystem::is_directory(images)) return;
-  const DepthFolderErrors depth =
-      CompareDepthFolders(true_images, images, estimate / Dataset::kConfidenceName);
+  const DepthFolderErrors depth = CompareDepthFolders(
+      true_images, images, estimate / Dataset::kConfidenceName, estimate / Dataset::kSourceName);
   if (!depth.images.empty()) (*report)["depth"] = ToJson(depth);
 }
 

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "slam/evaluation/cloud_error.h"
-#include "slam/evaluation/depth_folder.h"
 #include "slam/evaluation/local_scale.h"
 #include "slam/evaluation/revisit.h"
 #include "slam/evaluation/scale_calibration.h"
@@ -16,10 +15,6 @@ namespace orb360 {
 
 /// Returns the report of `orb360 evaluate --json`, with lengths in metres and angles in degrees.
 nlohmann::json ToJson(const TrajectoryErrors& errors);
-
-/// Returns the part of the report under the key "depth". The errors of bins without pixels are
-/// null.
-nlohmann::json ToJson(const DepthFolderErrors& depth);
 
 /// Returns the part under the key "cloud": the fractions of the points that are near the surface
 /// (accuracy) and of the surface that is near points (completeness), for two distances.

@@ -102,7 +102,7 @@ void AddRunOptions(CLI::App* command, RunOptions* options) {
   command->add_flag(
       "--save-depth", options->saves_depth,
       "Also write the dense depth of each view to DIR/depth (16-bit PNG, metres * 256), "
-      "and how sure it is to DIR/confidence (16-bit PNG)");
+      "how sure it is to DIR/confidence (16-bit PNG) and how it is known to DIR/source");
   command->add_flag("--save-views", options->saves_views,
                     "Also keep in DIR/views what the dense cloud is made of (about 0.5 MB a "
                     "view), so that `orb360 fuse DIR` can make it again");

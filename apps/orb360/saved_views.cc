@@ -16,7 +16,7 @@ namespace orb360 {
 namespace {
 
 constexpr const char* kFileName = "views.json";
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 
 nlohmann::json ToJson(const DenseView& view) {
   const Eigen::Vector3d& p = view.world_from_camera.translation;

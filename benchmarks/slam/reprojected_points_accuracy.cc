@@ -92,7 +92,6 @@ void Measure(const fs::path& sequence, const fs::path& run) {
       orb360::SparseDepth points{measured.range.clone(), measured.confidence.clone()};
       orb360::AddReprojectedPoints(views[i].world_from_camera, colors[i], others,
                                    {.spacing = options.sparse_spacing,
-                                    .max_error = orb360::kLargestMeasuredError,
                                     .max_color_difference = kDifferences[k],
                                     .sparse = options.sparse},
                                    &points);

@@ -21,7 +21,8 @@ struct RunView {
   DepthView view;
 };
 
-/// Reads the views of `orb360 run SEQUENCE --save-depth`: depth and confidence, ordered by frame.
+/// Reads the views of `orb360 run SEQUENCE --save-depth`: depth, confidence and source,
+/// ordered by frame.
 /// `min_error` as of DepthView. Throws UserError where an image cannot be read.
 inline std::vector<RunView> ReadRunViews(const std::filesystem::path& sequence,
                                          const std::filesystem::path& run, double min_error) {
@@ -36,8 +37,10 @@ inline std::vector<RunView> ReadRunViews(const std::filesystem::path& sequence,
       return std::abs(p.timestamp - truth[i].timestamp) < 1e-3;
     });
     if (pose == poses.end()) continue;
-    DenseDepth depth{
-        ReadDepthImage(run / "depth" / name), ReadFractionImage(run / "confidence" / name), {}};
+    DenseDepth depth{ReadDepthImage(run / "depth" / name),
+                     ReadFractionImage(run / "confidence" / name),
+                     {},
+                     ReadSourceImage(run / "source" / name)};
     DepthView view(depth, pose->world_from_camera, min_error);
     views.push_back({index, std::move(depth), std::move(view)});
   }

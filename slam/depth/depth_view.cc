@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "slam/depth/fusion_confidence.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
@@ -36,12 +37,13 @@ DepthView::DepthView(const DenseDepth& depth, const Rigid3& world_from_camera, d
                    depth.range.cols >= 8 && depth.range.cols % 2 == 0,
                depth.range.size(), depth.confidence.size());
   ORB360_CHECK(min_error > 0, min_error);
+  const cv::Mat confidences = FusionConfidence(depth);
   inverse_ranges_.assign(depth.range.total(), 0.0f);
   levels_.assign((depth.range.total() + 3) / 4, 0);
   size_t index = 0;
   for (int row = 0; row < height(); ++row) {
     const float* range = depth.range.ptr<float>(row);
-    const float* confidence = depth.confidence.ptr<float>(row);
+    const float* confidence = confidences.ptr<float>(row);
     for (int column = 0; column < width(); ++column, ++index) {
       const auto level = cv::saturate_cast<std::uint8_t>(255.0f * confidence[column]);
       const float inverse = 1.0f / range[column];

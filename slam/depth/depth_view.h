@@ -13,7 +13,7 @@
 namespace orb360 {
 
 /// Dense depth of a keyframe in the world, prepared for comparison with others. A pixel without a
-/// range or without confidence is unknown.
+/// range or without confidence is unknown. Errors are those of FusionConfidence.
 class DepthView {
  public:
   /// `min_error` (positive) is the least expected error of ln(range) of a pixel, however confident

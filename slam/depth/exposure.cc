@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "nn/base/statistics.h"
+#include "slam/depth/fusion_confidence.h"
 #include <orb360/nn/base/check.h>
 #include <orb360/slam/geometry/camera.h>
 
@@ -26,7 +27,7 @@ struct Ratio {
 struct LoadedView {
   size_t index;
   cv::Mat range;       // CV_32F
-  cv::Mat confidence;  // CV_32F
+  cv::Mat confidence;  // CV_32F: FusionConfidence
   cv::Mat color;       // CV_8UC3, each value the mean of a few pixels.
 };
 
@@ -35,7 +36,7 @@ LoadedView Load(size_t index, std::span<const DenseView> views, const DepthLoade
   DenseDepth depth = load(views[index].frame_index);
   cv::Mat color;
   cv::blur(depth.color, color, {kWindow, kWindow});
-  return {index, depth.range, depth.confidence, color};
+  return {index, depth.range, FusionConfidence(depth), color};
 }
 
 bool IsExposed(const cv::Vec3b& color, const ExposureOptions& options) {

@@ -202,6 +202,7 @@ void PlaceOnGround(std::span<const MovingObject> objects, const DenseGround& gro
                    const MovingObjectOptions& options, DenseDepth* depth) {
   const EquirectangularCamera camera(depth->range.cols, depth->range.rows);
   const auto confidence = static_cast<float>(1 / (1 + options.stated_error));
+  if (depth->source.empty()) depth->source = cv::Mat::zeros(depth->range.size(), CV_8U);
   for (const MovingObject& object : objects) {
     for (const MovingObject::Column& column : object.columns) {
       for (int row = column.top; row <= column.bottom; ++row) {
@@ -209,6 +210,8 @@ void PlaceOnGround(std::span<const MovingObject> objects, const DenseGround& gro
         depth->range.at<float>(row, column.column) =
             static_cast<float>(column.distance / std::sqrt(1 - fall * fall));
         depth->confidence.at<float>(row, column.column) = confidence;
+        depth->source.at<std::uint8_t>(row, column.column) =
+            static_cast<std::uint8_t>(RangeSource::kMovingObject);
       }
     }
   }

@@ -35,9 +35,9 @@ struct MovingObjectOptions {
   double min_ground_ratio = 0.5;
   /// Largest height of an object, in heights of the camera.
   double max_height = 2.0;
-  /// Relative error that is stated for an object that is put where it touches the ground: so large
-  /// that it does not come into the cloud, which is of what is at rest.
-  double stated_error = 1.0;
+  /// Mean relative error of an object that is put where it touches the ground
+  /// (docs/results/stereo.md).
+  double stated_error = 0.5;
 };
 
 /// Returns the pixels of a view whose rays pass through the ground before they reach their points,

@@ -15,8 +15,9 @@ struct ReprojectionOptions {
   /// Distance of the pixels of another view that are looked at, in both directions, pixels: less
   /// than `spacing`, so that a square seldom gets none.
   int step = 4;
-  /// Largest expected error of ln(range) of a pixel that is taken.
-  double max_error = 0.06;
+  /// Largest expected error of ln(range) of a pixel that is taken: that of measured ones after
+  /// their confidence has been rounded to 1/255, and less than that of completed ones.
+  double max_error = 0.0625;
   /// Two ranges in a square agree if their ratio is at most this. Two views must agree.
   double max_ratio = 1.1;
   /// A point farther away than the nearest one that is known within two squares, by more than this

@@ -26,9 +26,14 @@ DepthCalibration& DepthCalibration::operator+=(const DepthCalibration& other) {
   return *this;
 }
 
-DepthCalibration::Tenth DepthCalibration::MeansBetween(double from, double to) const {
+double DepthCalibration::solid_angle() const {
   double total = 0;
   for (const Sums& sums : levels_) total += sums.weight;
+  return total;
+}
+
+DepthCalibration::Means DepthCalibration::MeansBetween(double from, double to) const {
+  const double total = solid_angle();
   Sums inside;
   double begin = 0;
   for (const Sums& sums : levels_) {
@@ -45,8 +50,8 @@ DepthCalibration::Tenth DepthCalibration::MeansBetween(double from, double to) c
   return {inside.stated / inside.weight, inside.observed / inside.weight};
 }
 
-std::array<DepthCalibration::Tenth, 10> DepthCalibration::Tenths() const {
-  std::array<Tenth, 10> tenths{};
+std::array<DepthCalibration::Means, 10> DepthCalibration::Tenths() const {
+  std::array<Means, 10> tenths{};
   for (size_t i = 0; i < tenths.size(); ++i) {
     tenths[i] = MeansBetween(static_cast<double>(i) / 10, static_cast<double>(i + 1) / 10);
   }

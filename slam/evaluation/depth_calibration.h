@@ -10,8 +10,7 @@ namespace orb360 {
 /// steps of 1/255. Each pixel is weighted by its solid angle.
 class DepthCalibration {
  public:
-  /// A tenth of what has a range, by solid angle.
-  struct Tenth {
+  struct Means {
     double stated;    // mean expected relative error, 1 / confidence - 1
     double observed;  // mean of |error| / truth
   };
@@ -20,8 +19,13 @@ class DepthCalibration {
   void Add(double truth, double estimate, double confidence, double solid_angle);
   DepthCalibration& operator+=(const DepthCalibration& other);
 
-  /// From the most to the least confident. NaN without pixels.
-  std::array<Tenth, 10> Tenths() const;
+  /// Solid angle of what has a range and a confidence, sr.
+  double solid_angle() const;
+  /// Of all. NaN without pixels.
+  Means Mean() const { return MeansBetween(0, 1); }
+  /// Of each tenth of what has a range, by solid angle, from the most to the least confident. NaN
+  /// without pixels.
+  std::array<Means, 10> Tenths() const;
   /// Mean of |error| / truth of the given most confident fraction (in (0, 1]) of what has a range:
   /// the risk of this coverage (Geifman, El-Yaniv 2017).
   double Risk(double coverage) const;
@@ -34,7 +38,7 @@ class DepthCalibration {
   };
 
   /// Means between two fractions, from the most confident on.
-  Tenth MeansBetween(double from, double to) const;
+  Means MeansBetween(double from, double to) const;
 
   std::array<Sums, 256> levels_{};  // the most confident first
 };

@@ -20,7 +20,8 @@ void RequireSize(const std::filesystem::path& path, const cv::Mat& image, cv::Si
 
 DepthFolderErrors CompareDepthFolders(const std::filesystem::path& truth,
                                       const std::filesystem::path& estimate,
-                                      const std::filesystem::path& confidence) {
+                                      const std::filesystem::path& confidence,
+                                      const std::filesystem::path& source) {
   std::vector<std::filesystem::path> names;
   for (const auto& entry : std::filesystem::directory_iterator(estimate)) {
     const std::filesystem::path name = entry.path().filename();
@@ -41,6 +42,15 @@ DepthFolderErrors CompareDepthFolders(const std::filesystem::path& truth,
     RequireSize(confidence / name, stated, true_range.size());
     if (!result.calibration) result.calibration.emplace();
     *result.calibration += CompareConfidence(true_range, range, stated);
+    if (source.empty() || !std::filesystem::exists(source / name)) continue;
+    const cv::Mat sources = ReadSourceImage(source / name);
+    RequireSize(source / name, sources, true_range.size());
+    for (const RangeSource known_by : kRangeSources) {
+      cv::Mat selected = stated.clone();
+      selected.setTo(0, sources != static_cast<double>(known_by));
+      const DepthCalibration part = CompareConfidence(true_range, range, selected);
+      if (part.solid_angle() > 0) result.by_source[known_by] += part;
+    }
   }
   return result;
 }

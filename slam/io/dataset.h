@@ -12,6 +12,7 @@ namespace orb360 {
 struct Dataset {
   static constexpr const char* kDepthName = "depth";
   static constexpr const char* kConfidenceName = "confidence";  // of a run's depth
+  static constexpr const char* kSourceName = "source";          // of these ranges
   static constexpr const char* kGroundTruthName = "groundtruth.txt";
 
   std::filesystem::path folder;

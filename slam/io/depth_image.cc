@@ -7,6 +7,7 @@
 
 #include "slam/io/atomic_file.h"
 #include <orb360/nn/base/check.h>
+#include <orb360/slam/depth/dense_depth.h>
 #include <orb360/slam/io/depth_image.h>
 
 namespace orb360 {
@@ -21,16 +22,16 @@ void WritePng(const std::filesystem::path& path, const cv::Mat& image) {
   WriteFileAtomically(path, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
-/// Returns a 16-bit image of one channel; `what` it should be.
-cv::Mat ReadUnits(const std::filesystem::path& path, const std::string& what) {
+/// Returns an image of that type; `what` it should be.
+cv::Mat ReadPng(const std::filesystem::path& path, int type, const std::string& what) {
   // OpenCV would print a message about an absent file to standard error.
-  cv::Mat units = std::filesystem::is_regular_file(path)
+  cv::Mat image = std::filesystem::is_regular_file(path)
                       ? cv::imread(path.string(), cv::IMREAD_UNCHANGED)
                       : cv::Mat();
-  if (units.type() != CV_16UC1 || units.empty()) {
+  if (image.type() != type || image.empty()) {
     throw UserError(path.string() + ": is not " + what);
   }
-  return units;
+  return image;
 }
 
 }  // namespace
@@ -51,7 +52,7 @@ void WriteDepthImage(const std::filesystem::path& path, const cv::Mat& range) {
 
 cv::Mat ReadDepthImage(const std::filesystem::path& path) {
   cv::Mat range;
-  ReadUnits(path, "a depth image (16-bit PNG, metres * 256)")
+  ReadPng(path, CV_16UC1, "a depth image (16-bit PNG, metres * 256)")
       .convertTo(range, CV_32F, 1.0 / kUnitsPerMetre);
   return range;
 }
@@ -65,9 +66,25 @@ void WriteFractionImage(const std::filesystem::path& path, const cv::Mat& fracti
 
 cv::Mat ReadFractionImage(const std::filesystem::path& path) {
   cv::Mat fraction;
-  ReadUnits(path, "an image of fractions (16-bit PNG, fraction * 65535)")
+  ReadPng(path, CV_16UC1, "an image of fractions (16-bit PNG, fraction * 65535)")
       .convertTo(fraction, CV_32F, 1.0 / kUnitsOfOne);
   return fraction;
+}
+
+void WriteSourceImage(const std::filesystem::path& path, const cv::Mat& source) {
+  ORB360_CHECK(source.type() == CV_8UC1, source.type());
+  WritePng(path, source);
+}
+
+cv::Mat ReadSourceImage(const std::filesystem::path& path) {
+  const std::string what = "an image of sources (8-bit PNG, 0 to 4)";
+  cv::Mat source = ReadPng(path, CV_8UC1, what);
+  double largest = 0;
+  cv::minMaxLoc(source, nullptr, &largest);
+  if (largest > static_cast<double>(RangeSource::kMovingObject)) {
+    throw UserError(path.string() + ": is not " + what);
+  }
+  return source;
 }
 
 }  // namespace orb360

@@ -27,6 +27,7 @@ constexpr int kCodeOfOne = 32 * 1024;     // The middle: any unit of length has 
 constexpr int kMaxCode = 65535;
 constexpr int kColorQuality = 95;  // of JPEG
 constexpr int kZstdLevel = 1;      // the fastest
+constexpr size_t kPlanes = 4;      // of one byte: low and high one of ranges, confidence, source
 
 struct Header {
   std::uint32_t width;
@@ -38,13 +39,14 @@ struct Header {
 struct CodedDepth {
   cv::Mat ranges;       // CV_16UC1: codes, 0 for none
   cv::Mat confidences;  // CV_8UC1: in 1/255; those of ranges are not 0
+  cv::Mat sources;      // CV_8UC1: of RangeSource
 };
 
 cv::Mat IsPositive(const cv::Mat& values) {
   return (values > 0.0f) & (values <= std::numeric_limits<float>::max());
 }
 
-CodedDepth Encode(const cv::Mat& range, const cv::Mat& confidence) {
+CodedDepth Encode(const cv::Mat& range, const cv::Mat& confidence, const cv::Mat& source) {
   const cv::Mat known = IsPositive(range) & IsPositive(confidence);
   const cv::Mat unknown = ~known;
   CodedDepth coded;
@@ -57,6 +59,8 @@ CodedDepth Encode(const cv::Mat& range, const cv::Mat& confidence) {
   confidence.convertTo(coded.confidences, CV_8U, 255.0);
   coded.confidences = cv::max(coded.confidences, 1);
   coded.confidences.setTo(0, unknown);
+  coded.sources = source.empty() ? cv::Mat::zeros(range.size(), CV_8U) : source.clone();
+  coded.sources.setTo(0, unknown);
   return coded;
 }
 
@@ -77,13 +81,16 @@ const std::vector<float>& RangeOfCode() {
 /// own.
 std::string Pack(const CodedDepth& coded) {
   const size_t pixels = coded.ranges.total();
-  std::string planes(3 * pixels, '\0');
+  std::string planes(kPlanes * pixels, '\0');
   char* low = planes.data();
   char* high = low + pixels;
   char* level = high + pixels;
+  char* known_by = level + pixels;
   for (int row = 0; row < coded.ranges.rows; ++row) {
     const std::uint16_t* code = coded.ranges.ptr<std::uint16_t>(row);
     const std::uint8_t* confidence = coded.confidences.ptr<std::uint8_t>(row);
+    const std::uint8_t* source = coded.sources.ptr<std::uint8_t>(row);
+    known_by = std::copy_n(source, coded.sources.cols, known_by);
     std::uint16_t left = 0;
     std::uint8_t left_confidence = 0;
     for (int column = 0; column < coded.ranges.cols; ++column) {
@@ -112,7 +119,7 @@ std::string Pack(const CodedDepth& coded) {
 /// Inverts Pack. Returns images without pixels if the data are damaged.
 CodedDepth Unpack(std::string_view packed, int width, int height) {
   const size_t pixels = static_cast<size_t>(width) * static_cast<size_t>(height);
-  std::string planes(3 * pixels, '\0');
+  std::string planes(kPlanes * pixels, '\0');
   if (ZSTD_decompress(planes.data(), planes.size(), packed.data(), packed.size()) !=
       planes.size()) {
     return {};
@@ -120,7 +127,10 @@ CodedDepth Unpack(std::string_view packed, int width, int height) {
   const char* low = planes.data();
   const char* high = low + pixels;
   const char* level = high + pixels;
-  CodedDepth coded{cv::Mat(height, width, CV_16UC1), cv::Mat(height, width, CV_8UC1)};
+  const char* known_by = level + pixels;
+  CodedDepth coded{cv::Mat(height, width, CV_16UC1), cv::Mat(height, width, CV_8UC1),
+                   cv::Mat(height, width, CV_8UC1)};
+  std::copy_n(known_by, pixels, coded.sources.ptr<char>());
   for (int row = 0; row < height; ++row) {
     std::uint16_t* code = coded.ranges.ptr<std::uint16_t>(row);
     std::uint8_t* confidence = coded.confidences.ptr<std::uint8_t>(row);
@@ -186,12 +196,15 @@ void DepthMapStore::Put(int frame_index, const DenseDepth& depth) const {
   ORB360_CHECK(
       range.type() == CV_32FC1 && confidence.type() == CV_32FC1 && depth.color.type() == CV_8UC3,
       range.type(), confidence.type(), depth.color.type());
+  ORB360_CHECK(depth.source.empty() ||
+                   (depth.source.type() == CV_8UC1 && depth.source.size() == range.size()),
+               depth.source.type(), depth.source.size());
   ORB360_CHECK(
       !range.empty() && confidence.size() == range.size() && depth.color.size() == range.size(),
       range.size(), confidence.size(), depth.color.size());
   std::vector<unsigned char> color;
   cv::imencode(".jpg", depth.color, color, {cv::IMWRITE_JPEG_QUALITY, kColorQuality});
-  const std::string packed = Pack(Encode(range, confidence));
+  const std::string packed = Pack(Encode(range, confidence, depth.source));
   const Header header{
       static_cast<std::uint32_t>(range.cols), static_cast<std::uint32_t>(range.rows),
       static_cast<std::uint32_t>(packed.size()), static_cast<std::uint32_t>(color.size())};
@@ -221,7 +234,7 @@ DenseDepth DepthMapStore::Get(int frame_index) const {
                                        static_cast<int>(stored.header.height))) {
     throw Damaged(path);
   }
-  const auto [codes, confidences] = Unpack(stored.packed(), size.width, size.height);
+  const auto [codes, confidences, sources] = Unpack(stored.packed(), size.width, size.height);
   if (codes.empty()) throw Damaged(path);
   depth.range.create(codes.size(), CV_32FC1);
   const std::vector<float>& ranges = RangeOfCode();
@@ -231,6 +244,7 @@ DenseDepth DepthMapStore::Get(int frame_index) const {
                    [&ranges](std::uint16_t c) { return ranges[c]; });
   }
   confidences.convertTo(depth.confidence, CV_32F, 1.0 / 255.0);
+  depth.source = sources;
   return depth;
 }
 

@@ -15,8 +15,9 @@ namespace orb360 {
 ///
 /// Ranges are restored with an error of at most 0.05 % (their logarithms are rounded to 2^-10, in
 /// 16 bits), from e^-32 to e^31 units of length. Confidences are rounded to 1/255, but not to 0.
+/// The source of each range is kept; without any it is RangeSource::kNetwork.
 /// Colours are compressed as JPEG. Where the range or the confidence is not positive and finite,
-/// both are 0.
+/// all of them are 0.
 ///
 /// The store has no state besides the files, so different frames may be stored and read on
 /// different threads at once.

@@ -19,9 +19,9 @@ namespace orb360 {
 namespace {
 
 constexpr double kMinError = 0.01;  // of ln(range); a measured pixel is told from others by more
-// Stated of the range beside the edge of a near surface, as of objects that move along: it stays in
+// Mean error of the range beside the edge of a near surface (docs/results/stereo.md). It stays in
 // the depth, but not in the cloud.
-constexpr double kBoundaryError = 1.0;
+constexpr double kBoundaryError = 0.16;
 // Where the network expects a larger relative error it may see the sky, of which it is trained to
 // state 1. It gives that the range of the roofs around it.
 constexpr double kSkyError = 0.5;
@@ -158,10 +158,8 @@ class ViewPreparation {
     std::vector<SeenView> seen;
     for (size_t k = 0; k < depths.size(); ++k) seen.push_back({depths[k].get(), &colors[k]});
     AddReprojectedPoints(view.world_from_camera, SurfaceColors(color, SizeOf(camera_)), seen,
-                         {.spacing = options_.sparse_spacing,
-                          .max_error = kLargestMeasuredError,
-                          .sparse = options_.sparse},
-                         sparse, num_threads_);
+                         {.spacing = options_.sparse_spacing, .sparse = options_.sparse}, sparse,
+                         num_threads_);
   }
 
   std::span<const DenseView> views_;
@@ -183,10 +181,10 @@ void Complete(const PreparedView& view, const ViewDepthOptions& options, DepthCo
   *depth = completer->Complete(view.color, view.sparse);
   cv::Mat surfaces = depth->range.clone();
   surfaces.setTo(std::numeric_limits<float>::infinity(), depth->confidence < 1 / (1 + kSkyError));
-  Distrust(options.completion_error_factor, depth);
+  StateCompleted(options.completed_error_factor, depth);
   PutMeasured(view.measured, depth);
   depth->range.copyTo(surfaces, view.measured.value > 0);
-  LimitConfidence(FindOccludingBoundary(surfaces), kBoundaryError, depth);
+  StateBoundary(FindOccludingBoundary(surfaces), kBoundaryError, depth);
 }
 
 }  // namespace

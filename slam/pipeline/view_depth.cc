@@ -89,7 +89,7 @@ ViewDepthReport MeasureViews(std::span<const DenseView> views, const NeighbourFi
     if (!is_measured && !is_completed) continue;
     DenseDepth depth = completer->Complete(color, sparse);
     range = TrustedRange(depth, options.min_trusted_confidence);
-    if (!options.baselines.empty()) Distrust(options.completion_error_factor, &depth);
+    if (!options.baselines.empty()) StateCompleted(options.completed_error_factor, &depth);
     if (is_measured) PutMeasured(seen, &depth);
     store.Put(view.frame_index, depth);
   }

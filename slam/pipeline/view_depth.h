@@ -60,9 +60,9 @@ struct ViewDepthOptions {
   /// Least number of landmarks in a view of which stereo measures nothing. One with fewer gets no
   /// depth.
   int min_points = 50;
-  /// Number by which the errors that the network expects are multiplied beside stereo: where it has
-  /// not been trained, they are larger than it says (docs/results/stereo.md).
-  double completion_error_factor = 5.0;
+  /// Number by which the errors that the network expects are multiplied beside stereo, as measured
+  /// on worlds that it has not been trained on (docs/results/stereo.md).
+  double completed_error_factor = 1.3;
   /// Height of the camera over the ground, in the unit of the poses of views; 0: not known.
   double camera_height = 0;
   /// Whether the depth has what the network completes. Otherwise it has what stereo measures.

@@ -1,6 +1,7 @@
 #include "slam/pipeline/view_ranges.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "slam/depth/dense_cloud.h"
@@ -10,18 +11,20 @@ namespace {
 
 float ConfidenceOf(float relative_error) { return 1.0F / (1.0F + relative_error); }
 
+constexpr auto kMeasured = static_cast<std::uint8_t>(RangeSource::kMeasured);
+
 }  // namespace
 
-void Distrust(double factor, DenseDepth* completed) {
-  constexpr auto kLeast = static_cast<float>(kLeastCompletedError);
-  for (int row = 0; row < completed->confidence.rows; ++row) {
-    for (int column = 0; column < completed->confidence.cols; ++column) {
-      float& confidence = completed->confidence.at<float>(row, column);
+void StateCompleted(double factor, DenseDepth* depth) {
+  for (int row = 0; row < depth->confidence.rows; ++row) {
+    for (int column = 0; column < depth->confidence.cols; ++column) {
+      auto& confidence = depth->confidence.at<float>(row, column);
       if (!(confidence > 0)) continue;
-      const float error = static_cast<float>(factor) * (1 / confidence - 1);
-      confidence = ConfidenceOf(std::max(error, kLeast));
+      confidence = ConfidenceOf(static_cast<float>(factor) * (1 / confidence - 1));
     }
   }
+  depth->source.create(depth->range.size(), CV_8U);
+  depth->source.setTo(static_cast<double>(RangeSource::kCompleted));
 }
 
 void PutMeasured(const InverseRanges& measured, DenseDepth* depth) {
@@ -32,25 +35,26 @@ void PutMeasured(const InverseRanges& measured, DenseDepth* depth) {
       depth->range.at<float>(row, column) = 1 / value;
       depth->confidence.at<float>(row, column) =
           ConfidenceOf(measured.sigma.at<float>(row, column) / value);
+      depth->source.at<std::uint8_t>(row, column) = kMeasured;
     }
   }
 }
 
-void LimitConfidence(const cv::Mat& mask, double least_error, DenseDepth* depth) {
+void StateBoundary(const cv::Mat& mask, double least_error, DenseDepth* depth) {
   cv::Mat limited;
   cv::min(depth->confidence, ConfidenceOf(static_cast<float>(least_error)), limited);
   limited.copyTo(depth->confidence, mask);
+  depth->source.setTo(static_cast<double>(RangeSource::kBoundary), mask);
 }
 
 InverseRanges MeasuredOf(const DenseDepth& depth) {
-  constexpr auto kLeastConfidence = static_cast<float>(1 / (1 + kLargestMeasuredError));
   InverseRanges measured{cv::Mat::zeros(depth.range.size(), CV_32F),
                          cv::Mat::zeros(depth.range.size(), CV_32F)};
   for (int row = 0; row < depth.range.rows; ++row) {
     for (int column = 0; column < depth.range.cols; ++column) {
       const float range = depth.range.at<float>(row, column);
       const float confidence = depth.confidence.at<float>(row, column);
-      if (!(range > 0 && confidence >= kLeastConfidence)) continue;
+      if (depth.source.at<std::uint8_t>(row, column) != kMeasured) continue;
       measured.value.at<float>(row, column) = 1 / range;
       measured.sigma.at<float>(row, column) = (1 / confidence - 1) / range;
     }

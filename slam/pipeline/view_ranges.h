@@ -8,26 +8,18 @@
 
 namespace orb360 {
 
-// The depth of a view has ranges that stereo measured and ranges that the network completed. Their
-// errors tell them apart: those of measured ranges are at most
-// InverseRangeFusionOptions::max_sigma, those of completed ones at least kLeastCompletedError.
+/// Says of ranges of the network that they are completed ones (RangeSource::kCompleted), and
+/// multiplies the errors that it expects by `factor`.
+void StateCompleted(double factor, DenseDepth* depth);
 
-/// Largest expected error of ln(range) of a measured pixel, after its confidence has been rounded
-/// to 1/255, and the least one that is stated for a completed pixel.
-inline constexpr double kLargestMeasuredError = 0.0625;
-inline constexpr double kLeastCompletedError = 0.07;
-
-/// Multiplies the errors that the network expects by `factor`; none is less than
-/// kLeastCompletedError.
-void Distrust(double factor, DenseDepth* completed);
-
-/// Puts ranges that stereo measured in the place of completed ones.
+/// Puts ranges that stereo measured in the place of others. The depth has sources.
 void PutMeasured(const InverseRanges& measured, DenseDepth* depth);
 
-/// States an expected error of at least `least_error` where `mask` (CV_8U) is not 0.
-void LimitConfidence(const cv::Mat& mask, double least_error, DenseDepth* depth);
+/// Says of the ranges where `mask` (CV_8U) is not 0 that they are at boundaries, with an expected
+/// error of at least `least_error`. The depth has sources.
+void StateBoundary(const cv::Mat& mask, double least_error, DenseDepth* depth);
 
-/// Returns the measured ranges of the depth of a view.
+/// Returns the measured ranges of the depth of a view. It has sources.
 InverseRanges MeasuredOf(const DenseDepth& depth);
 
 /// Puts one measured range of each square of `side` pixels that has any into the sparse depth, in

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "slam/depth/fusion_confidence.h"
 #include "slam/io/byte_number.h"
 #include "slam/io/optical_frame.h"
 #include "slam/viewer/live_landmarks.h"
@@ -36,6 +37,7 @@ std::vector<ThinnedView::Point> ThinView(const DenseDepth& depth, int max_points
                depth.confidence.size() == depth.range.size() &&
                depth.color.size() == depth.range.size());
   const EquirectangularCamera camera(depth.range.cols, depth.range.rows);
+  const cv::Mat confidences = FusionConfidence(depth);
   std::vector<ThinnedView::Point> points;
   // About half of a street's directions show the sky.
   for (int i = 0; i < 2 * max_points && static_cast<int>(points.size()) < max_points; ++i) {
@@ -45,7 +47,7 @@ std::vector<ThinnedView::Point> ThinView(const DenseDepth& depth, int max_points
     const int row = std::min(static_cast<int>(pixel.y()), depth.range.rows - 1);
     const float range = depth.range.at<float>(row, column);
     if (!(range > 0) || !std::isfinite(range)) continue;
-    if (!(depth.confidence.at<float>(row, column) >= kMinConfidence)) continue;
+    if (!(confidences.at<float>(row, column) >= kMinConfidence)) continue;
     const auto& bgr = depth.color.at<cv::Vec3b>(row, column);
     const Eigen::Vector3d middle = camera.Bearing({column + 0.5, row + 0.5});
     points.push_back({(range * middle).cast<float>(), {bgr[2], bgr[1], bgr[0]}});

@@ -97,7 +97,7 @@ onPage("opens the panorama of a keyframe that is clicked", {}, async (page) => {
   assert.notEqual(await sphere.screenshot({ encoding: "base64" }), image);
   await sphere.hover();
   await page.waitForFunction(() =>
-    /away, confidence|no range/.test(document.querySelector(".readout").textContent),
+    /± .+ away, confidence|no range/.test(document.querySelector(".readout").textContent),
   );
   const box = await sphere.boundingBox();
   await page.mouse.move(box.x + 200, box.y + 100);

@@ -135,6 +135,7 @@ test("ranges of a view are found by their place in the panorama", () => {
   assert.ok(Math.abs(range.at(0.99, 0.99).range - 7) < 7e-3);
   assert.ok(Math.abs(range.at(1.3, 0.2).range - 1) < 1e-3, "the seam is not closed");
   assert.equal(range.at(0.3, 0.2).confidence, 0.2);
+  assert.ok(Math.abs(range.at(0.3, 0.2).error - 4) < 1e-9);
   assert.equal(range.texels(range.limits())[0], 0);
   assert.throws(() => new ViewRange(bytes.slice(0, 20)), /truncated/);
 });

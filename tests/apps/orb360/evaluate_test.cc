@@ -166,7 +166,18 @@ TEST_F(EvaluateTest, DepthIsComparedWhereBothFoldersHaveIt) {
   EXPECT_EQ(stated["risk"][0]["coverage"], 0.5);
   EXPECT_NEAR(stated["risk"][0]["abs_rel"], 0.2, 1e-4);
   EXPECT_THAT(RunOrb360({"evaluate", folder_.path(), run}).out,
-              AllOf(HasSubstr("most confident"), HasSubstr("25.0"), HasSubstr("20.0")));
+              AllOf(HasSubstr("most confident"), HasSubstr("25.0"), HasSubstr("20.0"),
+                    Not(HasSubstr("measured"))));
+
+  std::filesystem::create_directory(run / "source");
+  WriteSourceImage(run / "source" / "000000.png", cv::Mat(16, 32, CV_8UC1, cv::Scalar(1)));
+  const nlohmann::json known = Report(folder_.path(), run)["depth"]["calibration"]["sources"];
+  ASSERT_EQ(known.size(), 1U);
+  EXPECT_EQ(known[0]["source"], "measured");
+  EXPECT_EQ(known[0]["fraction"], 1.0);
+  EXPECT_NEAR(known[0]["stated"], 0.25, 1e-4);
+  EXPECT_NEAR(known[0]["observed"], 0.2, 1e-4);
+  EXPECT_THAT(RunOrb360({"evaluate", folder_.path(), run}).out, HasSubstr("measured"));
 }
 
 TEST_F(EvaluateTest, WithoutJsonATableIsPrinted) {

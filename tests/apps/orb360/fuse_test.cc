@@ -102,7 +102,7 @@ TEST_F(FuseTest, RefusesWhatIsMissingOrDamagedInOneLine) {
   ExpectRefusal("views.json: is damaged");
   WriteText(views / "views.json", replaced("\"frame\": ", "\"frame\": 99"));
   ExpectRefusal("views.json: is damaged");
-  WriteText(views / "views.json", replaced("\"version\": 2", "\"version\": 7"));
+  WriteText(views / "views.json", replaced("\"version\": 3", "\"version\": 7"));
   ExpectRefusal("another version");
   WriteText(views / "views.json", description);
   for (const auto& entry : std::filesystem::directory_iterator(views)) {

@@ -100,6 +100,7 @@ TEST_F(RunTest, WithANetworkTheCloudIsDenseAndTheSameForAnyNumberOfThreads) {
   };
   EXPECT_EQ(files(OutFile("depth")), summary["cloud"]["views"].get<int>());
   EXPECT_EQ(files(OutFile("confidence")), summary["cloud"]["views"].get<int>());
+  EXPECT_EQ(files(OutFile("source")), summary["cloud"]["views"].get<int>());
   EXPECT_EQ(files(OutFile("sparse")), summary["cloud"]["views"].get<int>());
   for (const auto& entry : std::filesystem::directory_iterator(OutFile("sparse"))) {
     const SparseSample sample = ReadSparseSample(entry.path());
@@ -136,12 +137,14 @@ TEST_F(RunTest, DepthOfAnEarlierRunInTheFolderDoesNotStay) {
   EXPECT_FALSE(std::filesystem::exists(old));
   EXPECT_TRUE(std::filesystem::exists(others));
   EXPECT_TRUE(std::filesystem::exists(OutFile("confidence")));
+  EXPECT_TRUE(std::filesystem::exists(OutFile("source")));
 
   write_old();
   std::filesystem::remove(others);
   ASSERT_EQ(Run({"--weights", folder_ / "net.h5"}).status, 0);
   EXPECT_FALSE(std::filesystem::exists(OutFile("depth")));
   EXPECT_FALSE(std::filesystem::exists(OutFile("confidence")));
+  EXPECT_FALSE(std::filesystem::exists(OutFile("source")));
 
   write_old();
   ASSERT_EQ(Run().status, 0);

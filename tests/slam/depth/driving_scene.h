@@ -67,7 +67,8 @@ struct DrivingScene {
   DenseDepth Render(const EquirectangularCamera& camera, double camera_x) const {
     const cv::Size size(camera.width(), camera.height());
     DenseDepth depth{cv::Mat(size, CV_32F), cv::Mat(size, CV_32F, cv::Scalar(0.97)),
-                     cv::Mat(size, CV_8UC3, cv::Scalar::all(0))};
+                     cv::Mat(size, CV_8UC3, cv::Scalar::all(0)),
+                     cv::Mat(size, CV_8U, cv::Scalar(static_cast<double>(RangeSource::kMeasured)))};
     for (int row = 0; row < size.height; ++row) {
       for (int column = 0; column < size.width; ++column) {
         const Eigen::Vector3d ray =
@@ -76,7 +77,11 @@ struct DrivingScene {
         const double range =
             on_box > 0 ? on_box / (1 - box->speed) : RangeAtRest(HeightOverGroundAt(camera_x), ray);
         depth.range.at<float>(row, column) = static_cast<float>(range);
-        if (range == kSky) depth.confidence.at<float>(row, column) = 0.1F;
+        if (range == kSky) {
+          depth.confidence.at<float>(row, column) = 0.1F;
+          depth.source.at<std::uint8_t>(row, column) =
+              static_cast<std::uint8_t>(RangeSource::kCompleted);
+        }
       }
     }
     return depth;

@@ -67,6 +67,23 @@ TEST(FindConsistentPoints, KeepsTheWallsAndEveryDirectionEqually) {
   EXPECT_NEAR(in_caps / static_cast<double>(points.size()), 1.0 - std::sqrt(0.75), 0.02);
 }
 
+TEST(FindConsistentPoints, RangesAtBoundariesAreNoPointsAndSupportNone) {
+  std::vector<DenseDepth> depths = RenderAll();
+  const auto number_of_points = [&] { return ConsistentPointsOfTheMiddle(Views(depths)).size(); };
+  const size_t all = number_of_points();
+  const auto state = [&](size_t view, RangeSource source) {
+    depths[view].source =
+        cv::Mat(depths[view].range.size(), CV_8U, cv::Scalar(static_cast<double>(source)));
+  };
+  for (size_t i = 0; i < depths.size(); ++i) state(i, RangeSource::kMeasured);
+  EXPECT_EQ(number_of_points(), all);
+  state(depths.size() / 2, RangeSource::kBoundary);
+  EXPECT_EQ(number_of_points(), 0U);
+  for (size_t i = 0; i < depths.size(); ++i) state(i, RangeSource::kBoundary);
+  state(depths.size() / 2, RangeSource::kMeasured);
+  EXPECT_EQ(number_of_points(), 0U);
+}
+
 TEST(FindConsistentPoints, TakesEveryOtherPixelWherePixelsAreDense) {
   const std::vector<DepthView> views = Views(RenderAll());
   const size_t all = ConsistentPointsOfTheMiddle(views).size();

@@ -79,7 +79,10 @@ TEST(FindMovingObjects, PutsACarThatMovesAlongWhereItTouchesTheGround) {
       const float after = result.after.range.at<float>(row, column);
       if (before == after) continue;
       EXPECT_GT(scene.RangeOfBox(0, kCamera.Bearing({column + 0.5, row + 0.5})), 0);
-      EXPECT_FLOAT_EQ(result.after.confidence.at<float>(row, column), 0.5F);
+      EXPECT_NEAR(result.after.confidence.at<float>(row, column),
+                  1 / (1 + MovingObjectOptions().stated_error), 1e-6);
+      EXPECT_EQ(result.after.source.at<std::uint8_t>(row, column),
+                static_cast<std::uint8_t>(RangeSource::kMovingObject));
     }
   }
 }

@@ -32,7 +32,7 @@ TEST(DepthCalibration, ErrorsThatAreAsLargeAsStatedAreSoInEveryTenth) {
   }
   const DepthCalibration calibration = CompareConfidence(truth, estimate, confidence);
   double last = 0;
-  for (const DepthCalibration::Tenth& tenth : calibration.Tenths()) {
+  for (const DepthCalibration::Means& tenth : calibration.Tenths()) {
     EXPECT_NEAR(tenth.observed / tenth.stated, 1, 0.1);
     EXPECT_GT(tenth.stated, last);
     last = tenth.stated;

@@ -1,6 +1,7 @@
 #include "slam/evaluation/depth_folder.h"
 
 #include <filesystem>
+#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -49,6 +50,24 @@ TEST(CompareDepthFolders, ComparesErrorsWithTheConfidencesThatThereAre) {
   ASSERT_TRUE(result.calibration);
   EXPECT_NEAR(result.calibration->Tenths()[4].stated, 0.25, 1e-4);
   EXPECT_NEAR(result.calibration->Tenths()[4].observed, 0.1, 1e-6);
+
+  EXPECT_TRUE(result.by_source.empty());
+
+  const TempFolder source;
+  cv::Mat half(16, 32, CV_8UC1, cv::Scalar(static_cast<double>(RangeSource::kMeasured)));
+  half.rowRange(0, 8) = static_cast<double>(RangeSource::kBoundary);
+  WriteSourceImage(source / "0.png", half);
+  cv::Mat range = Constant(11);
+  range.rowRange(0, 8) = 14;
+  WriteDepthImage(estimate / "0.png", range);
+  const auto parts =
+      CompareDepthFolders(truth.path(), estimate.path(), confidence.path(), source.path())
+          .by_source;
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_NEAR(parts.at(RangeSource::kMeasured).Mean().observed, 0.1, 1e-6);
+  EXPECT_NEAR(parts.at(RangeSource::kBoundary).Mean().observed, 0.4, 1e-6);
+  EXPECT_NEAR(parts.at(RangeSource::kBoundary).Mean().stated, 0.25, 1e-4);
+  EXPECT_NEAR(parts.at(RangeSource::kBoundary).solid_angle(), 2 * std::numbers::pi, 0.1);
 
   WriteFractionImage(confidence / "1.png", Constant(0.8F, {16, 8}));
   EXPECT_THAT(MessageOf<UserError>(

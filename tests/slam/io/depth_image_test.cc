@@ -44,6 +44,19 @@ TEST(FractionImage, KeepsFractionsAndClampsOthers) {
               testing::HasSubstr("absent.png: is not an image of fractions"));
 }
 
+TEST(SourceImage, KeepsSourcesAndRefusesOtherNumbers) {
+  const TempFolder folder;
+  const cv::Mat source = (cv::Mat_<std::uint8_t>(1, 5) << 0, 1, 2, 3, 4);
+  WriteSourceImage(folder / "s.png", source);
+  EXPECT_EQ(cv::norm(ReadSourceImage(folder / "s.png"), source, cv::NORM_INF), 0);
+  WriteSourceImage(folder / "more.png", source + 1);
+  WriteDepthImage(folder / "depth.png", cv::Mat(4, 8, CV_32FC1, cv::Scalar(1)));
+  for (const char* name : {"more.png", "depth.png", "absent.png"}) {
+    EXPECT_THAT(MessageOf<UserError>([&] { ReadSourceImage(folder / name); }),
+                testing::HasSubstr(std::string(name) + ": is not an image of sources"));
+  }
+}
+
 TEST(DepthImage, RefusesAnImage) {
   const TempFolder folder;
   cv::imwrite((folder / "rgb.png").string(), cv::Mat(4, 8, CV_8UC3, cv::Scalar(1, 2, 3)));

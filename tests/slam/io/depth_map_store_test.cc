@@ -18,13 +18,15 @@ namespace {
 
 DenseDepth Example(int width, int height) {
   const cv::Size size(width, height);
-  DenseDepth depth{cv::Mat(size, CV_32F), cv::Mat(size, CV_32F), cv::Mat(size, CV_8UC3)};
+  DenseDepth depth{cv::Mat(size, CV_32F), cv::Mat(size, CV_32F), cv::Mat(size, CV_8UC3),
+                   cv::Mat(size, CV_8UC1)};
   for (int row = 0; row < height; ++row) {
     for (int column = 0; column < width; ++column) {
       const double fraction = (row * width + column) / static_cast<double>(width * height);
       // All scales that maps could have.
       depth.range.at<float>(row, column) = static_cast<float>(std::exp(60.0 * fraction - 30.0));
       depth.confidence.at<float>(row, column) = static_cast<float>(1.0 - fraction);
+      depth.source.at<std::uint8_t>(row, column) = static_cast<std::uint8_t>((row + column) % 5);
       depth.color.at<cv::Vec3b>(row, column) =
           cv::Vec3b(static_cast<uchar>(column), static_cast<uchar>(row), 100);
     }
@@ -48,7 +50,12 @@ TEST(DepthMapStore, GivesBackWithinTheErrorsItPromises) {
                   1.01 / 255);
     }
   }
+  EXPECT_EQ(cv::norm(read.source, depth.source, cv::NORM_INF), 0);
   EXPECT_LT(cv::norm(read.color, depth.color, cv::NORM_INF), 20);
+  DenseDepth without = Example(128, 64);
+  without.source.release();
+  store.Put(8, without);
+  EXPECT_EQ(cv::countNonZero(store.Get(8).source), 0);
 }
 
 TEST(DepthMapStore, WhatIsNoRangeIsNone) {
@@ -68,6 +75,7 @@ TEST(DepthMapStore, WhatIsNoRangeIsNone) {
     for (int column = 0; column < 4; ++column) {
       EXPECT_EQ(read.range.at<float>(row, column), 0.0f) << row << ' ' << column;
       EXPECT_EQ(read.confidence.at<float>(row, column), 0.0f);
+      EXPECT_EQ(read.source.at<std::uint8_t>(row, column), 0);
     }
   }
   EXPECT_EQ(cv::countNonZero(read.range), 16 * 8 - 8);
@@ -134,6 +142,9 @@ TEST(DepthMapStore, RefusesImagesThatDoNotBelongTogether) {
   const DepthMapStore store(folder / "store");
   DenseDepth depth = Example(16, 8);
   depth.color = depth.color.rowRange(0, 4);
+  EXPECT_THROW(store.Put(0, depth), ContractError);
+  depth = Example(16, 8);
+  depth.source = depth.source.rowRange(0, 4);
   EXPECT_THROW(store.Put(0, depth), ContractError);
 }
 

@@ -14,6 +14,14 @@ namespace {
 
 const EquirectangularCamera kCamera(256, 128);
 
+RangeSource SourceAt(const DenseDepth& depth, int row, int column) {
+  return static_cast<RangeSource>(depth.source.at<std::uint8_t>(row, column));
+}
+
+cv::Mat AllFrom(RangeSource source) {
+  return {kCamera.height(), kCamera.width(), CV_8U, cv::Scalar(static_cast<double>(source))};
+}
+
 // Nine views 2 m apart. A car drives beside the camera; the fifth view is at the origin.
 class CompleteViewsTest : public testing::Test {
  protected:
@@ -67,6 +75,9 @@ TEST_F(CompleteViewsTest, AnObjectThatMovesAlongIsPutOnTheGround) {
   EXPECT_GT(RangeAt(kOnCar, first_), 15);
   EXPECT_GT(Complete(kUp), 4);
   EXPECT_NEAR(RangeAt(kOnCar, store_), kOnCar.norm(), 0.5);
+  const Eigen::Vector2d pixel = kCamera.Project(kOnCar);
+  EXPECT_EQ(SourceAt(store_.Get(40), static_cast<int>(pixel.y()), static_cast<int>(pixel.x())),
+            RangeSource::kMovingObject);
   EXPECT_FALSE(store_.Contains(70));
 }
 
@@ -87,7 +98,7 @@ TEST_F(CompleteViewsTest, WhatWasMeasuredStays) {
   EXPECT_EQ(RangeAt(on_ground, store_), RangeAt(on_ground, first_));
 }
 
-TEST_F(CompleteViewsTest, BesideTheEdgeOfANearSurfaceTheRangeStaysWithoutConfidence) {
+TEST_F(CompleteViewsTest, BesideTheEdgeOfANearSurfaceTheRangeStaysAsThatOfABoundary) {
   // A post in front of the right side of the road, as wide as five pixels and another three grown.
   constexpr int kTop = 60;
   DenseDepth depth = scene_.Render(kCamera, 0);
@@ -98,7 +109,10 @@ TEST_F(CompleteViewsTest, BesideTheEdgeOfANearSurfaceTheRangeStaysWithoutConfide
   for (int column = 150; column < 161; ++column) {
     const bool is_beside = column < 153 || column >= 158;
     EXPECT_NEAR(completed.range.at<float>(kTop + 20, column), 1, 0.01) << column;
-    EXPECT_EQ(completed.confidence.at<float>(kTop + 20, column) > 0.51, !is_beside) << column;
+    EXPECT_EQ(SourceAt(completed, kTop + 20, column),
+              is_beside ? RangeSource::kBoundary : RangeSource::kMeasured)
+        << column;
+    EXPECT_EQ(completed.confidence.at<float>(kTop + 20, column) > 0.9, !is_beside) << column;
   }
 }
 
@@ -108,16 +122,21 @@ TEST_F(CompleteViewsTest, WhatTheNetworkHardlyKnowsMayBeTheSkyBehindAnEdge) {
   const cv::Size size(kCamera.width(), kCamera.height());
   for (int i = 0; i < 9; ++i) {
     DenseDepth depth{cv::Mat(size, CV_32F, cv::Scalar(3)), cv::Mat(size, CV_32F, cv::Scalar(0.4)),
-                     cv::Mat(size, CV_8UC3, cv::Scalar::all(90))};
-    if (i == 4) depth.confidence(cv::Rect(100, 50, 40, 30)).setTo(0.98);
+                     cv::Mat(size, CV_8UC3, cv::Scalar::all(90)), AllFrom(RangeSource::kCompleted)};
+    if (i == 4) {
+      const cv::Rect measured(100, 50, 40, 30);
+      depth.confidence(measured).setTo(0.98);
+      depth.source(measured).setTo(static_cast<double>(RangeSource::kMeasured));
+    }
     first_.Put(10 * i, depth);
   }
   Complete(std::nullopt);
   const DenseDepth completed = store_.Get(40);
   for (const int column : {102, 137}) {
     EXPECT_NEAR(completed.range.at<float>(65, column), 3, 0.01);
-    EXPECT_LT(completed.confidence.at<float>(65, column), 0.51);
+    EXPECT_EQ(SourceAt(completed, 65, column), RangeSource::kBoundary);
   }
+  EXPECT_EQ(SourceAt(completed, 65, 120), RangeSource::kMeasured);
   EXPECT_GT(completed.confidence.at<float>(65, 120), 0.97);
 }
 
@@ -127,6 +146,7 @@ TEST_F(CompleteViewsTest, AViewGetsPointsThatOthersMeasured) {
   const cv::Rect right(150, 70, 40, 40);
   depth.range(right) = 0.5;
   depth.confidence(right) = 0.6;
+  depth.source(right) = static_cast<double>(RangeSource::kCompleted);
   first_.Put(40, depth);
   int num_points = 0;
   Complete(kUp, {.sink = [&](const SparseSample& sample) {
@@ -151,6 +171,7 @@ TEST_F(CompleteViewsTest, BelowACameraOfKnownHeightTheNetworkIsGivenTheGroundTha
     DenseDepth depth = scene_.Render(kCamera, 2.0 * (i - 4));
     depth.range(below) = 20;
     depth.confidence(below) = 0.6;
+    depth.source(below) = static_cast<double>(RangeSource::kCompleted);
     first_.Put(10 * i, depth);
   }
   const cv::Rect steep(0, 112, kCamera.width(), kCamera.height() - 112);  // 67 degrees down

@@ -274,10 +274,10 @@ TEST_F(ComputeDepthTest, WithoutCompletionItHasWhatStereoMeasures) {
   EXPECT_EQ(cv::norm(measured.range, both.range, cv::NORM_INF, is_measured), 0);
 }
 
-TEST_F(ComputeDepthTest, CompletedPixelsAreTrustedLessThanTheNetworkTrustsThem) {
+TEST_F(ComputeDepthTest, ErrorsOfCompletedPixelsAreThoseOfTheNetworkTimesTheFactor) {
   const std::vector<DenseView> views = ViewsAt({-0.5, 0, 0.5, 1.0});
   for (const double factor : {1.0, 3.0}) {
-    Compute(views, {.spacing = 0, .completion_error_factor = factor});
+    Compute(views, {.spacing = 0, .completed_error_factor = factor});
     // The network of this test is sure of 0.9 at most, and states it where nothing was seen.
     const DenseDepth depth = store_.Get(10);
     const cv::Mat is_stated = cv::abs(depth.confidence - 1 / (1 + factor * (1 / 0.9 - 1))) < 0.003;

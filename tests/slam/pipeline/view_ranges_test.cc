@@ -1,5 +1,7 @@
 #include "slam/pipeline/view_ranges.h"
 
+#include <cstdint>
+
 #include <gtest/gtest.h>
 
 #include "slam/io/depth_map_store.h"
@@ -15,6 +17,10 @@ DenseDepth Completed(double confidence) {
   const cv::Size size(kWidth, kHeight);
   return {cv::Mat(size, CV_32F, cv::Scalar(3)), cv::Mat(size, CV_32F, cv::Scalar(confidence)),
           cv::Mat(size, CV_8UC3, cv::Scalar::all(0))};
+}
+
+RangeSource SourceAt(const DenseDepth& depth, int row, int column) {
+  return static_cast<RangeSource>(depth.source.at<std::uint8_t>(row, column));
 }
 
 // Every second column, with the given standard deviation of ln(range).
@@ -33,7 +39,7 @@ TEST(ViewRanges, MeasuredAndCompletedOnesAreToldApartAfterTheyWereStored) {
   const DepthMapStore store(folder / "depth");
   for (const double sigma : {0.001, InverseRangeFusionOptions().max_sigma}) {
     DenseDepth depth = Completed(1.0);  // The surest that a network can be.
-    Distrust(1.0, &depth);
+    StateCompleted(1.0, &depth);
     const InverseRanges measured = EverySecondColumn(sigma);
     PutMeasured(measured, &depth);
     store.Put(0, depth);
@@ -41,6 +47,7 @@ TEST(ViewRanges, MeasuredAndCompletedOnesAreToldApartAfterTheyWereStored) {
     for (int column = 0; column < kWidth; ++column) {
       const float value = restored.value.at<float>(5, column);
       EXPECT_NEAR(value, measured.value.at<float>(5, column), 0.0005 * value) << column;
+      EXPECT_EQ(value > 0, column % 2 == 0) << column;
       EXPECT_NEAR(restored.sigma.at<float>(5, column), measured.sigma.at<float>(5, column), 0.001);
     }
   }
@@ -48,26 +55,27 @@ TEST(ViewRanges, MeasuredAndCompletedOnesAreToldApartAfterTheyWereStored) {
 
 TEST(ViewRanges, ErrorsOfCompletedOnesAreMultiplied) {
   DenseDepth depth = Completed(0.8);  // An error of 0.25.
-  Distrust(3.0, &depth);
+  StateCompleted(3.0, &depth);
   EXPECT_FLOAT_EQ(depth.confidence.at<float>(3, 3), 1 / 1.75F);
-  DenseDepth sure = Completed(0.999);
-  Distrust(3.0, &sure);
-  EXPECT_FLOAT_EQ(sure.confidence.at<float>(3, 3),
-                  1 / (1 + static_cast<float>(kLeastCompletedError)));
+  EXPECT_EQ(SourceAt(depth, 3, 3), RangeSource::kCompleted);
   DenseDepth unknown = Completed(0);
-  Distrust(3.0, &unknown);
+  StateCompleted(3.0, &unknown);
   EXPECT_EQ(unknown.confidence.at<float>(3, 3), 0);
 }
 
-TEST(ViewRanges, LimitedConfidenceIsThatOfTheErrorWhereItWasMore) {
+TEST(ViewRanges, AtBoundariesTheErrorIsAtLeastTheGivenOne) {
   DenseDepth depth = Completed(0.8);
+  StateCompleted(1.0, &depth);
   depth.confidence.at<float>(3, 4) = 0.2F;
   cv::Mat mask = cv::Mat::zeros(depth.range.size(), CV_8U);
   mask(cv::Rect(3, 3, 2, 1)) = 255;
-  LimitConfidence(mask, 1.0, &depth);
+  StateBoundary(mask, 1.0, &depth);
   EXPECT_EQ(depth.confidence.at<float>(3, 3), 0.5F);
   EXPECT_EQ(depth.confidence.at<float>(3, 4), 0.2F);
-  EXPECT_EQ(depth.confidence.at<float>(4, 3), 0.8F);
+  EXPECT_FLOAT_EQ(depth.confidence.at<float>(4, 3), 0.8F);
+  EXPECT_EQ(SourceAt(depth, 3, 3), RangeSource::kBoundary);
+  EXPECT_EQ(SourceAt(depth, 3, 4), RangeSource::kBoundary);
+  EXPECT_EQ(SourceAt(depth, 4, 3), RangeSource::kCompleted);
   EXPECT_EQ(depth.range.at<float>(3, 3), 3);
 }
 

@@ -23,4 +23,12 @@ void WriteFractionImage(const std::filesystem::path& path, const cv::Mat& fracti
 /// Throws UserError for a file that is not a 16-bit image of one channel.
 cv::Mat ReadFractionImage(const std::filesystem::path& path);
 
+/// Writes the source of each range (CV_8UC1 of RangeSource) as an 8-bit PNG of its numbers. Throws
+/// UserError if the file cannot be written.
+void WriteSourceImage(const std::filesystem::path& path, const cv::Mat& source);
+
+/// Reads a file that WriteSourceImage can write (CV_8UC1 of RangeSource). Throws UserError for any
+/// other.
+cv::Mat ReadSourceImage(const std::filesystem::path& path);
+
 }  // namespace orb360

@@ -203,10 +203,14 @@ export class Panorama {
     const u = 0.5 + Math.atan2(ray.x, ray.z) / (2 * Math.PI);
     const v = 0.5 + Math.asin(Math.min(Math.max(ray.y, -1), 1)) / Math.PI;
     const found = this.range.at(u, v);
-    this.readout.textContent = found
-      ? `${uncertainLength(found.range, this.run.unit, scaleSigma(this.run))} away, confidence ` +
-        percent(found.confidence)
-      : "no range here";
+    if (!found) {
+      this.readout.textContent = "no range here";
+      return;
+    }
+    const error = Math.hypot(scaleSigma(this.run) ?? 0, found.error);
+    this.readout.textContent =
+      `${uncertainLength(found.range, this.run.unit, error)} away, confidence ` +
+      percent(found.confidence);
   }
 
   private turned(): void {

@@ -17,11 +17,15 @@ export class ViewRange {
     this.confidences = new Uint8Array(bytes, 8 + 2 * count, count);
   }
 
-  /** Range in units of the world at a place of the panorama in 0..1; null where there is none. */
-  at(u: number, v: number): { range: number; confidence: number } | null {
+  /**
+   * Range in units of the world at a place of the panorama in 0..1, and the relative error to be
+   * expected, beside that of the scale; null where there is none.
+   */
+  at(u: number, v: number): { range: number; confidence: number; error: number } | null {
     const i = this.indexAt(u, v);
     if (this.codes[i] === 0) return null;
-    return { range: rangeOf(this.codes[i]), confidence: this.confidences[i] / 255 };
+    const confidence = this.confidences[i] / 255;
+    return { range: rangeOf(this.codes[i]), confidence, error: 1 / confidence - 1 };
   }
 
   /** Ranges that 2 % and 98 % of the pixels do not exceed. */
