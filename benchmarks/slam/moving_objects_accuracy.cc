@@ -41,6 +41,7 @@ std::vector<orb360::RunView> ReadViews(const fs::path& sequence, const fs::path&
   std::vector<orb360::RunView> views = orb360::ReadRunViews(sequence, run, kMinError);
   for (orb360::RunView& view : views) {
     view.depth.confidence.setTo(kConfidence);
+    view.depth.source.release();
     view.view = orb360::DepthView(view.depth, view.view.world_from_camera(), kMinError);
   }
   return views;

@@ -10,6 +10,7 @@ namespace orb360 {
 /// steps of 1/255. Each pixel is weighted by its solid angle.
 class DepthCalibration {
  public:
+  /// Of some pixels, weighted by their solid angle.
   struct Means {
     double stated;    // mean expected relative error, 1 / confidence - 1
     double observed;  // mean of |error| / truth

@@ -81,7 +81,7 @@ cv::Mat ReadSourceImage(const std::filesystem::path& path) {
   cv::Mat source = ReadPng(path, CV_8UC1, what);
   double largest = 0;
   cv::minMaxLoc(source, nullptr, &largest);
-  if (largest > static_cast<double>(RangeSource::kMovingObject)) {
+  if (largest > static_cast<double>(kRangeSources.back())) {
     throw UserError(path.string() + ": is not " + what);
   }
   return source;

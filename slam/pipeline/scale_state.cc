@@ -49,9 +49,10 @@ double SigmaOf(const EstimatedLensDistance& lenses) {
 struct MapScale {
   double log_scale = 0;
   double sigma = 0;
+  double spread = 0;  // part of sigma: SmoothedScale::spread
   bool has_positions = false;
   bool is_conflict = false;          // of the ground and the positions
-  bool is_height_refuted = false;    // by positions, where the height was assumed
+  bool is_height_refuted = false;    // by positions, or because it varies where there are positions
   double length = 0;                 // of the path, in the map's unit
   int num_steps = 0;                 // keyframes whose images show the ground
   double sum_per_lens_distance = 0;  // of these: change of ln(step) with the distance of the lenses
@@ -109,7 +110,10 @@ MapScale ScaleOf(const Map& map, int number, const std::optional<KnownGround>& g
   const double source_sigma =
       result.num_steps == 0 ? kUnconfirmedSigma
                             : SigmaOf(lenses) * result.sum_per_lens_distance / result.num_steps;
-  const double common = std::hypot(height_sigma, source_sigma);
+  // A scale that varies along the path means a height that varies, or a map that drifts: nothing
+  // tells which, so that each part may be wrong by as much.
+  result.spread = smoothed->spread;
+  const double common = std::hypot(height_sigma, source_sigma, result.spread);
   result.log_scale = smoothed->mean;
   result.sigma = std::hypot(smoothed->mean_sigma, common);
   for (size_t i = 0; i < ids.size(); ++i) {
@@ -170,13 +174,14 @@ std::vector<std::optional<ScaleMeasurement>> MeasureByPositions(
 
 // Joins the scale of a map with that of positions along its keyframes. The ground and the positions
 // have no error in common. An assumed height is a guess, which positions that contradict it refute:
-// the camera flies, or stands on a mast.
+// the camera flies, or stands on a mast. A height that varies is refuted by itself.
 void UsePositions(const ScaleMeasurement& measured, bool is_height_assumed, MapScale* scale) {
   scale->has_positions = true;
   ScaleMeasurement fused = measured;
   if (scale->sigma > 0) {
     fused = FuseScales({scale->log_scale, scale->sigma}, measured, &scale->is_conflict);
-    scale->is_height_refuted = scale->is_conflict && is_height_assumed;
+    scale->is_height_refuted =
+        (scale->is_conflict && is_height_assumed) || scale->spread > kMaxRough;
   }
   if (scale->is_height_refuted) {
     fused = measured;
@@ -192,7 +197,7 @@ void UsePositions(const ScaleMeasurement& measured, bool is_height_assumed, MapS
     const double apart =
         std::sqrt(std::max(0.0, keyframe.sigma * keyframe.sigma - scale->sigma * scale->sigma));
     keyframe.value *= std::exp(fused.log_scale - scale->log_scale);
-    keyframe.sigma = std::hypot(fused.sigma, apart);
+    keyframe.sigma = std::hypot(fused.sigma, apart, scale->spread);
   }
   scale->log_scale = fused.log_scale;
   scale->sigma = fused.sigma;

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "slam/depth/dense_cloud.h"
+#include "slam/depth/fusion_confidence.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {
@@ -12,6 +14,11 @@ namespace {
 float ConfidenceOf(float relative_error) { return 1.0F / (1.0F + relative_error); }
 
 constexpr auto kMeasured = static_cast<std::uint8_t>(RangeSource::kMeasured);
+
+void RequireSources(const DenseDepth& depth) {
+  ORB360_CHECK(depth.source.type() == CV_8UC1 && depth.source.size() == depth.range.size(),
+               depth.source.type(), depth.source.size(), depth.range.size());
+}
 
 }  // namespace
 
@@ -28,6 +35,7 @@ void StateCompleted(double factor, DenseDepth* depth) {
 }
 
 void PutMeasured(const InverseRanges& measured, DenseDepth* depth) {
+  RequireSources(*depth);
   for (int row = 0; row < measured.value.rows; ++row) {
     for (int column = 0; column < measured.value.cols; ++column) {
       const float value = measured.value.at<float>(row, column);
@@ -41,6 +49,7 @@ void PutMeasured(const InverseRanges& measured, DenseDepth* depth) {
 }
 
 void StateBoundary(const cv::Mat& mask, double least_error, DenseDepth* depth) {
+  RequireSources(*depth);
   cv::Mat limited;
   cv::min(depth->confidence, ConfidenceOf(static_cast<float>(least_error)), limited);
   limited.copyTo(depth->confidence, mask);
@@ -48,13 +57,14 @@ void StateBoundary(const cv::Mat& mask, double least_error, DenseDepth* depth) {
 }
 
 InverseRanges MeasuredOf(const DenseDepth& depth) {
+  RequireSources(depth);
   InverseRanges measured{cv::Mat::zeros(depth.range.size(), CV_32F),
                          cv::Mat::zeros(depth.range.size(), CV_32F)};
   for (int row = 0; row < depth.range.rows; ++row) {
     for (int column = 0; column < depth.range.cols; ++column) {
       const float range = depth.range.at<float>(row, column);
       const float confidence = depth.confidence.at<float>(row, column);
-      if (depth.source.at<std::uint8_t>(row, column) != kMeasured) continue;
+      if (!(range > 0) || depth.source.at<std::uint8_t>(row, column) != kMeasured) continue;
       measured.value.at<float>(row, column) = 1 / range;
       measured.sigma.at<float>(row, column) = (1 / confidence - 1) / range;
     }
@@ -64,7 +74,7 @@ InverseRanges MeasuredOf(const DenseDepth& depth) {
 
 double TrustedRange(const DenseDepth& depth, double min_confidence) {
   cv::Mat trusted = depth.range.clone();
-  trusted.setTo(0, ~(depth.confidence >= min_confidence));
+  trusted.setTo(0, ~(FusionConfidence(depth) >= min_confidence));
   const double range = MedianRange(trusted);
   return range > 0 ? range : MedianRange(depth.range);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "nn/base/statistics.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360 {
@@ -58,6 +59,29 @@ class Tridiagonal {
   std::vector<double> below_;  // L(i, i - 1)
 };
 
+// SmoothedScale::spread. `share`: weight of each node in the mean.
+double Spread(std::span<const ScaleNode> nodes, std::span<const double> share, double mean) {
+  constexpr size_t kWindow = 5;
+  std::vector<size_t> measured;
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    if (nodes[i].sigma > 0) measured.push_back(i);
+  }
+  if (measured.size() < kWindow) return 0;
+  double sum = 0;
+  double weight = 0;
+  for (size_t i = 0; i < measured.size(); ++i) {
+    // The first and the last ones share a window.
+    const size_t first = std::min(i - std::min(i, kWindow / 2), measured.size() - kWindow);
+    std::vector<double> near;
+    for (size_t k = 0; k < kWindow; ++k) near.push_back(nodes[measured[first + k]].measured);
+    const double apart = Median(near) - mean;
+    const double sigma = nodes[measured[i]].sigma;
+    sum += share[measured[i]] * std::max(0.0, apart * apart - sigma * sigma);
+    weight += share[measured[i]];
+  }
+  return weight > 0 ? std::sqrt(sum / weight) : 0;
+}
+
 }  // namespace
 
 std::optional<SmoothedScale> SmoothScale(std::span<const ScaleNode> nodes) {
@@ -110,6 +134,7 @@ std::optional<SmoothedScale> SmoothScale(std::span<const ScaleNode> nodes) {
   };
   result.mean = dot(share, result.log_scale);
   result.mean_sigma = birge * std::sqrt(dot(share, information.Solve(share)));
+  result.spread = Spread(nodes, share, result.mean);
   return result;
 }
 

@@ -20,6 +20,11 @@ struct SmoothedScale {
   std::vector<double> sigma;      ///< Standard deviation of each x.
   double mean = 0;                ///< Mean of x, weighted by path length.
   double mean_sigma = 0;          ///< Standard deviation of the mean.
+  /// How far the measurements vary along the path beyond their standard deviations: the root of the
+  /// mean square, weighted by path length as the mean. Each is the median of the five around it, so
+  /// that a stretch of what the mean takes for outliers counts, but single ones do not. 0 where
+  /// there are fewer than five.
+  double spread = 0;
 };
 
 /// Estimates the scale along a path from all of its measurements (a random walk with measurements,

@@ -26,8 +26,8 @@ struct ThinnedView {
 };
 
 /// Returns at most `max_points` points of a depth map, evenly spread over the sphere, and so is any
-/// first part of them. Pixels without a range, and those of which an error above a tenth of the
-/// range is expected, such as those of the sky, give none.
+/// first part of them. Pixels without a range, and those that count with an error above a
+/// tenth of it (FusionConfidence), such as those of the sky and of objects that move, give none.
 std::vector<ThinnedView::Point> ThinView(const DenseDepth& depth, int max_points);
 
 /// The dense cloud of a run while it is computed, view by view, for the pages of LiveFeed. It is

@@ -17,6 +17,8 @@
 #include "tests/apps/orb360/program.h"
 #include "tests/apps/orb360/run_fixture.h"
 #include "tests/apps/orb360/textured_room.h"
+#include <orb360/slam/depth/dense_depth.h>
+#include <orb360/slam/io/depth_image.h>
 #include <orb360/slam/io/map_file.h>
 #include <orb360/slam/io/trajectory.h>
 
@@ -101,6 +103,12 @@ TEST_F(RunTest, WithANetworkTheCloudIsDenseAndTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(files(OutFile("depth")), summary["cloud"]["views"].get<int>());
   EXPECT_EQ(files(OutFile("confidence")), summary["cloud"]["views"].get<int>());
   EXPECT_EQ(files(OutFile("source")), summary["cloud"]["views"].get<int>());
+  int num_measured = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(OutFile("source"))) {
+    const cv::Mat source = ReadSourceImage(entry.path());
+    num_measured += cv::countNonZero(source == static_cast<double>(RangeSource::kMeasured));
+  }
+  EXPECT_GT(num_measured, 0);
   EXPECT_EQ(files(OutFile("sparse")), summary["cloud"]["views"].get<int>());
   for (const auto& entry : std::filesystem::directory_iterator(OutFile("sparse"))) {
     const SparseSample sample = ReadSparseSample(entry.path());

@@ -123,6 +123,19 @@ TEST(ScaleState, TheLeastCertainMapTellsTheStateOfTheWhole) {
             ScaleState::kUnknown);
 }
 
+TEST(ScaleState, IsUnknownWhereTheHeightVaries) {
+  // A drone takes off: the steps seem to be twelve times as short once it is up.
+  std::vector<double> factors(16, 1.0);
+  for (int i = 8; i < 16; ++i) factors[i] = 12;
+  const EstimatedScale scale = Estimate(WalkOver(factors), kGround);
+  EXPECT_EQ(scale.whole.state, ScaleState::kUnknown);
+  // The truth, 1, is within the stated errors everywhere.
+  EXPECT_LT(std::abs(std::log(scale.whole.value)), 2 * scale.whole.sigma);
+  for (const KeyframeScale& keyframe : scale.keyframes) {
+    EXPECT_LT(std::abs(std::log(keyframe.value)), 3 * keyframe.sigma);
+  }
+}
+
 TEST(ScaleState, TheStandardDeviationGrowsAwayFromTheLastStep) {
   std::vector<double> factors(14, 0.0);
   for (int i = 1; i < 6; ++i) factors[i] = 1.0;
@@ -174,6 +187,19 @@ TEST(ScaleState, PositionsMakeItMetricWithoutGround) {
   EXPECT_NEAR(scale.keyframes.back().value, 3.0, 0.01);
   EXPECT_EQ(scale.keyframes.back().sigma, scale.whole.sigma);
   EXPECT_EQ(EstimateBy(map, std::nullopt, 3.0, 1.0).whole.state, ScaleState::kRough);
+}
+
+TEST(ScaleState, PositionsTellTheScaleOfAPathWhoseHeightVaries) {
+  std::vector<double> factors(16, 1.0);
+  for (int i = 8; i < 16; ++i) factors[i] = 12;
+  for (const bool is_height_given : {true, false}) {
+    const EstimatedScale scale = EstimateBy(WalkOver(factors), kGround, 1.0, 0.01, is_height_given);
+    EXPECT_EQ(scale.whole.state, ScaleState::kMetric);
+    EXPECT_NEAR(scale.whole.value, 1.0, 0.01);
+    EXPECT_EQ(scale.whole.sources, std::vector<std::string>{"positions"});
+    // Where the path is bent, nobody knows.
+    for (const KeyframeScale& keyframe : scale.keyframes) EXPECT_GT(keyframe.sigma, 0.3);
+  }
 }
 
 TEST(ScaleState, PositionsAndGroundThatAgreeAreSurerThanEach) {

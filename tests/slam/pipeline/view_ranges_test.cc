@@ -6,6 +6,7 @@
 
 #include "slam/io/depth_map_store.h"
 #include "tests/slam/io/temp_folder.h"
+#include <orb360/nn/base/check.h>
 
 namespace orb360 {
 namespace {
@@ -77,6 +78,24 @@ TEST(ViewRanges, AtBoundariesTheErrorIsAtLeastTheGivenOne) {
   EXPECT_EQ(SourceAt(depth, 3, 4), RangeSource::kBoundary);
   EXPECT_EQ(SourceAt(depth, 4, 3), RangeSource::kCompleted);
   EXPECT_EQ(depth.range.at<float>(3, 3), 3);
+}
+
+TEST(ViewRanges, DepthWithoutSourcesIsRefused) {
+  DenseDepth depth = Completed(0.8);
+  EXPECT_THROW(PutMeasured(EverySecondColumn(0.05), &depth), ContractError);
+  EXPECT_THROW(StateBoundary(cv::Mat::zeros(depth.range.size(), CV_8U), 1.0, &depth),
+               ContractError);
+  EXPECT_THROW(MeasuredOf(depth), ContractError);
+}
+
+TEST(ViewRanges, TheTrustedRangeIsThatOfWhatCountsInFusion) {
+  DenseDepth depth = Completed(0.9);
+  depth.range.colRange(0, kWidth / 4) = 7;
+  EXPECT_EQ(TrustedRange(depth, 0.8), 3);  // By the network alone all are trusted.
+  StateCompleted(1.0, &depth);
+  depth.source.colRange(0, kWidth / 4) = static_cast<double>(RangeSource::kMeasured);
+  EXPECT_EQ(TrustedRange(depth, 0.8), 7);   // Completed ones count less than stated.
+  EXPECT_EQ(TrustedRange(depth, 0.95), 3);  // None is trusted.
 }
 
 TEST(ViewRanges, OneOfEachSquareIsSampledAndTakesThePlaceOfPoints) {

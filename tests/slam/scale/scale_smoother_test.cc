@@ -101,6 +101,36 @@ TEST(SmoothScale, DriftLargerThanStatedWidensIt) {
   EXPECT_NEAR(drifting->mean_sigma / agreed->mean_sigma, 10, 3);
 }
 
+TEST(SmoothScale, TheSpreadIsHowFarMeasurementsVaryBeyondTheirErrors) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  // The path holds together, so that the scale cannot follow the measurements.
+  std::vector<ScaleNode> nodes(60, {1.0, 1e-8, 0.0, 0.05});
+  for (ScaleNode& node : nodes) node.measured = node.sigma * normal(random);
+  EXPECT_LT(SmoothScale(nodes)->spread, 0.01);
+  // Single outliers count for nothing.
+  for (size_t i = 3; i < 60; i += 9) nodes[i].measured = 2;
+  EXPECT_LT(SmoothScale(nodes)->spread, 0.03);
+  // A third of the path was seen from a height twenty times as large.
+  for (size_t i = 40; i < 60; ++i) nodes[i].measured -= std::log(20.0);
+  EXPECT_NEAR(SmoothScale(nodes)->spread, std::log(20.0) / std::sqrt(3.0), 0.2);
+}
+
+TEST(SmoothScale, TheSpreadIsThatOfMeasuredNodesWithAndWithoutLength) {
+  // Each second node is measured: ten of them 0, and ten 1.
+  std::vector<ScaleNode> nodes(40, {0.0, 1e-8, 0.0, 0.0});
+  for (size_t i = 0; i < nodes.size(); i += 2) {
+    nodes[i].sigma = 0.01;
+    nodes[i].measured = i < 20 ? 0 : 1;
+  }
+  EXPECT_NEAR(SmoothScale(nodes)->spread, 0.5, 0.02);
+  // Of what lies along a path only its second half counts; the mean of all is half-way still.
+  for (size_t i = 20; i < 40; ++i) nodes[i].path_length = 1;
+  EXPECT_NEAR(SmoothScale(nodes)->spread, 0.5, 0.02);
+  // Fewer than five measurements tell nothing of how they vary.
+  EXPECT_EQ(SmoothScale(std::vector<ScaleNode>{{1, 1e-8, 0, 0.01}, {1, 1e-8, 2, 0.01}})->spread, 0);
+}
+
 TEST(SmoothScale, IsEmptyWhereNothingWasMeasured) {
   EXPECT_FALSE(SmoothScale({}));
   EXPECT_FALSE(SmoothScale(std::vector<ScaleNode>(4, {1.0, 1e-4, 0.0, 0.0})));

@@ -44,6 +44,16 @@ std::vector<ReadView> Read(const std::string& bytes, std::uint32_t* end, std::ui
   return views;
 }
 
+TEST(ThinView, WhatMovesGivesNone) {
+  DenseDepth depth = Wall();
+  depth.source =
+      cv::Mat(depth.range.size(), CV_8U, cv::Scalar(static_cast<double>(RangeSource::kMeasured)));
+  depth.source.rowRange(32, 64) = static_cast<double>(RangeSource::kMovingObject);
+  const std::vector<ThinnedView::Point> points = ThinView(depth, 1000);
+  EXPECT_GT(points.size(), 300U);
+  for (const ThinnedView::Point& point : points) EXPECT_LT(point.color[2], 32);
+}
+
 TEST(ThinView, SpreadsPointsEvenlyOverWhatIsKnown) {
   const std::vector<ThinnedView::Point> points = ThinView(Wall(), 1000);
   ASSERT_EQ(points.size(), 1000U);

@@ -10,9 +10,9 @@ namespace orb360 {
 
 /// How the range of a pixel is known.
 enum class RangeSource : std::uint8_t {
-  kNetwork = 0,       ///< By the network alone: nothing was measured. Also where there is no range.
+  kNetwork = 0,       ///< By the network, in a run without stereo; or there is no range.
   kMeasured = 1,      ///< By multi-view stereo.
-  kCompleted = 2,     ///< By the network, from what stereo measured around it.
+  kCompleted = 2,     ///< By the network, from landmarks and from what stereo measured.
   kBoundary = 3,      ///< Beside the edge of a near surface, whose range it may have in its place.
   kMovingObject = 4,  ///< Of an object that moves, put upright where it touches the ground.
 };
@@ -26,7 +26,8 @@ inline constexpr std::array kRangeSources = {RangeSource::kNetwork, RangeSource:
 struct DenseDepth {
   /// CV_32FC1: range along each pixel's ray, in the unit of the map; 0 where unknown.
   cv::Mat range;
-  /// CV_32FC1 in 0..1: 1 / confidence - 1 is the expected relative error of the range.
+  /// CV_32FC1 in 0..1: 1 / confidence - 1 is the expected relative error of the range. Of what is
+  /// at rest, leave kBoundary and kMovingObject of `source` out: their errors are of another kind.
   cv::Mat confidence;
   /// CV_8UC3, BGR.
   cv::Mat color;
