@@ -132,6 +132,11 @@ print(json.dumps([dict(sparse=str(f), depth=here + "/street.png", confidence=her
         row = r"\| street( \| 0\.200 / 0\.\d\d\d, 1\.000){3} \|"
         self.assertRegex(printed.getvalue(), row)
 
+    def test_a_completed_range_that_the_image_cannot_store_is_far_away(self) -> None:
+        path = str(self.folder / "depth.png")
+        cv2.imwrite(path, np.array([[0, 256, 65535]], np.uint16))
+        np.testing.assert_allclose(evaluate_depth.read_depth(path), [[256, 1, 256]], rtol=1e-4)
+
     def test_sparse_files_have_what_the_program_reads(self) -> None:
         frame = drives.frame()
         points = simulate(frame, np.random.RandomState(0))

@@ -98,7 +98,11 @@ def read_fraction(path: str) -> np.ndarray:
 
 
 def read_depth(path: str) -> np.ndarray:
-    return cv2.imread(path, cv2.IMREAD_UNCHANGED).astype(np.float32) / shards.RANGE_UNITS
+    """Ranges of a completed panorama, metres. It has one everywhere: what is farther away than the
+    image can store, which it has as 0, is at the farthest range that it can."""
+    units = cv2.imread(path, cv2.IMREAD_UNCHANGED)
+    farthest = np.iinfo(units.dtype).max
+    return np.where(units > 0, units, farthest).astype(np.float32) / shards.RANGE_UNITS
 
 
 @dataclass(frozen=True)
