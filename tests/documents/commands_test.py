@@ -14,9 +14,9 @@ BUILD = Path(os.environ.get("ORB360_BINARY_DIR", ROOT / "build"))
 # Programs with commands of their own, each with its own --help.
 WITH_COMMANDS = ("orb360", "town")
 # Programs that are not this project's.
-FOREIGN = {"apt-get", "cd", "clang-format", "clang-tidy", "cmake", "ctest", "do", "done", "doxygen",
-           "dpkg", "export", "ffmpeg", "for", "git", "head", "mkdir", "ninja", "node", "npm",
-           "ns-train", "rm", "sudo", "time", "yes"}
+FOREIGN = {"apt-get", "awk", "cd", "clang-format", "clang-tidy", "cmake", "ctest", "do", "done",
+           "doxygen", "dpkg", "echo", "export", "ffmpeg", "for", "git", "head", "mkdir", "ninja",
+           "node", "npm", "ns-train", "rm", "sudo", "time", "yes"}
 
 
 @functools.cache
