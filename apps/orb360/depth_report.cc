@@ -7,23 +7,16 @@
 #include <sstream>
 #include <string>
 
+#include "apps/orb360/report_row.h"
+
 namespace orb360 {
 namespace {
 
-/// A column of the table of errors, which describes a key of the report.
-struct Column {
-  const char* key;
-  const char* label;
-  const char* unit;
-  int decimals;
-  double factor = 1.0;  // from the unit of the report to that of the table
-};
-
-constexpr Column kColumns[] = {{"rmse", "RMSE", "m", 3},
-                               {"mae", "MAE", "m", 3},
-                               {"abs_rel", "AbsRel", "", 4},
-                               {"delta_1.25", "<1.25", "%", 2, 100.0},
-                               {"coverage", "covered", "%", 1, 100.0}};
+constexpr ReportRow kColumns[] = {{"rmse", "RMSE", "m", 3},
+                                  {"mae", "MAE", "m", 3},
+                                  {"abs_rel", "AbsRel", "", 4},
+                                  {"delta_1.25", "<1.25", "%", 2, 100.0},
+                                  {"coverage", "covered", "%", 1, 100.0}};
 
 constexpr int kLabelWidth = 18;
 constexpr int kNumberWidth = 12;
@@ -72,7 +65,7 @@ const char* NameOf(RangeSource source) {
 
 void PrintDepthRow(const std::string& label, const nlohmann::json& bin, std::ostream& out) {
   out << std::left << std::setw(kLabelWidth) << label << std::right;
-  for (const Column& column : kColumns) {
+  for (const ReportRow& column : kColumns) {
     out << std::setw(kNumberWidth) << std::setprecision(column.decimals)
         << column.factor * bin[column.key].get<double>();
   }
@@ -162,7 +155,7 @@ void PrintDepth(const nlohmann::json& depth, std::ostream& out) {
   std::ostringstream title;
   title << "depth, " << depth["images"] << " images";
   out << '\n' << std::left << std::setw(kLabelWidth) << title.str() << std::right;
-  for (const Column& column : kColumns) {
+  for (const ReportRow& column : kColumns) {
     out << std::setw(kNumberWidth) << std::string(column.label) + ' ' + column.unit;
   }
   out << '\n';

@@ -6,20 +6,12 @@
 #include <string>
 
 #include "apps/orb360/depth_report.h"
+#include "apps/orb360/report_row.h"
 
 namespace orb360 {
 namespace {
 
-/// A line of the table, which describes a key of the report.
-struct Row {
-  const char* key;
-  const char* label;
-  const char* unit;
-  int decimals;
-  double factor = 1.0;  // from the unit of the report to that of the table
-};
-
-constexpr Row kRows[] = {
+constexpr ReportRow kRows[] = {
     {"pairs", "pairs", "", 0},
     {"tracked_fraction", "tracked fraction", "%", 1, 100.0},
     {"features_per_keyframe", "features per keyframe", "", 1},
@@ -40,7 +32,7 @@ constexpr Row kRows[] = {
 };
 
 /// The lines about the local scale.
-constexpr Row kLocalScaleRows[] = {
+constexpr ReportRow kLocalScaleRows[] = {
     {"window_m", "local scale, length of the windows", "m", 0},
     {"min", "  least (1 is perfect)", "", 5},
     {"max", "  largest", "", 5},
@@ -50,14 +42,14 @@ constexpr Row kLocalScaleRows[] = {
 };
 
 /// The lines about loops.
-constexpr Row kLoopRows[] = {
+constexpr ReportRow kLoopRows[] = {
     {"revisits", "places that the camera comes back to", "", 0},
     {"closed", "  loops closed there", "", 0},
     {"wrong", "  wrong loops", "", 0},
 };
 
 /// The lines about the cloud.
-constexpr Row kCloudRows[] = {
+constexpr ReportRow kCloudRows[] = {
     {"points", "cloud, points compared", "", 0},
     {"median_distance", "  median distance from the surface", "m", 3},
     {"accuracy_10cm", "  within 15 m: accuracy, nearer than 10 cm", "%", 1, 100.0},
@@ -70,12 +62,12 @@ constexpr Row kCloudRows[] = {
     {"f_score_1_percent", "  within 30 m: F-score, 1 % of the range", "", 3},
 };
 
-constexpr Row kStatedScaleRows[] = {
+constexpr ReportRow kStatedScaleRows[] = {
     {"value", "stated scale", "", 4},
     {"sigma", "  its standard deviation", "%", 2, 100.0},
     {"error_sigmas", "  its error, standard deviations", "", 2},
 };
-constexpr Row kCalibrationRows[] = {
+constexpr ReportRow kCalibrationRows[] = {
     {"normalized_squared_error", "  along the path: normalized squared error", "", 2},
     {"within_1_sigma", "    within one standard deviation", "%", 1, 100.0},
     {"within_2_sigma", "    within two", "%", 1, 100.0},
@@ -84,8 +76,8 @@ constexpr Row kCalibrationRows[] = {
 constexpr int kLabelWidth = 44;
 constexpr int kNumberWidth = 12;
 
-void PrintRows(std::span<const Row> rows, const nlohmann::json& report, std::ostream& out) {
-  for (const Row& row : rows) {
+void PrintRows(std::span<const ReportRow> rows, const nlohmann::json& report, std::ostream& out) {
+  for (const ReportRow& row : rows) {
     if (!report.contains(row.key) || report[row.key].is_null()) continue;
     out << std::left << std::setw(kLabelWidth) << row.label << std::right << std::setw(kNumberWidth)
         << std::setprecision(row.decimals) << row.factor * report[row.key].get<double>() << ' '

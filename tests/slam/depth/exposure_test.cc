@@ -67,6 +67,15 @@ TEST_F(EstimateGainsTest, ColoursOfOtherSurfacesAreNotCompared) {
   for (const Eigen::Array3f& gain : Estimate()) EXPECT_LT((gain - 1).abs().maxCoeff(), 0.02F);
 }
 
+TEST_F(EstimateGainsTest, WhatMovesIsNotCompared) {
+  for (DenseDepth& depth : depths_) {
+    depth.source = cv::Mat(depth.range.size(), CV_8U,
+                           cv::Scalar(static_cast<double>(RangeSource::kMovingObject)));
+  }
+  depths_[2].color *= 0.5;
+  for (const Eigen::Array3f& gain : Estimate()) EXPECT_EQ(gain.matrix(), Eigen::Vector3f::Ones());
+}
+
 TEST_F(EstimateGainsTest, ViewsThatSeeNothingOfEachOtherKeepTheirColours) {
   for (DenseView& view : views_) view.neighbours.clear();
   depths_[2].color *= 0.5;
