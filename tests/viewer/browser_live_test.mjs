@@ -39,9 +39,20 @@ function clickButton(page, name) {
   );
 }
 
-/** What the page tells of the view, such as the number of the frame. */
-function numberOf(page, name) {
-  return page.$eval("#view", (canvas, key) => Number(canvas.dataset[key]), name);
+/** Asks for one frame and waits until the page shows where the run waits again: that frame. */
+async function step(page) {
+  const answer = page.waitForResponse((response) => response.url().endsWith("/step"));
+  await clickButton(page, "One frame");
+  await answer; // A state that is asked for from now on knows of the step.
+  const shown = await page.waitForFunction(
+    async () => {
+      const state = await (await fetch("live.json?since=0")).json();
+      const shown = Number(document.querySelector("#view").dataset.frame);
+      return state.isWaiting && state.frame === shown && { shown };
+    },
+    { polling: 50 },
+  );
+  return (await shown.jsonValue()).shown;
 }
 
 function waitFor(page, name, least) {
@@ -57,26 +68,11 @@ test("shows, steps and finishes a run that goes on", async (t) => {
   const live = await serveLive(town, join(out, "live"));
   t.after(live.kill); // where the test fails before it has ended
   const page = await openLive(live.url);
-  const frameNow = () => numberOf(page, "frame");
   const click = (name) => clickButton(page, name);
-  await click("One frame");
-  await page.waitForFunction(() => document.body.dataset.state === "ready");
-  for (let i = 0; i < 4; ++i) {
-    // A frame may have been under way when the run was paused.
-    await page.waitForFunction(() => document.querySelector("#view").dataset.waiting === "true");
-    const before = await frameNow();
-    await click("One frame");
-    await page.waitForFunction(
-      (frame) => Number(document.querySelector("#view").dataset.frame) === frame + 1,
-      {},
-      before,
-    );
-  }
+  let frame = await step(page); // A frame may have been under way when the run was paused.
+  for (let i = 0; i < 4; ++i) assert.equal(await step(page), ++frame);
   assert.equal(await page.$eval(".chip", (chip) => chip.textContent), "paused");
-  assert.equal(
-    await page.$eval("#view", (canvas) => canvas.dataset.imageFrame),
-    String(await frameNow()),
-  );
+  assert.equal(await page.$eval("#view", (canvas) => canvas.dataset.imageFrame), String(frame));
   const isFollowing = () => page.$eval(".check input", (input) => input.checked);
   assert.ok(await isFollowing());
   await page.focus("#view");
