@@ -1,9 +1,6 @@
 #include "apps/town/drive/indoor_walk.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
 #include <numeric>
 #include <span>
 
@@ -12,11 +9,6 @@
 
 namespace orb360::town {
 namespace {
-
-constexpr double kStep = 0.05;        // seconds between states
-constexpr float kSpacing = 0.05F;     // metres between points of a route
-constexpr double kFastestTurn = 1.1;  // radians per second
-constexpr double kSlowest = 0.15;     // metres per second, in the sharpest bends
 
 constexpr size_t kFewestCells = 20;  // of a room that is entered
 
@@ -60,19 +52,6 @@ std::vector<Vector2f> PlanRoute(const FloorPlan& plan, const FreeSpace& space, d
   return route;
 }
 
-std::vector<Vector2f> Resampled(const std::vector<Vector2f>& route) {
-  std::vector<Vector2f> points = {route.front()};
-  float rest = kSpacing;
-  for (size_t i = 1; i < route.size(); ++i) {
-    const Vector2f way = route[i] - route[i - 1];
-    const float length = way.norm();
-    float at = rest;
-    for (; at <= length; at += kSpacing) points.push_back(route[i - 1] + at / length * way);
-    rest = at - length;
-  }
-  return points;
-}
-
 /// Moves points towards the middle of their neighbours as long as they stay clear of obstacles.
 void Smooth(const FreeSpace& space, std::vector<Vector2f>* points) {
   constexpr int kRounds = 60;
@@ -89,94 +68,24 @@ void Smooth(const FreeSpace& space, std::vector<Vector2f>* points) {
   }
 }
 
-/// Returns the mean over `reach` values on either side.
-std::vector<double> Averaged(const std::vector<double>& values, size_t reach) {
-  std::vector<double> sums(values.size() + 1);
-  std::partial_sum(values.begin(), values.end(), sums.begin() + 1);
-  std::vector<double> means(values.size());
-  for (size_t i = 0; i < values.size(); ++i) {
-    const size_t begin = i < reach ? 0 : i - reach;
-    const size_t end = std::min(values.size(), i + reach + 1);
-    means[i] = (sums[end] - sums[begin]) / static_cast<double>(end - begin);
+RouteWalk PlanWalk(const FloorPlan& plan, const FreeSpace& space, const WalkOptions& options,
+                   const Random& random) {
+  // Bends and smoothing make a route shorter in time than it was planned; then a longer one is.
+  double length = 1.1 * options.speed * options.duration + 5;  // metres
+  while (true) {
+    Random draw = random;
+    std::vector<Vector2f> points = ResampleRoute(PlanRoute(plan, space, length, draw));
+    Smooth(space, &points);
+    RouteWalk walk(points, options.speed);
+    if (walk.duration() >= options.duration) return walk;
+    length *= 1.3;
   }
-  return means;
-}
-
-/// Returns the direction of the route at each point, without jumps.
-std::vector<double> Headings(const std::vector<Vector2f>& points) {
-  std::vector<double> headings(points.size());
-  for (size_t i = 0; i < points.size(); ++i) {
-    const Vector2f way = points[std::min(i + 2, points.size() - 1)] - points[i < 2 ? 0 : i - 2];
-    const double last = i == 0 ? 0 : headings[i - 1];
-    if (way.norm() < 1e-4F) {
-      headings[i] = last;
-      continue;
-    }
-    const double heading = std::atan2(way.y(), way.x());
-    headings[i] = i == 0 ? heading : last + std::remainder(heading - last, 2 * std::numbers::pi);
-  }
-  return headings;
-}
-
-/// Returns the states along a route, slower in bends.
-std::vector<WalkState> StatesAlong(const std::vector<Vector2f>& points, double speed) {
-  const std::vector<double> headings = Averaged(Averaged(Headings(points), 8), 8);
-  std::vector<double> speeds(points.size());
-  for (size_t i = 0; i < points.size(); ++i) {
-    const double turn = std::abs(headings[std::min(i + 1, points.size() - 1)] - headings[i]);
-    speeds[i] = std::clamp(kFastestTurn * kSpacing / (turn + 1e-6), kSlowest, speed);
-  }
-  speeds = Averaged(Averaged(speeds, 5), 5);
-  std::vector<WalkState> states;
-  double station = 0;  // points along the route
-  const auto last = static_cast<double>(points.size() - 1);
-  while (station < last) {
-    const auto i = static_cast<size_t>(station);
-    const double t = station - static_cast<double>(i);
-    const Vector2f p = points[i] + static_cast<float>(t) * (points[i + 1] - points[i]);
-    states.push_back(
-        {p.cast<double>(), headings[i] + t * (headings[i + 1] - headings[i]), station * kSpacing});
-    station += speeds[i] * kStep / kSpacing;
-  }
-  return states;
 }
 
 }  // namespace
 
 IndoorWalk::IndoorWalk(const FloorPlan& plan, const std::vector<Area>& taken,
-                       const WalkOptions& options, Random random) {
-  const FreeSpace space(plan, taken);
-  // Bends and smoothing make a route shorter in time than it was planned; then a longer one is.
-  double length = 1.1 * options.speed * options.duration + 5;  // metres
-  while (states_.empty() || duration() < options.duration) {
-    Random draw = random;
-    std::vector<Vector2f> points = Resampled(PlanRoute(plan, space, length, draw));
-    Smooth(space, &points);
-    states_ = StatesAlong(Resampled(points), options.speed);
-    length *= 1.3;
-  }
-}
-
-double IndoorWalk::duration() const { return kStep * static_cast<double>(states_.size() - 1); }
-
-WalkState IndoorWalk::At(double time) const {
-  // Cubic B-splines smooth the states and stay within their hull.
-  const double at = std::clamp(time, 0.0, duration()) / kStep;
-  const auto i = static_cast<int>(at);
-  const double t = at - i;
-  const double s = 1 - t;
-  const std::array<double, 4> weights = {s * s * s / 6, (4 - 6 * t * t + 3 * t * t * t) / 6,
-                                         (4 - 6 * s * s + 3 * s * s * s) / 6, t * t * t / 6};
-  WalkState state{Eigen::Vector2d::Zero()};
-  for (int k = 0; k < 4; ++k) {
-    const int index = std::clamp(i + k - 1, 0, static_cast<int>(states_.size()) - 1);
-    const WalkState& knot = states_[static_cast<size_t>(index)];
-    const double weight = weights[static_cast<size_t>(k)];
-    state.position += weight * knot.position;
-    state.heading += weight * knot.heading;
-    state.distance += weight * knot.distance;
-  }
-  return state;
-}
+                       const WalkOptions& options, const Random& random)
+    : walk_(PlanWalk(plan, FreeSpace(plan, taken), options, random)) {}
 
 }  // namespace orb360::town

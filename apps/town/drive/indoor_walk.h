@@ -2,8 +2,7 @@
 
 #include <vector>
 
-#include <Eigen/Core>
-
+#include "apps/town/drive/route_walk.h"
 #include "apps/town/image/random.h"
 #include "apps/town/world/interior/floor_plan.h"
 
@@ -14,13 +13,6 @@ struct WalkOptions {
   double duration = 60;  ///< seconds; the walk is at least so long
 };
 
-/// Where somebody is and looks while walking.
-struct WalkState {
-  Eigen::Vector2d position;
-  double heading = 0;   ///< radians, counter-clockwise from x, without jumps
-  double distance = 0;  ///< walked since the start, metres
-};
-
 /// A walk through the rooms of a storey and back again: from room to room in an order drawn anew
 /// each time round, through the doorways, around the furniture, slower in bends.
 class IndoorWalk {
@@ -28,14 +20,14 @@ class IndoorWalk {
   static constexpr float kClearance = 0.27F;  ///< metres kept from walls and furniture
 
   IndoorWalk(const FloorPlan& plan, const std::vector<Area>& taken, const WalkOptions& options,
-             Random random);
+             const Random& random);
 
   /// Returns the state at a time in seconds, clamped to the walk.
-  WalkState At(double time) const;
-  double duration() const;
+  WalkState At(double time) const { return walk_.At(time); }
+  double duration() const { return walk_.duration(); }
 
  private:
-  std::vector<WalkState> states_;  // every kStep seconds
+  RouteWalk walk_;
 };
 
 }  // namespace orb360::town

@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
+#include "apps/town/drive/carried_camera.h"
 #include "apps/town/drive/indoor_walk.h"
 #include "apps/town/sequence/drive.h"
-#include "apps/town/sequence/named_town.h"
 #include "apps/town/world/interior/interior.h"
 
 namespace orb360::town {
@@ -43,13 +43,7 @@ class InteriorDrive : public Drive {
   std::vector<Instance> MovingAt(double) const override { return {}; }
 
  private:
-  /// The way in which the camera is carried.
-  struct Carriage {
-    double height = 1.5;  ///< metres above the floor
-    double speed = 1;     ///< metres per second on straight ways
-    double sway = 1;      ///< factor on the motion of walking
-  };
-  static Carriage DrawCarriage(const InteriorSpec& spec, const FloorPlan& plan);
+  static Carriage CarriageOf(const InteriorSpec& spec, const FloorPlan& plan);
   /// Returns the light beyond the windows, as dim as it is for an exposure of rooms.
   static Light LightOf(const InteriorSpec& spec, bool are_lamps_on);
   /// Sets the exposure for the rooms along the walk.

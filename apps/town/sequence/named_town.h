@@ -1,21 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 
+#include "apps/town/drive/carried_camera.h"
 #include "apps/town/world/street_plan.h"
 
 namespace orb360::town {
-
-/// The mounting of the camera on the car's roof.
-struct Mount {
-  std::optional<double> height;  ///< metres above the road; without it, the town's own
-  double pitch = 0;              ///< radians, nose up
-  double roll = 0;               ///< radians, left side up
-  double shaking = 1;            ///< factor on vibration and on leaning in bends
-};
 
 /// The town to be rendered and its settings.
 struct TownSpec {
