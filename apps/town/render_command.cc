@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -5,6 +7,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <omp.h>
@@ -16,8 +19,10 @@
 #include "apps/town/sequence/interior_drive.h"
 #include "apps/town/sequence/named_town.h"
 #include "apps/town/sequence/render_folder.h"
+#include "apps/town/sequence/seed.h"
 #include "apps/town/sequence/sequence_writer.h"
 #include "apps/town/sequence/town_drive.h"
+#include "apps/town/sequence/walk_drive.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360::town {
@@ -26,6 +31,8 @@ namespace {
 struct Arguments {
   std::string town;
   std::string interior;
+  std::string landscape;
+  std::string tunnel;
   ImportedSpec imported;
   std::filesystem::path out;
   std::optional<int> frames;
@@ -62,6 +69,11 @@ SensorOptions SensorOf(const Arguments& arguments) {
   return sensor;
 }
 
+Mount MountOf(const Arguments& arguments) {
+  return {arguments.camera_height, arguments.pitch_degrees * kDegree,
+          arguments.roll_degrees * kDegree, arguments.shaking};
+}
+
 /// Returns the recording. `width` and `cube_size` are used if the user does not state the size.
 Recording RecordingOf(const Arguments& arguments, int width, int cube_size) {
   const int chosen = arguments.width.value_or(width);
@@ -77,8 +89,7 @@ std::unique_ptr<Drive> MakeTownDrive(const Arguments& arguments) {
   Recording recording = RecordingOf(arguments, spec.width, spec.cube_size);
   if (arguments.light) spec.light = *arguments.light;
   if (arguments.traffic) spec.traffic = *arguments.traffic;
-  spec.mount = {arguments.camera_height, arguments.pitch_degrees * kDegree,
-                arguments.roll_degrees * kDegree, arguments.shaking};
+  spec.mount = MountOf(arguments);
   recording.frames = arguments.frames.value_or(spec.frames);
   recording.sensor.seed = spec.seed;
   return std::make_unique<TownDrive>(spec, recording);
@@ -99,16 +110,32 @@ void Warn(const std::string& consequence, const std::vector<std::string>& proble
 std::unique_ptr<Drive> MakeInteriorDrive(const Arguments& arguments) {
   constexpr int kWidth = 1024;
   constexpr int kFrames = 1200;  // a minute at 20 a second
-  InteriorSpec spec = ParseInterior(arguments.interior);
-  if (arguments.traffic)
-    throw UserError("--traffic is for a --town: nothing moves in an --interior");
+  InteriorSpec spec;
+  spec.seed = RequireSeed("interior", arguments.interior);
   Recording recording = RecordingOf(arguments, kWidth, 0);
   spec.light = arguments.light;
-  spec.mount = {arguments.camera_height, arguments.pitch_degrees * kDegree,
-                arguments.roll_degrees * kDegree, arguments.shaking};
+  spec.mount = MountOf(arguments);
   recording.frames = arguments.frames.value_or(kFrames);
   recording.sensor.seed = spec.seed;
   return std::make_unique<InteriorDrive>(spec, recording);
+}
+
+std::unique_ptr<Drive> MakeWalkDrive(const Arguments& arguments) {
+  constexpr int kWidth = 1024;
+  constexpr int kFrames = 1200;  // a minute at 20 a second
+  WalkSpec spec;
+  if (arguments.tunnel.empty()) {
+    spec.seed = RequireSeed("landscape", arguments.landscape);
+  } else {
+    spec.world = WalkSpec::World::kTunnel;
+    spec.seed = RequireSeed("tunnel", arguments.tunnel);
+  }
+  Recording recording = RecordingOf(arguments, kWidth, 0);
+  spec.light = arguments.light;
+  spec.mount = MountOf(arguments);
+  recording.frames = arguments.frames.value_or(kFrames);
+  recording.sensor.seed = spec.seed;
+  return std::make_unique<WalkDrive>(spec, recording);
 }
 
 std::unique_ptr<Drive> MakeImportedDrive(const Arguments& arguments) {
@@ -117,7 +144,6 @@ std::unique_ptr<Drive> MakeImportedDrive(const Arguments& arguments) {
   ImportedSpec spec = arguments.imported;
   if (spec.path.empty()) throw UserError("--scene needs a --path through it");
   if (arguments.light) spec.light = *arguments.light;
-  if (arguments.traffic) throw UserError("--traffic is for a --town: nothing moves in a --scene");
   const CameraPath path = ReadCameraPath(spec.path);
   // A thousandth of a frame is added, because times in files are rounded.
   const int whole = static_cast<int>((path.end() - path.begin()) * recording.fps + 1e-3) + 1;
@@ -132,18 +158,28 @@ std::unique_ptr<Drive> MakeImportedDrive(const Arguments& arguments) {
   return drive;
 }
 
+using DriveMaker = std::unique_ptr<Drive> (*)(const Arguments&);
+
 void Render(const Arguments& arguments) {
-  const int chosen =
-      !arguments.town.empty() + !arguments.interior.empty() + !arguments.imported.scene.empty();
-  if (chosen != 1)
-    throw UserError("render takes either --town or --scene or --interior (see town render --help)");
+  const std::array<std::pair<bool, DriveMaker>, 5> worlds = {
+      {{!arguments.town.empty(), MakeTownDrive},
+       {!arguments.interior.empty(), MakeInteriorDrive},
+       {!arguments.landscape.empty(), MakeWalkDrive},
+       {!arguments.tunnel.empty(), MakeWalkDrive},
+       {!arguments.imported.scene.empty(), MakeImportedDrive}}};
+  const auto is_chosen = [](const auto& world) { return world.first; };
+  if (std::ranges::count_if(worlds, is_chosen) != 1)
+    throw UserError(
+        "render takes one of --town, --interior, --landscape, --tunnel and --scene (see town "
+        "render "
+        "--help)");
   if (arguments.imported.scene.empty() && !arguments.imported.path.empty())
-    throw UserError("--path is for a --scene: towns and interiors have paths of their own");
+    throw UserError("--path is for a --scene: other worlds have paths of their own");
+  if (arguments.town.empty() && arguments.traffic)
+    throw UserError("--traffic is for a --town: nothing moves in other worlds");
   RequireWritable(arguments.out);
   if (arguments.threads > 0) omp_set_num_threads(arguments.threads);
-  const std::unique_ptr<Drive> drive = !arguments.town.empty()       ? MakeTownDrive(arguments)
-                                       : !arguments.interior.empty() ? MakeInteriorDrive(arguments)
-                                                                     : MakeImportedDrive(arguments);
+  const std::unique_ptr<Drive> drive = std::ranges::find_if(worlds, is_chosen)->second(arguments);
   ProgressBar bar;
   const FolderOptions options{arguments.depth_every, arguments.exr, arguments.masks};
   RenderIntoFolder(*drive, arguments.out, options,
@@ -155,6 +191,10 @@ void AddSceneOptions(CLI::App* command, Arguments* arguments) {
   command->add_option("--town", arguments->town, "Town1 ... Town5, Loop, or a seed");
   command->add_option("--interior", arguments->interior,
                       "Instead of a town: the rooms of a building, by a seed");
+  command->add_option("--landscape", arguments->landscape,
+                      "Instead of a town: a trail through woods, heath or rocks, by a seed");
+  command->add_option("--tunnel", arguments->tunnel,
+                      "Instead of a town: a mine, a cave, a road tunnel or a culvert, by a seed");
   command->add_option(
       "--scene", imported.scene,
       "Instead of a town: a file of textured meshes (OBJ, glTF, AC3D, Quake's BSP, ...)");

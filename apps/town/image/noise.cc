@@ -99,6 +99,14 @@ float TiledFbm(float x, float y, int frequency, int octaves, uint32_t seed, floa
   return sum / std::sqrt(total);
 }
 
+float SpaceFbm(float x, float y, float z, int octaves, uint32_t seed, float gain) {
+  constexpr int kPeriod = 64;
+  const auto at = [&](float u, float v, uint32_t plane) {
+    return TiledFbm(u / kPeriod, v / kPeriod, kPeriod, octaves, seed + 10 * plane, gain);
+  };
+  return 0.6F * (at(x, y, 0) + at(y, z, 1) + at(z, x, 2));
+}
+
 Cell TiledCells(float x, float y, int frequency, uint32_t seed) {
   x *= static_cast<float>(frequency);
   y *= static_cast<float>(frequency);

@@ -13,6 +13,10 @@ float GradientNoise(float x, float y, int period, uint32_t seed);
 /// `gain`. In about [-1, 1].
 float TiledFbm(float x, float y, int frequency, int octaves, uint32_t seed, float gain = 0.5F);
 
+/// Sum of `octaves` of noise over space in about [-1, 1], the first with features of unit size: the
+/// mean of TiledFbm over the three coordinate planes. Periodic with 64 along each axis.
+float SpaceFbm(float x, float y, float z, int octaves, uint32_t seed, float gain = 0.5F);
+
 /// The result of TiledCells: the distances, in cells, to the nearest and the second nearest of the
 /// points scattered one per cell, and a hash of the nearest.
 struct Cell {

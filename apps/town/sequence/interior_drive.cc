@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <span>
 #include <sstream>
@@ -33,17 +32,6 @@ Interior BuildLit(const InteriorSpec& spec) {
 }
 
 }  // namespace
-
-InteriorSpec ParseInterior(std::string_view seed) {
-  constexpr size_t kMaximumDigits = 18;  // as of towns
-  InteriorSpec spec;
-  const auto [end, error] = std::from_chars(seed.data(), seed.data() + seed.size(), spec.seed);
-  if (error != std::errc() || end != seed.data() + seed.size() || seed.size() > kMaximumDigits) {
-    throw UserError("unknown interior '" + std::string(seed) +
-                    "': use a seed of at most 18 digits");
-  }
-  return spec;
-}
 
 Light InteriorDrive::LightOf(const InteriorSpec& spec, bool are_lamps_on) {
   static constexpr std::array<std::string_view, 6> kNames = {"noon",   "noon",     "morning",

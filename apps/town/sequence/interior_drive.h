@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "apps/town/drive/carried_camera.h"
 #include "apps/town/drive/indoor_walk.h"
@@ -18,9 +17,6 @@ struct InteriorSpec {
   std::optional<std::string> light;  ///< beyond the windows; without it, the interior's own
   Mount mount;                       ///< its shaking is the factor on the sway of walking
 };
-
-/// Returns the interior of a seed, an integer of at most 18 digits. Throws UserError otherwise.
-InteriorSpec ParseInterior(std::string_view seed);
 
 /// A camera's walk through the rooms of a building. The camera is carried by somebody who walks,
 /// or by a small robot.

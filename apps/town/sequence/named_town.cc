@@ -1,14 +1,13 @@
 #include "apps/town/sequence/named_town.h"
 
 #include <array>
-#include <charconv>
+#include <optional>
 
+#include "apps/town/sequence/seed.h"
 #include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {
-
-constexpr size_t kMaximumDigits = 18;  // 10^18 < 2^63
 
 /// Lengths, light and images as in the paper: 2048 x 1024 from six faces of 768 x 768.
 struct Named {
@@ -52,11 +51,12 @@ TownSpec FindTown(std::string_view name) {
     spec.plan.tour_blocks = town.tour_blocks;
     return spec;
   }
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), spec.seed);
-  if (error != std::errc() || end != name.data() + name.size() || name.size() > kMaximumDigits) {
+  const std::optional<uint64_t> seed = ParseSeed(name);
+  if (!seed) {
     throw UserError("unknown town '" + std::string(name) +
                     "': use Town1 ... Town5, Loop, or a seed of at most 18 digits");
   }
+  spec.seed = *seed;
   return spec;
 }
 

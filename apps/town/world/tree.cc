@@ -81,14 +81,16 @@ void Grow(MeshBuilder& b, const Species& species, const Vector3f& base, const Ve
 
 }  // namespace
 
-Mesh MakeTree(const Materials& materials, Random random) {
+Mesh MakeTree(const Materials& materials, Random random, float bole) {
   MeshBuilder b(materials);
   std::vector<Vector3f> tips;
   const Species& species = random.Pick(std::span<const Species>(kSpecies));
   const auto trunk = static_cast<float>(random.Uniform(species.trunk_low, species.trunk_high));
   b.set_tint(species.bark_tint);
-  Grow(b, species, {0, 0, -0.3F}, Vector3f::UnitZ(), trunk,
-       static_cast<float>(random.Uniform(0.12, 0.2)), 4, random, &tips);
+  const auto radius = static_cast<float>(random.Uniform(0.12, 0.2));
+  if (bole > 0)
+    b.AddTube(materials.bark, {0, 0, -0.3F}, {0, 0, bole - 0.3F}, 1.3F * radius, radius, 9);
+  Grow(b, species, {0, 0, bole - 0.3F}, Vector3f::UnitZ(), trunk, radius, 4, random, &tips);
   Vector3f centre = Vector3f::Zero();
   for (const Vector3f& tip : tips) centre += tip / static_cast<float>(tips.size());
   const MaterialId leaves = random.Pick(std::span<const MaterialId>(materials.leaves));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "apps/town/world/landscape/landscape_materials.h"
 #include "apps/town/world/materials.h"
 
 namespace orb360::town {
@@ -30,6 +31,15 @@ inline Materials NamedPlainMaterials() {
                      &m.house_numbers, &m.murals, &m.roller_shutters})
     list->push_back(0);
   m.leaves.push_back(2);
+  return m;
+}
+
+/// As above, for landscapes and tunnels.
+inline LandscapeMaterials PlainLandscapeMaterials() {
+  LandscapeMaterials m{};
+  static_cast<Materials&>(m) = NamedPlainMaterials();
+  for (auto* list : {&m.needles, &m.ferns, &m.grass_tufts, &m.dry_tufts}) list->push_back(2);
+  m.rocks = {0, 1};
   return m;
 }
 
