@@ -5,7 +5,6 @@ import io
 import tempfile
 import unittest
 from pathlib import Path
-from unittest import mock
 
 import torch
 
@@ -66,19 +65,19 @@ class AblateTest(unittest.TestCase):
                 network=ablate.NETWORK, steps=1, batch=1, warm_up=1, fixed_propagation=True,
                 batch_normalization=True,
             )  # fmt: skip
-            variants = {name: ablate.VARIANTS[name] for name in ("complete", "without the image")}
             said = io.StringIO()
-            with mock.patch.object(ablate, "VARIANTS", variants), contextlib.redirect_stdout(said):
-                ablate.ablate(folder / "out", settings, [shard], [shard])
+            chosen = ["complete", "without the image", "normals as a second task"]
+            with contextlib.redirect_stdout(said):
+                ablate.ablate(folder / "out", settings, [shard], [shard], chosen=chosen)
             with contextlib.redirect_stdout(io.StringIO()):
                 start = folder / "out" / "variant0" / "checkpoint.pt"
-                with mock.patch.object(ablate, "VARIANTS", {"complete": ""}):
-                    ablate.ablate(folder / "more", settings, [shard], [shard], start)
+                ablate.ablate(folder / "more", settings, [shard], [shard], start, ["complete"])
             self.assertEqual([path.name for path in (folder / "more").iterdir()], ["variant0"])
             stages = torch.load(folder / "more" / "variant0" / "checkpoint.pt")["stages"]
             self.assertEqual(stages[-1]["network"], ablate.NETWORK)
             table = said.getvalue().split("\n\n")[1].splitlines()
-            self.assertEqual(len(table), 4)
+            self.assertEqual(len(table), 5)
+            self.assertRegex(table[4], r"^\| normals as a second task \| \d\.\d+ ")
             self.assertRegex(table[3], r"^\| without the image \| \d\.\d+ \| \d\.\d+ \| \d\.\d+ \| \d+ \|$")
 
 

@@ -103,13 +103,19 @@ class MakeDatasetTest(unittest.TestCase):
                 worlds.kart_spec(Path("tracks/zengarden"), 24, 512),
                 worlds.map_spec(Path("maps/hall.bsp"), 3, 24, 512),
                 worlds.interior_spec(9, 24, 512),
+                worlds.landscape_spec(9, 24, 512),
+                worlds.tunnel_spec(10, 24, 512),
             )
         }
-        self.assertEqual(list(specs), ["forza", "kart-zengarden", "map-hall-3", "interior9"])
+        names = ["forza", "kart-zengarden", "map-hall-3", "interior9", "landscape9", "tunnel10"]
+        self.assertEqual(list(specs), names)
+        kinds = ["circuits", "karts", "maps", "interiors", "landscapes", "tunnels"]
+        self.assertEqual([worlds.kind_of(f"stereo-{name}") for name in names], kinds)
+        self.assertEqual(specs["tunnel10"].options[:2], ["--tunnel", "10"])
         self.assertEqual(list(specs["forza"].path[:2]), ["--torcs", "road/forza/forza.acc"])
         self.assertEqual(list(specs["kart-zengarden"].options[:2]), ["--scene", "tracks/zengarden/scene.xml"])
         self.assertEqual(specs["map-hall-3"].options[:6], specs["map-hall-3"].path[:6])
-        self.assertFalse(specs["interior9"].path)
+        self.assertFalse(specs["interior9"].path or specs["landscape9"].path)
         for spec in specs.values():
             followed = worlds.tracked(spec, 200, 4.5)
             if "--length" in followed.path:

@@ -43,6 +43,8 @@ VARIANTS = {
     "encoder of three levels": "lateral3.up",
     "upsampling by equal weights": "shares",
 }
+# Variants that have all parts, and what else is different in their training.
+OTHER_TRAINING = {"normals as a second task": {"normals": 0.2}}
 POINTS = ("300", "1000", "20000")
 # The size of images for which products are counted.
 HEIGHT, WIDTH = 256, 512
@@ -65,19 +67,24 @@ def ablate(
     shards: Sequence[Path],
     validation: Sequence[Path],
     start: Path | None = None,
+    chosen: Sequence[str] = (),
 ) -> None:
-    """Trains all variants and prints a line for each. `start`: a network file or a checkpoint."""
+    """Trains the chosen variants, or all, and prints a line for each. `start`: a network file or a
+    checkpoint."""
     device = torch.device("cpu")
     starts = [start or train_first_estimate(out, settings, shards)]
     rows = []
-    for number, (name, zeroed) in enumerate(VARIANTS.items()):
+    variants = {name: {"zeroed": zeroed} for name, zeroed in VARIANTS.items()} | OTHER_TRAINING
+    for number, (name, changes) in enumerate(variants.items()):
+        if chosen and name not in chosen:
+            continue
         folder = out / f"variant{number}"
-        network = train(replace(settings, zeroed=zeroed), folder, shards, [], device, starts).eval()
+        network = train(replace(settings, **changes), folder, shards, [], device, starts).eval()
         errors: dict[str, list[float]] = {}
         for _, kind, measured in evaluate(network, validation, POINTS, 1):
             errors.setdefault(kind, []).extend(measured.absrel)
         means = [f"{np.mean(errors[kind]):.3f}" for kind in POINTS]
-        rows.append("| " + " | ".join([name, *means, f"{products(zeroed):.0f}"]) + " |")
+        rows.append("| " + " | ".join([name, *means, f"{products(changes.get('zeroed', '')):.0f}"]) + " |")
         print(rows[-1], flush=True)
     print("\n| | " + " | ".join(f"{count} points" for count in POINTS) + " | MMAC |")
     print("|---|" + "---:|" * (len(POINTS) + 1))
@@ -91,10 +98,13 @@ def main() -> None:
     )
     add_options(parser, steps=1000)
     parser.add_argument("--start", type=Path, help="weights of all variants: file or checkpoint")
+    parser.add_argument("--variants", nargs="+", default=[], choices=[*VARIANTS, *OTHER_TRAINING],
+                        metavar="NAME", help="only these: %(choices)s")  # fmt: skip
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
     settings = settings_of(arguments)
-    ablate(arguments.out, settings, arguments.shards, arguments.validation, arguments.start)
+    paths = arguments.shards, arguments.validation
+    ablate(arguments.out, settings, *paths, arguments.start, arguments.variants)
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ from torch import Tensor
 
 from weights_tools.network import Network
 from weights_tools.training.batches import Batch
+from weights_tools.training.normals import surface_normals
 from weights_tools.training.sphere import row_weights
 
 # Weights of the terms. Depth matters most; the other terms mainly train branches of their own. The
@@ -18,11 +19,15 @@ from weights_tools.training.sphere import row_weights
 WEIGHTS = {"depth": 1.0, "confidence": 0.1, "propagated": 0.2, "metric": 0.05, "ground": 0.1}
 # The least depth in metres; smaller predictions are raised to it.
 _LEAST = 1e-2
+# Neighbours of a pixel whose range differs by more than this fraction are another surface.
+_EDGE = 0.1
 # The relative error that the confidence should state in the sky, which has no depth.
 _SKY_ERROR = 1.0
 
 
-def losses(network: Network, batch: Batch, bfloat16: bool = False) -> dict[str, Tensor]:
+def losses(
+    network: Network, batch: Batch, bfloat16: bool = False, with_normals: bool = False
+) -> dict[str, Tensor]:
     """The terms that the network has outputs for, by name, without their weights."""
     tensors = network.tensors(batch.inputs, bfloat16)
     ports = {port["name"]: tensors[port["tensor"]] for port in network.description.graph.outputs}
@@ -37,6 +42,8 @@ def losses(network: Network, batch: Batch, bfloat16: bool = False) -> dict[str, 
     difference = ports["log_depth"] - target
     relative = relative_error(difference)
     terms = {"depth": _mean((difference.abs() + relative) / 2, weight)}
+    if with_normals:
+        terms["normals"] = _normals(difference, truth, weight)
     if "ground" not in ports:
         return terms
     everywhere = pixel_weights(torch.ones_like(batch.truth))
@@ -54,6 +61,16 @@ def losses(network: Network, batch: Batch, bfloat16: bool = False) -> dict[str, 
     }
 
 
+def _normals(difference: Tensor, truth: Tensor, weight: Tensor) -> Tensor:
+    """The mean of 1 less the cosine between true and completed normals, away from edges."""
+    near = [truth.roll(1, -1), truth.roll(-1, -1), truth.roll(1, -2), truth.roll(-1, -2)]
+    is_edge = torch.stack([(truth - other).abs() > _EDGE * truth for other in near]).any(dim=0)
+    smooth = (weight * ~is_edge)[..., 1:-1, :]
+    true = surface_normals(truth)
+    completed = surface_normals(truth * difference.clamp(-2, 2).exp())
+    return _mean(1 - (true * completed).sum(dim=1, keepdim=True), smooth)
+
+
 def _propagated(propagated: Tensor, target: Tensor, weight: Tensor) -> Tensor:
     """The mean error of an image that may be a fraction of the target's size; each of its pixels
     stands for a square of the target's."""
@@ -69,8 +86,10 @@ def relative_error(difference: Tensor) -> Tensor:
     return inside.expm1().abs() + math.e * (difference - inside)
 
 
-def total(terms: Mapping[str, Tensor]) -> Tensor:
-    return sum((WEIGHTS[name] * value for name, value in terms.items()), torch.zeros(()))
+def total(terms: Mapping[str, Tensor], normals: float = 0.0) -> Tensor:
+    """The weighted sum; `normals` is the weight of their term, if there is one."""
+    weights = {**WEIGHTS, "normals": normals}
+    return sum((weights[name] * value for name, value in terms.items()), torch.zeros(()))
 
 
 def pixel_weights(truth: Tensor) -> Tensor:

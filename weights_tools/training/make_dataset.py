@@ -19,9 +19,11 @@ from weights_tools.training.worlds import (
     DriveSpec,
     file_specs,
     interior_spec,
+    landscape_spec,
     require_for_training,
     town_spec,
     tracked,
+    tunnel_spec,
 )
 
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -131,8 +133,10 @@ def main() -> int:
     parser.add_argument("--walks", type=int, nargs=2, default=(0, 1), metavar=("FIRST", "END"),
                         help="through each of these maps (default: one)")  # fmt: skip
     parser.add_argument("--interiors", type=int, nargs=2, default=(0, 0), metavar=("FIRST", "END"))
+    parser.add_argument("--landscapes", type=int, nargs=2, default=(0, 0), metavar=("FIRST", "END"))
+    parser.add_argument("--tunnels", type=int, nargs=2, default=(0, 0), metavar=("FIRST", "END"))
     parser.add_argument("--stereo-worlds", action="store_true",
-                        help="SLAM also tracks circuits, karts, maps and interiors")  # fmt: skip
+                        help="SLAM also tracks all of these worlds but the towns")  # fmt: skip
     parser.add_argument("--held-out", action="store_true",
                         help="worlds that are kept for measurements are allowed")  # fmt: skip
     parser.add_argument("--build", type=Path, default=ROOT / "build", help="folder of the programs")
@@ -145,6 +149,8 @@ def main() -> int:
     files = (arguments.circuits, arguments.karts, arguments.maps)
     specs = file_specs(*files, frames, width, range(*arguments.walks))
     specs += [interior_spec(seed, frames, width) for seed in range(*arguments.interiors)]
+    specs += [landscape_spec(seed, frames, width) for seed in range(*arguments.landscapes)]
+    specs += [tunnel_spec(seed, frames, width) for seed in range(*arguments.tunnels)]
     if arguments.stereo_worlds:
         specs += [tracked(spec, arguments.tracked_frames, SPEED) for spec in specs]
     specs += [town_spec(seed, frames, width) for seed in range(*arguments.seeds)]

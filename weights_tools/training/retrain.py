@@ -29,13 +29,15 @@ from weights_tools.training.train import Settings, train
 from weights_tools.training.worlds import (
     file_specs,
     interior_spec,
+    landscape_spec,
     require_for_training,
     town_spec,
+    tunnel_spec,
 )
 
-# Interiors, towns and their frames for validation, which are never used for training.
-INTERIORS = range(100, 200)
-VALIDATION_SEEDS, VALIDATION_INTERIORS, VALIDATION_FRAMES = range(2000, 2006), range(900, 906), 6
+INTERIORS, LANDSCAPES, TUNNELS = range(100, 200), range(100, 140), range(100, 140)
+# Towns and other worlds for validation, and their frames, which are never used for training.
+VALIDATION_SEEDS, VALIDATION_WORLDS, VALIDATION_FRAMES = range(2000, 2006), range(900, 906), 6
 TRACKED_SEEDS = range(3000, 3008)  # their sparse points come from SLAM
 
 
@@ -96,10 +98,13 @@ def render_all(
     specs = [town_spec(seed, FRAMES, WIDTH) for seed in SEEDS]
     specs += [town_spec(seed, TRACKED_FRAMES, WIDTH, is_tracked=True) for seed in TRACKED_SEEDS]
     specs += [interior_spec(seed, FRAMES, WIDTH) for seed in INTERIORS]
+    specs += [landscape_spec(seed, FRAMES, WIDTH) for seed in LANDSCAPES]
+    specs += [tunnel_spec(seed, FRAMES, WIDTH) for seed in TUNNELS]
     specs += file_specs(circuits, karts, maps, FRAMES, WIDTH)
     make_dataset.make_all(specs, programs, out / "training")
     specs = [town_spec(seed, VALIDATION_FRAMES, WIDTH) for seed in VALIDATION_SEEDS]
-    specs += [interior_spec(seed, VALIDATION_FRAMES, WIDTH) for seed in VALIDATION_INTERIORS]
+    for spec_of in (interior_spec, landscape_spec, tunnel_spec):
+        specs += [spec_of(seed, VALIDATION_FRAMES, WIDTH) for seed in VALIDATION_WORLDS]
     make_dataset.make_all(specs, programs, out / "validation")
 
 

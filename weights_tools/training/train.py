@@ -46,6 +46,7 @@ class Settings:
     fixed_propagation: bool = False  # normalized convolutions of the first estimate stay as they start
     only: str = ""  # layers whose names begin so are trained, the others stay as they start
     batch_normalization: bool = False  # while it is trained; it ends up in the weights
+    normals: float = 0.0  # weight of the error of surface normals, a second task
     zeroed: str = ""  # tensors that count nothing, for ablations; their names with spaces between
     checkpoint_every: int = 500  # steps
 
@@ -192,8 +193,9 @@ class Training:
             for group in optimizer.param_groups:
                 group["lr"] = learning_rate(self.settings, self.step)
             optimizer.zero_grad()
-        terms = losses(self.network, batch, self.settings.bfloat16)
-        total(terms).backward()
+        normals = self.settings.normals
+        terms = losses(self.network, batch, self.settings.bfloat16, normals > 0)
+        total(terms, normals).backward()
         torch.nn.utils.clip_grad_norm_(self.network.parameters(), self.settings.clip)
         for optimizer in self.optimizers:
             optimizer.step()

@@ -25,7 +25,7 @@ HELD_OUT = (
 )  # fmt: skip
 _KINDS = {
     "town": "towns", "Town": "towns", "tracked": "towns", "stereo": "towns", "kart-": "karts",
-    "map-": "maps", "interior": "interiors",
+    "map-": "maps", "interior": "interiors", "landscape": "landscapes", "tunnel": "tunnels",
 }  # fmt: skip
 # Metres that a unit of a map of Quake 3 is.
 MAP_SCALE = 1 / 32
@@ -63,6 +63,21 @@ def interior_spec(seed: int, frames: int, width: int) -> DriveSpec:
     options = ["--interior", str(seed), *_tilt(random), *_sensor(random)]
     options += ["--fps", "0.5", "--width", str(width)]
     return DriveSpec(f"interior{seed}", options, frames)
+
+
+def landscape_spec(seed: int, frames: int, width: int) -> DriveSpec:
+    return _walk_spec("landscape", seed, frames, width)
+
+
+def tunnel_spec(seed: int, frames: int, width: int) -> DriveSpec:
+    return _walk_spec("tunnel", seed, frames, width)
+
+
+def _walk_spec(world: str, seed: int, frames: int, width: int) -> DriveSpec:
+    random = _random(world, seed)
+    options = [f"--{world}", str(seed), *_tilt(random), *_sensor(random)]
+    options += ["--fps", "0.5", "--width", str(width)]
+    return DriveSpec(f"{world}{seed}", options, frames)
 
 
 def circuit_spec(mesh: Path, frames: int, width: int) -> DriveSpec:
