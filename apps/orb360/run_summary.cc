@@ -34,11 +34,13 @@ nlohmann::json DescribeScale(const MetricScale& scale) {
                               {"assumed_height", scale.is_height_assumed},
                               {"lens_distance", scale.lens_distance},
                               {"surroundings_rise", scale.surroundings_rise},
+                              {"ground_probability", nullptr},
                               {"sources", scale.sources}};
   if (scale.value > 0) {
     described["value"] = scale.value;
     described["sigma"] = scale.sigma;
   }
+  if (scale.ground_probability) described["ground_probability"] = *scale.ground_probability;
   if (scale.camera_height > 0) described["camera_height"] = scale.camera_height;
   return described;
 }
@@ -164,6 +166,13 @@ RunSummary ReadSummary(const std::filesystem::path& path) {
 std::string StateScale(const nlohmann::json& scale) {
   std::ostringstream text;
   text << std::fixed << "scale " << scale["state"].get<std::string>();
+  if (scale["sources"].empty() && scale["ground_probability"].is_number()) {
+    text << std::setprecision(2)
+         << ": what is below the camera does not look like ground (probability "
+         << scale["ground_probability"].get<double>()
+         << "); is it on its side? Lengths have an arbitrary unit (positions would tell it)";
+    return text.str();
+  }
   if (scale["sources"].empty()) {
     text << ": no ground was seen below the camera; lengths have an arbitrary unit (positions "
             "would tell it)";

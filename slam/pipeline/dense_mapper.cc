@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
+#include "slam/depth/ground_probability.h"
 #include "slam/pipeline/dense_views.h"
 #include "slam/pipeline/view_depth.h"
 #include <orb360/nn/base/check.h>
@@ -20,6 +22,28 @@ ViewDepthOptions ViewDepthOptionsOf(const DepthOptions& options, const MetricSca
   }
   return result;
 }
+
+namespace {
+
+/// Both and the maps must outlive the result.
+LandmarkProjector ProjectorOf(const Reconstruction& finished, std::span<const Map> maps,
+                              const EquirectangularCamera& camera) {
+  std::vector<std::map<int, KeyframeId>> id_of(maps.size());  // by frame index
+  for (size_t m = 0; m < maps.size(); ++m) {
+    for (const KeyframeId id : maps[m].KeyframeIds()) {
+      id_of[m][maps[m].keyframe(id).frame_index] = id;
+    }
+  }
+  return [&finished, maps, &camera, id_of = std::move(id_of)](const DenseView& view) {
+    const int reference =
+        std::ranges::lower_bound(finished.frames, view.frame_index, {}, &FramePose::index)
+            ->reference;
+    return ProjectLandmarks(maps[view.map], id_of[view.map].at(reference), view.world_from_camera,
+                            camera, {});
+  };
+}
+
+}  // namespace
 
 DenseMapper::DenseMapper(const std::filesystem::path& weights, const std::filesystem::path& folder,
                          const DepthOptions& options, int num_threads, const nn::Device& device)
@@ -41,22 +65,10 @@ void DenseMapper::Flush() {
 ViewDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished, std::span<const Map> maps,
                                           const ViewDepthCallbacks& callbacks) {
   if (failure()) return {};
-  std::vector<std::map<int, KeyframeId>> id_of(maps.size());  // by frame index
-  for (size_t m = 0; m < maps.size(); ++m) {
-    for (const KeyframeId id : maps[m].KeyframeIds()) {
-      id_of[m][maps[m].keyframe(id).frame_index] = id;
-    }
-  }
   const CovisibleViews covisible(finished, Rigid3(),
                                  [this](int index) { return images_.store().Contains(index); });
   const auto neighbours_of = [&](size_t view) { return covisible.NeighboursOf(view); };
-  const auto landmarks_of = [&](const DenseView& view) {
-    const int reference =
-        std::ranges::lower_bound(finished.frames, view.frame_index, {}, &FramePose::index)
-            ->reference;
-    return ProjectLandmarks(maps[view.map], id_of[view.map].at(reference), view.world_from_camera,
-                            camera(), {});
-  };
+  const LandmarkProjector landmarks_of = ProjectorOf(finished, maps, camera());
   const ViewDepthOptions options = ViewDepthOptionsOf(options_, finished.scale);
   try {
     const DepthMapStore first(folder_ / "first");
@@ -67,6 +79,31 @@ ViewDepthReport DenseMapper::ComputeDepth(const Reconstruction& finished, std::s
     images_.Clear();
     throw;
   }
+}
+
+std::optional<double> DenseMapper::GroundProbability(const Reconstruction& finished,
+                                                     std::span<const Map> maps,
+                                                     const Eigen::Vector3d& up) {
+  constexpr size_t kViews = 9;
+  if (failure()) return std::nullopt;
+  const CovisibleViews covisible(finished, Rigid3(),
+                                 [this](int index) { return images_.store().Contains(index); });
+  const std::vector<DenseView>& views = covisible.views();
+  const LandmarkProjector landmarks_of = ProjectorOf(finished, maps, camera());
+  const size_t count = std::min(kViews, views.size());
+  std::vector<double> means;
+  for (size_t k = 0; k < count; ++k) {
+    const DenseView& view = views[(2 * k + 1) * views.size() / (2 * count)];
+    const std::vector<SparsePoint> points = landmarks_of(view);
+    if (static_cast<int>(points.size()) < options_.min_points) continue;
+    const DenseDepth depth = completer_.Complete(images_.store().Get(view.frame_index),
+                                                 RenderSparseDepth(points, camera()));
+    const Eigen::Vector3d up_in_camera = view.world_from_camera.rotation.inverse() * up;
+    if (const auto mean = MeanGroundProbability(depth, up_in_camera)) means.push_back(*mean);
+  }
+  if (means.empty()) return std::nullopt;
+  std::ranges::nth_element(means, means.begin() + static_cast<int>(means.size() / 2));
+  return means[means.size() / 2];
 }
 
 std::optional<KnownGround> DenseMapper::Ground() const {

@@ -47,6 +47,13 @@ class DenseMapper {
   ViewDepthReport ComputeDepth(const Reconstruction& finished, std::span<const Map> maps,
                                const ViewDepthCallbacks& callbacks);
 
+  /// Returns how probable the network finds it that ground is what lies below the camera
+  /// (MeanGroundProbability), with the normal `up` of the ground in the world: the median over some
+  /// frames along the path, completed from their landmarks. Empty if the network does not tell
+  /// ground, after a failure, and where too few landmarks are seen. Contract: as of ComputeDepth.
+  std::optional<double> GroundProbability(const Reconstruction& finished, std::span<const Map> maps,
+                                          const Eigen::Vector3d& up);
+
   const DepthMapStore& depth_maps() const { return depth_maps_; }
   /// The error because of which images could not be stored (KeptImages::failure).
   std::exception_ptr failure() const { return images_.failure(); }

@@ -233,16 +233,29 @@ Reconstruction Pipeline::Finish(const Positions& positions) {
 
   CorrectScale(positions);
   Reconstruction result = MakeReconstruction(atlas_.maps(), atlas_.anchors(), num_threads_);
-  const std::span<const std::optional<KnownGround>> grounds = atlas_.grounds();
-  EstimatedScale scale =
-      EstimateScale(atlas_.maps(), grounds, options_.scale, positions, atlas_.anchors());
+  std::span<const std::optional<KnownGround>> grounds = atlas_.grounds();
+  // The ground of another place is better than none.
+  if (!result.up && !grounds.empty() && grounds.front()) result.up = grounds.front()->up;
+  const auto estimate = [&] {
+    return EstimateScale(atlas_.maps(), grounds, options_.scale, positions, atlas_.anchors());
+  };
+  EstimatedScale scale = estimate();
+  // A camera on its side takes a wall for the ground.
+  std::optional<double> ground_probability;
+  if (dense_ && result.up && scale.whole.state != ScaleState::kUnknown)
+    ground_probability = dense_->GroundProbability(result, atlas_.maps(), *result.up);
+  const std::vector<std::optional<KnownGround>> no_grounds(grounds.size());
+  if (ground_probability && *ground_probability < kMinGroundProbability) {
+    grounds = no_grounds;
+    result.up.reset();
+    scale = estimate();
+  }
+  scale.whole.ground_probability = ground_probability;
   for (size_t i = 0; i < result.maps.size(); ++i) {
     result.maps[i].is_metric = scale.maps[i].sigma > 0;
   }
   result.scale = std::move(scale.whole);
   result.keyframe_scales = std::move(scale.keyframes);
-  // The ground of another place is better than none.
-  if (!result.up && !grounds.empty() && grounds.front()) result.up = grounds.front()->up;
   const FrontEnd::Events& events = front_end_.events();
   result.initialized_at = events.initialized_at;
   result.lost = events.num_lost;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,8 @@ MATCHER(IsOneLine, "") {
 }
 
 /// A network that gives every pixel the mean of the points around it, or of all, and is sure of it.
-inline void WriteMeanNetwork(const std::filesystem::path& path) {
+inline void WriteMeanNetwork(const std::filesystem::path& path,
+                             std::optional<double> ground = std::nullopt) {
   nn::NetworkBuilder net(8);
   net.Input("depth", 1);
   net.Input("confidence", 1);
@@ -38,6 +40,10 @@ inline void WriteMeanNetwork(const std::filesystem::path& path) {
   net.Output("log_depth", "mean");
   net.Output("confidence", "sure");
   net.Output("scale", "points.2");
+  if (ground) {
+    net.Node("below", "affine", {"mean.1"}, {{"scale", 0.0}, {"offset", *ground}});
+    net.Output("ground", "below");
+  }
   net.Write(path);
 }
 

@@ -122,11 +122,13 @@ Surface Galleries::MakeSurface() const {
         float value = SmoothValue(plan, at.z() - floor);
         if (std::abs(value) < margin) {
           // Floors are trodden: they are smoother than walls.
-          const float wild = 0.1F + 0.9F * SmoothStep(0.1F, 0.7F, at.z() - floor);
+          constexpr float kFloor = 0.1F;
+          const float wild = kFloor + (1 - kFloor) * SmoothStep(0.1F, 0.7F, at.z() - floor);
           const Vector3f q = at / 1.6F;
-          // Rock is only taken away, so that nothing stands or hangs in the way.
+          // Rock is taken away, so that nothing stands or hangs in the way; the floor stays where
+          // it is in the mean.
           const float noise = SpaceFbm(q.x(), q.y(), q.z(), 4, seed_ + 50, 0.55F);
-          value -= 2 * wild * options_.roughness * std::max(0.0F, 1 - noise);
+          value += 2 * options_.roughness * (kFloor - wild * std::max(0.0F, 1 - noise));
         }
         grid.values[grid.Index(x, y, z)] = value;
       }

@@ -52,7 +52,7 @@ void AddLooseRock(const Galleries& galleries, const GalleryOptions& options, Fit
     const Vector3f place = frame.At(x, 0);
     if (kit.trail.Distance(place.head<2>()) < kFreeWidth + radius) continue;
     // It may be a little lower than in the mean.
-    const float floor = galleries.Floor(place.head<2>()) - 0.25F * options.roughness;
+    const float floor = galleries.Floor(place.head<2>()) - 0.15F * options.roughness;
     const MaterialId material = kit.random.Pick(std::span<const MaterialId>(kit.m.rocks));
     if (kit.random.Chance(0.6)) {
       const Mesh rock = MakeRock(kit.m, material, radius, kit.random.Fork(i));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,10 @@ enum class ScaleState {
 
 /// Name of a state as summary.json has it: "unknown", "rough" or "metric".
 const char* ToString(ScaleState state);
+
+/// The least probability of ground below the camera with which the scale follows from it. Of 20
+/// recordings the least has 0.58 (docs/results/scale.md); one on its side has 0.20.
+inline constexpr double kMinGroundProbability = 0.4;
 
 /// The scale of a result and what is known of its error.
 struct MetricScale {
@@ -36,6 +41,9 @@ struct MetricScale {
   /// the landmarks nearby; 0 where too few tell. An assumed height is as uncertain as that makes
   /// it.
   double surroundings_rise = 0;
+  /// How probable the network finds it that what lies below the camera is ground, if it was asked.
+  /// With less than kMinGroundProbability, that ground tells no scale: it may be a wall.
+  std::optional<double> ground_probability = std::nullopt;
   /// What the scale was measured with, in the order of their weight.
   std::vector<std::string> sources;
 };

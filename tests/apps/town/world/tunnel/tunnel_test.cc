@@ -28,6 +28,7 @@ TEST(TunnelSlow, TheTrailIsFreeAndItsFloorIsWhereItIsSaidToBe) {
     const Tunnel tunnel = PlainTunnel(seed);
     const RayScene scene(tunnel.scenery);
     const std::vector<Vector2f>& points = tunnel.trail.points();
+    double mean = 0;  // height above the floor that is met
     for (size_t i = 0; i < points.size(); ++i) {
       // A little aside, since a ray exactly along an edge may miss both of its triangles.
       const Vector2f p = points[i] + Vector2f(0.013F, 0.007F);
@@ -37,6 +38,7 @@ TEST(TunnelSlow, TheTrailIsFreeAndItsFloorIsWhereItIsSaidToBe) {
       // Sleepers lie on it; loose rock lies beside the trail.
       const float down = DistanceAlong(scene, at, -Vector3f::UnitZ(), kFar);
       EXPECT_NEAR(down, 0.9F, 0.17F) << seed;
+      mean += down / static_cast<double>(points.size());
       const Vector2f next = points[(i + 1) % points.size()] + Vector2f(0.013F, 0.007F);
       for (const double height : {0.3, 1.2, tunnel.head_room}) {
         const Vector3f from(p.x(), p.y(), tunnel.floor(p) + static_cast<float>(height));
@@ -44,6 +46,7 @@ TEST(TunnelSlow, TheTrailIsFreeAndItsFloorIsWhereItIsSaidToBe) {
         EXPECT_EQ(DistanceAlong(scene, from, to - from, 1), 1) << seed << " " << height;
       }
     }
+    EXPECT_NEAR(mean, 0.9, 0.025) << seed;  // a little less with sleepers
   }
 }
 
