@@ -4,7 +4,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "apps/town/drive/carried_camera.h"
 #include "apps/town/drive/route_walk.h"

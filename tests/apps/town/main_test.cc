@@ -64,11 +64,15 @@ TEST_F(TownCommandTest, AnswersBadTownsWithOneLine) {
   ExpectRefused("describe Town1 Town9", "unknown town 'Town9'");
   ExpectRefused("render --town 1 --light dusk" + Out(),
                 "unknown light 'dusk': use noon, morning, sunset or overcast");
-  ExpectRefused("render" + Out(), "either --town or --scene or --interior");
+  ExpectRefused("render" + Out(), "one of --town, --interior, --landscape, --tunnel and --scene");
   ExpectRefused("render --interior Cellar" + Out(), "unknown interior 'Cellar': use a seed");
   ExpectRefused("render --interior 1 --traffic 1" + Out(), "--traffic is for a --town");
   ExpectRefused("render --interior 1 --light dusk" + Out(), "unknown light 'dusk'");
-  ExpectRefused("render --interior 1 --town 1" + Out(), "either --town or --scene");
+  ExpectRefused("render --interior 1 --town 1" + Out(), "one of --town");
+  ExpectRefused("render --landscape 1 --tunnel 1" + Out(), "one of --town");
+  ExpectRefused("render --landscape wood" + Out(), "unknown landscape 'wood'");
+  ExpectRefused("render --tunnel -3" + Out(), "unknown tunnel '-3'");
+  ExpectRefused("render --tunnel 1 --traffic 0.5" + Out(), "nothing moves in other worlds");
   ExpectRefused("render --town 1 --path " + Write("p.txt", "0 1 2 3\n1 1 2 4\n") + Out(),
                 "--path is for a --scene");
   ExpectRefused("render --town 1 --out /dev/null/x", "/dev/null is a file");

@@ -1,8 +1,6 @@
 #include "apps/town/world/landscape/landscape.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <functional>
 #include <numbers>
 #include <span>

@@ -1,7 +1,5 @@
 #include "apps/town/world/landscape/terrain.h"
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "apps/town/image/noise.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <span>
 #include <utility>
@@ -19,7 +18,7 @@ namespace orb360::town {
 namespace {
 
 /// Parts of a seed, so that the draws of one part do not affect the others.
-enum SeedPart : uint64_t { kKind = 1, kMaterials, kTrail, kGalleries, kFittings, kRocks };
+enum SeedPart : uint64_t { kKind = 1, kMaterials, kTrail, kGalleries, kFittings };
 
 constexpr float kFreeWidth = 0.5F;  // metres on either side of the trail's middle
 
