@@ -16,7 +16,7 @@ enum class ScaleState {
 /// Name of a state as summary.json has it: "unknown", "rough" or "metric".
 const char* ToString(ScaleState state);
 
-/// The least probability of ground below the camera with which the scale follows from it. Of 20
+/// The least probability of ground below the camera with which the scale follows from it. Of 26
 /// recordings the least has 0.58 (docs/results/scale.md); one on its side has 0.20.
 inline constexpr double kMinGroundProbability = 0.4;
 
