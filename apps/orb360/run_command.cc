@@ -168,12 +168,14 @@ std::optional<StoredMap> ReadMapFor(int width, const std::string& path) {
 
 /// Writes the largest of several maps, because their relative poses are unknown.
 void WriteLargestMap(const std::string& path, int width, const Rigid3& file_world_from_map,
-                     const System& system) {
+                     const MetricScale& scale, const System& system) {
   const std::span<const Map> maps = system.maps();
   const auto largest = std::ranges::max_element(maps, {}, &Map::num_keyframes);
   if (largest == maps.end()) return;
   std::optional<KnownGround> ground = system.grounds()[largest - maps.begin()];
-  if (ground && ground->is_rough) ground.reset();  // The next run may find it.
+  // The next run may find it.
+  const bool is_doubted = scale.ground_probability.value_or(1) < kMinGroundProbability;
+  if (ground && (ground->is_rough || is_doubted)) ground.reset();
   WriteMap(path, {width, file_world_from_map, ground, *largest});
 }
 
@@ -278,7 +280,7 @@ int Run(const RunOptions& options) {
        completer != nullptr ? completer->precision() : "none", threads, placed.description});
   output.Finish(reconstruction, summary, dense);
   if (!options.map_out.empty()) {
-    WriteLargestMap(options.map_out, size.width, file_world_from_map, system);
+    WriteLargestMap(options.map_out, size.width, file_world_from_map, reconstruction.scale, system);
   }
   WriteSparseModel(output.folder() / kSparseModelName, model);
   model = {};  // The report reads it.

@@ -58,6 +58,9 @@ struct Arguments {
 };
 
 constexpr double kDegree = std::numbers::pi / 180;
+// Of worlds that are no towns, unless the user states them.
+constexpr int kWidth = 1024;
+constexpr int kFrames = 1200;  // a minute at 20 a second
 
 SensorOptions SensorOf(const Arguments& arguments) {
   SensorOptions sensor;
@@ -108,8 +111,6 @@ void Warn(const std::string& consequence, const std::vector<std::string>& proble
 }
 
 std::unique_ptr<Drive> MakeInteriorDrive(const Arguments& arguments) {
-  constexpr int kWidth = 1024;
-  constexpr int kFrames = 1200;  // a minute at 20 a second
   InteriorSpec spec;
   spec.seed = RequireSeed("interior", arguments.interior);
   Recording recording = RecordingOf(arguments, kWidth, 0);
@@ -121,12 +122,11 @@ std::unique_ptr<Drive> MakeInteriorDrive(const Arguments& arguments) {
 }
 
 std::unique_ptr<Drive> MakeWalkDrive(const Arguments& arguments) {
-  constexpr int kWidth = 1024;
-  constexpr int kFrames = 1200;  // a minute at 20 a second
   WalkSpec spec;
   if (arguments.tunnel.empty()) {
     spec.seed = RequireSeed("landscape", arguments.landscape);
   } else {
+    if (arguments.light) throw UserError("--light is for worlds under a sky: a --tunnel has none");
     spec.world = WalkSpec::World::kTunnel;
     spec.seed = RequireSeed("tunnel", arguments.tunnel);
   }
@@ -139,7 +139,6 @@ std::unique_ptr<Drive> MakeWalkDrive(const Arguments& arguments) {
 }
 
 std::unique_ptr<Drive> MakeImportedDrive(const Arguments& arguments) {
-  constexpr int kWidth = 1024;
   Recording recording = RecordingOf(arguments, kWidth, 0);
   ImportedSpec spec = arguments.imported;
   if (spec.path.empty()) throw UserError("--scene needs a --path through it");
@@ -170,9 +169,8 @@ void Render(const Arguments& arguments) {
   const auto is_chosen = [](const auto& world) { return world.first; };
   if (std::ranges::count_if(worlds, is_chosen) != 1)
     throw UserError(
-        "render takes one of --town, --interior, --landscape, --tunnel and --scene (see town "
-        "render "
-        "--help)");
+        "render takes one of --town, --interior, --landscape, --tunnel and --scene "
+        "(see town render --help)");
   if (arguments.imported.scene.empty() && !arguments.imported.path.empty())
     throw UserError("--path is for a --scene: other worlds have paths of their own");
   if (arguments.town.empty() && arguments.traffic)
@@ -214,7 +212,7 @@ void AddSceneOptions(CLI::App* command, Arguments* arguments) {
   command->add_option(
       "--light", arguments->light,
       "noon, morning, sunset or overcast [the town's own; noon for a seed; drawn from "
-      "the seed indoors]");
+      "the seed indoors and in landscapes; none in tunnels]");
   command
       ->add_option("--traffic", arguments->traffic,
                    "Density of what moves, 0 to 1 [the town's own; 0 for a seed]")
@@ -227,9 +225,9 @@ void AddImageOptions(CLI::App* command, Arguments* arguments) {
                    "Folder to write; an interrupted rendering there is resumed")
       ->required();
   command
-      ->add_option(
-          "--frames", arguments->frames,
-          "Number of frames [the town's own; 600 for a seed; 1200 indoors; the whole path]")
+      ->add_option("--frames", arguments->frames,
+                   "Number of frames [the town's own; 600 for a seed; 1200 in other worlds; "
+                   "the whole path of a scene]")
       ->check(CLI::Range(1, 1000000));
   command
       ->add_option("--width", arguments->width,
@@ -265,7 +263,7 @@ void AddImageOptions(CLI::App* command, Arguments* arguments) {
 void AddCameraOptions(CLI::App* command, Arguments* arguments) {
   command
       ->add_option("--camera-height", arguments->camera_height,
-                   "Metres above the road or the floor [drawn from the seed, 1.8 to 2.2; indoors "
+                   "Metres above the road or the floor [drawn from the seed, 1.8 to 2.2; on foot "
                    "0.3 to 2.2]")
       ->check(CLI::Range(0.2, 10.0));
   command

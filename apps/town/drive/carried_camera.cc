@@ -1,7 +1,11 @@
 #include "apps/town/drive/carried_camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
+
+#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {
@@ -18,13 +22,18 @@ double Drift(Random random, double time) {
 
 }  // namespace
 
-Carriage DrawCarriage(const Mount& mount, Random random) {
+Carriage DrawCarriage(const Mount& mount, double highest, std::string_view place, Random random) {
   Carriage carriage;
   const bool is_robot = random.Chance(0.3);
   carriage.height = is_robot ? random.Uniform(0.3, 0.8) : random.Uniform(1.2, 2.2);
   carriage.speed = is_robot ? random.Uniform(0.5, 1) : random.Uniform(0.7, 1.5);
   carriage.sway = (is_robot ? 0.1 : random.Uniform(0.4, 1.2)) * mount.shaking;
-  return carriage;
+  carriage.height = mount.height.value_or(std::min(carriage.height, highest));
+  if (carriage.height <= highest) return carriage;
+  std::ostringstream message;
+  message << "the camera is " << carriage.height << " m high, but " << place << " has room for "
+          << std::floor(100 * highest) / 100 << " m: lower it with --camera-height";
+  throw UserError(message.str());
 }
 
 Rigid3 CarriedPose(const Carriage& carriage, const Mount& mount, const WalkState& state,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include "apps/town/drive/route_walk.h"
 #include "apps/town/image/random.h"
@@ -23,9 +24,10 @@ struct Carriage {
   double sway = 1;      ///< factor on the motion of walking
 };
 
-/// Draws a robot (0.3 to 0.8 m high) or somebody who walks (1.2 to 2.2 m); the mount's shaking
-/// scales the sway.
-Carriage DrawCarriage(const Mount& mount, Random random);
+/// Draws a robot (0.3 to 0.8 m high) or somebody who walks (1.2 to 2.2 m), or takes the mount's
+/// height; the mount's shaking scales the sway. A drawn height is at most `highest`, metres; throws
+/// UserError that names `place` for a given one above it.
+Carriage DrawCarriage(const Mount& mount, double highest, std::string_view place, Random random);
 
 /// Returns world_from_camera (camera -X forward, +Y right, +Z up) at a time in seconds, at a state
 /// of a walk, above ground of that height.

@@ -9,7 +9,6 @@
 
 #include "apps/town/image/random.h"
 #include "apps/town/sequence/stage_exposure.h"
-#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {
@@ -48,29 +47,14 @@ Light InteriorDrive::LightOf(const InteriorSpec& spec, bool are_lamps_on) {
   return light;
 }
 
-Carriage InteriorDrive::CarriageOf(const InteriorSpec& spec, const FloorPlan& plan) {
-  Carriage carriage = DrawCarriage(spec.mount, Random(spec.seed).Fork(kCarriage));
-  const double highest = LowestDoor(plan) - kHeadroom;
-  carriage.height = std::min(carriage.height, highest);
-  if (!spec.mount.height) return carriage;
-  if (*spec.mount.height > highest) {
-    std::ostringstream message;
-    message << "the camera is " << *spec.mount.height << " m high, but the doors of interior "
-            << spec.seed << " allow " << std::floor(100 * highest) / 100
-            << ": lower it with --camera-height";
-    throw UserError(message.str());
-  }
-  carriage.height = *spec.mount.height;
-  return carriage;
-}
-
 InteriorDrive::InteriorDrive(const InteriorSpec& spec, const Recording& recording)
     : Drive(recording),
       spec_(spec),
       interior_(BuildLit(spec)),
       light_(LightOf(spec, interior_.are_lamps_on)),
       stage_(&interior_.scenery, light_, spec.seed),
-      carriage_(CarriageOf(spec, interior_.plan)),
+      carriage_(DrawCarriage(spec.mount, LowestDoor(interior_.plan) - kHeadroom,
+                             "the lowest door of the interior", Random(spec.seed).Fork(kCarriage))),
       walk_(interior_.plan, interior_.taken,
             {carriage_.speed, std::max(60.0, recording.frames / recording.fps)},
             Random(spec.seed).Fork(kWalk)) {

@@ -39,7 +39,6 @@ class InteriorDrive : public Drive {
   std::vector<Instance> MovingAt(double) const override { return {}; }
 
  private:
-  static Carriage CarriageOf(const InteriorSpec& spec, const FloorPlan& plan);
   /// Returns the light beyond the windows, as dim as it is for an exposure of rooms.
   static Light LightOf(const InteriorSpec& spec, bool are_lamps_on);
   /// Sets the exposure for the rooms along the walk.

@@ -14,7 +14,6 @@
 #include "apps/town/sequence/stage_exposure.h"
 #include "apps/town/world/landscape/landscape.h"
 #include "apps/town/world/tunnel/tunnel.h"
-#include <orb360/nn/base/check.h>
 
 namespace orb360::town {
 namespace {
@@ -44,20 +43,6 @@ Light WalkDrive::LightOf(const WalkSpec& spec) {
   return light;
 }
 
-Carriage WalkDrive::CarriageOf(const WalkSpec& spec, double head_room) {
-  Carriage carriage = DrawCarriage(spec.mount, Random(spec.seed).Fork(kCarriage));
-  carriage.height = std::min(carriage.height, head_room);
-  if (!spec.mount.height) return carriage;
-  if (*spec.mount.height > head_room) {
-    std::ostringstream message;
-    message << "the camera is " << *spec.mount.height << " m high, but there is room for "
-            << std::floor(100 * head_room) / 100 << " m: lower it with --camera-height";
-    throw UserError(message.str());
-  }
-  carriage.height = *spec.mount.height;
-  return carriage;
-}
-
 WalkDrive::World WalkDrive::BuildWorld(const WalkSpec& spec) {
   World world;
   if (spec.world == WalkSpec::World::kTunnel) {
@@ -81,7 +66,8 @@ WalkDrive::WalkDrive(const WalkSpec& spec, const Recording& recording)
       spec_(spec),
       light_(LightOf(spec)),
       world_(BuildWorld(spec)),
-      carriage_(CarriageOf(spec, world_.head_room)),
+      carriage_(
+          DrawCarriage(spec.mount, world_.head_room, "the way", Random(spec.seed).Fork(kCarriage))),
       stage_(&world_.scenery, light_, spec.seed),
       walk_(WalkRound(world_.round, carriage_.speed,
                       std::max(60.0, recording.frames / recording.fps))) {
@@ -105,9 +91,12 @@ Rigid3 WalkDrive::PoseAt(double seconds) const {
 
 std::string WalkDrive::Origin() const {
   std::ostringstream text;
-  const bool is_tunnel = spec_.world == WalkSpec::World::kTunnel;
-  text << (is_tunnel ? "tunnel: " : "landscape: ") << spec_.seed << "\nlight: " << light_.name
-       << "\nmount:  # radians\n  pitch: " << spec_.mount.pitch << "\n  roll: " << spec_.mount.roll
+  if (spec_.world == WalkSpec::World::kTunnel) {
+    text << "tunnel: " << spec_.seed;
+  } else {
+    text << "landscape: " << spec_.seed << "\nlight: " << light_.name;
+  }
+  text << "\nmount:  # radians\n  pitch: " << spec_.mount.pitch << "\n  roll: " << spec_.mount.roll
        << "\n  shaking: " << spec_.mount.shaking << "\n";
   return text.str();
 }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/town/drive/carried_camera.h"
 #include "apps/town/drive/route_walk.h"
@@ -49,7 +50,6 @@ class WalkDrive : public Drive {
   };
   static World BuildWorld(const WalkSpec& spec);
   static Light LightOf(const WalkSpec& spec);
-  static Carriage CarriageOf(const WalkSpec& spec, double head_room);
 
   WalkSpec spec_;
   Light light_;  // an unknown one is refused before the world is built

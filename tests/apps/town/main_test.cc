@@ -72,6 +72,7 @@ TEST_F(TownCommandTest, AnswersBadTownsWithOneLine) {
   ExpectRefused("render --landscape 1 --tunnel 1" + Out(), "one of --town");
   ExpectRefused("render --landscape wood" + Out(), "unknown landscape 'wood'");
   ExpectRefused("render --tunnel -3" + Out(), "unknown tunnel '-3'");
+  ExpectRefused("render --tunnel 1 --light noon" + Out(), "--light is for worlds under a sky");
   ExpectRefused("render --tunnel 1 --traffic 0.5" + Out(), "nothing moves in other worlds");
   ExpectRefused("render --town 1 --path " + Write("p.txt", "0 1 2 3\n1 1 2 4\n") + Out(),
                 "--path is for a --scene");

@@ -6,10 +6,10 @@
 
 namespace orb360::town {
 
-/// Makes a fern at the origin, 0.4 to 0.9 m high.
+/// Makes a fern at the origin, up to 0.9 m high.
 Mesh MakeFern(const LandscapeMaterials& materials, Random random);
 
-/// Makes tufts of grass within half a metre of the origin, 0.15 to 0.6 m high.
+/// Makes tufts of grass within half a metre of the origin, up to 0.7 m high.
 Mesh MakeGrass(const LandscapeMaterials& materials, bool is_dry, Random random);
 
 /// Makes a broad-leaved bush at the origin, 0.7 to 1.8 m high.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <orb360/nn/base/check.h>
+
 namespace orb360::town {
 namespace {
 
@@ -28,7 +30,7 @@ TEST(CarriedCamera, PitchRaisesItsNoseAndRollItsLeftSide) {
 TEST(CarriedCamera, IsARobotsOrAPersons) {
   int robots = 0;
   for (uint64_t seed = 0; seed < 200; ++seed) {
-    const Carriage carriage = DrawCarriage({}, Random(seed));
+    const Carriage carriage = DrawCarriage({}, 3, "the way", Random(seed));
     const bool is_robot = carriage.height < 1;
     robots += is_robot ? 1 : 0;
     EXPECT_GE(carriage.height, is_robot ? 0.3 : 1.2);
@@ -37,6 +39,16 @@ TEST(CarriedCamera, IsARobotsOrAPersons) {
   }
   EXPECT_GT(robots, 30);
   EXPECT_LT(robots, 90);
+}
+
+TEST(CarriedCamera, IsNoHigherThanThereIsRoom) {
+  for (uint64_t seed = 0; seed < 40; ++seed)
+    EXPECT_LE(DrawCarriage({}, 1.4, "the way", Random(seed)).height, 1.4);
+  Mount mount;
+  mount.height = 1.4;
+  EXPECT_EQ(DrawCarriage(mount, 1.4, "the way", Random(1)).height, 1.4);
+  mount.height = 1.5;
+  EXPECT_THROW(DrawCarriage(mount, 1.4, "the way", Random(1)), UserError);
 }
 
 }  // namespace
